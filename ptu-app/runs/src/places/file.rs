@@ -366,8 +366,8 @@ impl InstrumentEntry {
         if (kind == "scpi") != self.model.is_some() {
             return Err("a SCPI instrument has a model, a Modbus module has none".into());
         }
-        if self.poll_ms == 0 || self.uncertainty_ms < self.poll_ms {
-            return Err("uncertainty_ms is at least poll_ms, and that at least 1".into());
+        if self.poll_ms == 0 || self.uncertainty_ms <= self.poll_ms {
+            return Err("uncertainty_ms is more than poll_ms, and that at least 1".into());
         }
         let most_ms = SAFE_WITHIN.as_millis() as u64 / instruments as u64;
         if self.uncertainty_ms > most_ms {

@@ -10,7 +10,7 @@ use protocol::signal::Signal;
 
 use super::file::{InstrumentEntry, Place, Places, Point};
 use super::model::code_values;
-use super::widen::READ_ANY;
+use super::widen::{Motion, READ_ANY};
 use crate::words::BenchNote;
 
 /// What a stimulus needs.
@@ -146,26 +146,30 @@ impl Places {
         self.ask_for(&mut procedure.setup, say);
         self.ask_for(&mut procedure.cleanup, say);
         let mut before: Option<String> = None;
+        let mut motion = Motion::default();
         for step in &mut procedure.steps {
             let own = step
                 .lacks
                 .is_none()
                 .then(|| self.step_lacks(step).map(say))
                 .flatten();
+            if !step.continues {
+                motion = Motion::default();
+            }
             // It cannot begin in the state that a step left which was not run.
             let lacks = own.or_else(|| before.clone().filter(|_| step.continues));
             if let Some(lacks) = &lacks {
                 step.lacks = Some(lacks.clone());
             } else {
-                self.fit_step(step, say);
+                self.fit_step(step, &mut motion, say);
             }
             before = lacks;
         }
     }
 
-    fn fit_step(&self, step: &mut Step, say: &dyn Fn(BenchNote) -> String) {
+    fn fit_step(&self, step: &mut Step, motion: &mut Motion, say: &dyn Fn(BenchNote) -> String) {
         let before = worst_case(&step.actions);
-        self.widen(step, say);
+        self.widen(step, motion, say);
         self.see_for(step, say);
         self.ask_for(&mut step.actions, say);
         let longer =
@@ -236,14 +240,14 @@ impl Places {
             return None;
         }
         let model = self.models.get(name)?;
-        if rate_hz <= 0.0 && model.acts.get("code")?.unmodulated.is_empty() {
+        if rate_hz <= 0.0 && model.acts.get("code")?.get_ref().unmodulated.is_empty() {
             return Some(self.no_place("code, unmodulated"));
         }
         let beyond = model.out_of_range(&values)?;
         Some(BenchNote::Beyond(
             self.name.clone(),
             name.to_owned(),
-            beyond.to_string(),
+            beyond,
         ))
     }
 

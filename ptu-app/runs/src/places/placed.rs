@@ -96,7 +96,7 @@ impl Placed {
     }
 
     /// Tries each instrument by itself, in so many rounds. A relay that proves itself is switched in each, and the round is over
-    /// when it is proved; the slowest round counts.
+    /// when it is proved; the slowest round counts, and the time until the next reading with it.
     pub fn check(places: &Places, rounds: u32) -> Vec<Checked> {
         let tried = |name: &String| {
             let mut instrument = open(places, name)?;
@@ -121,7 +121,8 @@ impl Placed {
             // A relay that is stuck leaves others closed.
             let off = instrument.off();
             let slowest = slowest?;
-            off.map(|()| slowest.as_secs_f64() * 1000.0)
+            let poll_ms = places.instruments[name].poll_ms as f64;
+            off.map(|()| slowest.as_secs_f64() * 1000.0 + poll_ms)
         };
         let names = places.safe.iter();
         names.map(|name| (name.clone(), tried(name))).collect()

@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use btu_rig::rig::InstrumentFault;
 use protocol::signal::Signal;
+use toml::Spanned;
 
 use super::file::{Place, Places, Point, act_of};
 use super::modbus::{connect, io_fault};
@@ -130,6 +131,7 @@ impl Scpi {
     fn act(&mut self, stimulus: &str, channel: u8, values: &Values) -> Result<(), InstrumentFault> {
         let model = self.model.clone();
         let act = act_of(stimulus).and_then(|act| model.acts.get(act));
+        let act = act.map(Spanned::get_ref);
         let Some(act) = act else {
             return Ok(());
         };
@@ -153,7 +155,7 @@ impl Scpi {
         }
         commands
             .iter()
-            .try_for_each(|command| self.command(&filled(command, &values)))
+            .try_for_each(|command| self.command(&filled(command.get_ref(), &values)))
     }
 }
 

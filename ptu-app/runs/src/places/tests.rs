@@ -251,10 +251,26 @@ maintenance_key|eb_loop|23|no step moves it"#;
         assert!(at && said.contains(word), "{row}: {said}");
     }
     let driver = "idn = \"A\"\nerror = \"E?\"\n[acts.code]\non = [\"F {speed}\"]\noff = []\n";
-    let said = Model::from_toml(driver)
-        .expect_err("no such value")
-        .to_string();
-    assert!(said.contains("line 4") && said.contains("speed"), "{said}");
+    for (text, line, word) in [
+        (driver.to_owned(), 4, "speed"),
+        (format!("# pulse {{speed}}\n{driver}"), 5, "speed"),
+        (
+            format!("# pulse\n{}", driver.replace(".code", ".pulse")),
+            4,
+            "no act \"pulse\"",
+        ),
+        (
+            driver.replace("speed", "hz").replace(".code", ".pulses") + "[ranges]\nherz = [0, 1]\n",
+            7,
+            "herz",
+        ),
+    ] {
+        let said = Model::from_toml(&text).expect_err(word).to_string();
+        assert!(
+            said.contains(&format!("line {line}")) && said.contains(word),
+            "{said}"
+        );
+    }
 }
 
 /// Scans until `done` with these inputs; the unit's side of each.

@@ -11,6 +11,13 @@ use super::file::{Place, Places, Point};
 use super::fit::{inner, inner_mut};
 use crate::words::BenchNote;
 
+/// Greatest speed and acceleration of steps that continue each other.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Motion {
+    speed_mps: f64,
+    accel_mps2: f64,
+}
+
 /// Whatever is read.
 pub(super) const READ_ANY: fn(Signal) -> bool = |_| true;
 
@@ -35,9 +42,14 @@ impl Places {
         late.max().unwrap_or(Duration::ZERO)
     }
 
-    pub(super) fn widen(&self, step: &mut Step, say: &dyn Fn(BenchNote) -> String) {
+    /// Motion is what steps before left that this one continues, and becomes what this one leaves.
+    pub(super) fn widen(
+        &self,
+        step: &mut Step,
+        motion: &mut Motion,
+        say: &dyn Fn(BenchNote) -> String,
+    ) {
         let acts = self.acts_late();
-        let mut motion = (0.0f64, 0.0f64);
         for action in &step.actions {
             if let Action::Stimulus(
                 Stimulus::Speed {
@@ -49,7 +61,8 @@ impl Places {
                 },
             ) = inner(action)
             {
-                motion = (motion.0.max(speed.mps()), motion.1.max(*accel_mps2));
+                motion.speed_mps = motion.speed_mps.max(speed.mps());
+                motion.accel_mps2 = motion.accel_mps2.max(*accel_mps2);
             }
         }
         for measure in &mut step.measures {
@@ -64,8 +77,8 @@ impl Places {
                 What::Time { .. } => late.as_secs() * 1000.0,
                 What::At { signal, .. } => {
                     let moves = match signal.definition().unit {
-                        "km/h" => motion.1 * 3.6,
-                        "m" => motion.0,
+                        "km/h" => motion.accel_mps2 * 3.6,
+                        "m" => motion.speed_mps,
                         _ => 0.0,
                     };
                     of_value(signal) + moves * late.as_secs()

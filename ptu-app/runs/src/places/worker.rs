@@ -182,7 +182,8 @@ fn work(
         is_off = !fed;
         let wanted = if fed { &wanted } else { &nothing };
         let cycled = instrument.cycle(wanted, &mut read);
-        let took = began.elapsed();
+        // What changed just after a reading is read by the next.
+        let took = began.elapsed() + timing.poll;
         late = match took > timing.uncertainty {
             true => late + 1,
             false if cycled == Ok(true) => 0,
@@ -198,7 +199,7 @@ fn work(
         let mut state = lock(shared);
         state.read.clone_from(&read);
         if took > timing.uncertainty {
-            state.late = state.late.max(took);
+            state.late = state.late.max(took - timing.uncertainty);
         }
         state.fault = cycled.err();
         state.has_read = true;
@@ -254,7 +255,7 @@ mod tests {
         let odd = Odd(Duration::from_millis(takes_ms), panics, offs.clone());
         let timing = Timing {
             poll: Duration::from_millis(poll_ms),
-            uncertainty: Duration::from_secs(1),
+            uncertainty: Duration::from_secs(10),
             place: 0,
         };
         (Worker::start("odd".into(), timing, Box::new(odd)), offs)
