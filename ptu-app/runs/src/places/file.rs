@@ -127,7 +127,7 @@ pub enum Place<'a> {
 }
 
 impl Point {
-    /// Where it is.
+    /// What the word of `at` means.
     pub fn place(&self) -> Place<'_> {
         match self.at.as_str() {
             "frames" => Place::Frames,
@@ -183,7 +183,7 @@ struct Text {
 /// A bench file that was checked.
 #[derive(Clone, Debug)]
 pub struct Places {
-    /// Its name.
+    /// As runs and notes call the bench.
     pub name: String,
     /// SHA-256 of its text.
     pub sha256: String,

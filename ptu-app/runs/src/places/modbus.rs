@@ -17,7 +17,7 @@ use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted, span};
 /// How long a relay and the contact that proves it may differ [default: pull-in, bounce and a poll].
 const RELAY_TAKES: Duration = Duration::from_millis(150);
 
-/// A connected module.
+/// A module that was switched off after connecting, with the points of the bench file that it has.
 pub(super) struct Module {
     stream: TcpStream,
     unit: u8,

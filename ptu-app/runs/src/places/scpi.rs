@@ -23,7 +23,7 @@ const OVERLOAD: f64 = 9.9e37;
 /// Longest answer, bytes.
 const LONGEST: usize = 4096;
 
-/// A connected instrument.
+/// An instrument whose model was checked, with the points of the bench file that it has.
 pub(super) struct Scpi {
     stream: BufReader<TcpStream>,
     model: Arc<Model>,

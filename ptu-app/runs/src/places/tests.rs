@@ -5,10 +5,10 @@ use std::net::{TcpListener, TcpStream};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant as Clock};
 
-use btu_rig::procedure::plan::{Action, Operand};
+use btu_rig::procedure::plan::{Action, Condition, Operand};
 use btu_rig::procedure::{Procedure, Step};
 use btu_rig::rig::LinkTrouble;
-use btu_rig::stimulus::Stimulus;
+use btu_rig::stimulus::{DoorLine, Stimulus};
 use protocol::link::{End, Link};
 use protocol::message::{IoInput, IoOutput, Message, ModeSwitch, Outputs, TrainLines};
 use protocol::{Instant, SCAN};
@@ -474,6 +474,57 @@ fn a_code_beyond_the_generator_is_skipped() {
         assert!(
             fits || said.is_none() && lacks.is_none(),
             "{level_mv} mV: {said:?}"
+        );
+    }
+}
+
+/// Goal: a door line needs its own relay alone, all doors need theirs by side only where the train tells of sides, and what is
+/// waited for has more time wherever it stands.
+#[test]
+fn doors_and_waits_are_fitted() {
+    let places = |none: &str| {
+        let text = BENCH.replace("MODULE", "1").replace("GENERATOR", "2");
+        let none = none
+            .split(' ')
+            .map(|line| format!("{line} = {{ at = \"none\" }}\n"));
+        let stimuli = format!("[stimuli]\n{}", none.collect::<String>());
+        bench(&text.replace("[stimuli]\n", &stimuli)).expect("a bench")
+    };
+    let all = Stimulus::Doors { closed: true };
+    let line = |line| Stimulus::DoorLine {
+        line,
+        on: Some(true),
+    };
+    let by_side = "doors_by_side left_closed left_locked right_closed right_locked";
+    for (none, stimulus, lacks) in [
+        ("doors_by_side", line(DoorLine::All), None),
+        ("doors_closed", line(DoorLine::LeftLocked), None),
+        (
+            "left_locked",
+            line(DoorLine::LeftLocked),
+            Some("left_locked"),
+        ),
+        ("left_locked", all, Some("left_locked")),
+        (by_side, all, None),
+        ("doors_by_side doors_closed", all, Some("doors_closed")),
+    ] {
+        let mut plain = procedures(&setup(&[]));
+        plain.truncate(1);
+        let procedure = Arc::make_mut(&mut plain[0]);
+        let until = Action::Until {
+            condition: Condition::All(Vec::new()),
+            within: protocol::Duration::from_ms(100),
+        };
+        procedure.lacks = None;
+        procedure.setup = vec![Action::OnBench(Box::new(until)), Action::Stimulus(stimulus)];
+        let fitted = places(none).fit(plain, &|note| note.to_string());
+        let said = lacks.map(|what| format!("bench bench has no {what}"));
+        assert_eq!(fitted[0].lacks, said, "{none}: {stimulus}");
+        let Action::OnBench(until) = &fitted[0].setup[0] else {
+            panic!("{:?}", fitted[0].setup)
+        };
+        assert!(
+            matches!(**until, Action::Until { within, .. } if within == protocol::Duration::from_ms(400))
         );
     }
 }

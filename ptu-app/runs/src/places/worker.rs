@@ -287,6 +287,27 @@ mod tests {
     }
 
     #[test]
+    fn the_time_until_the_next_reading_counts_as_late() {
+        let offs = Arc::new(Mutex::new(0));
+        let timing = Timing {
+            poll: Duration::from_millis(100),
+            uncertainty: Duration::from_millis(140),
+            place: 0,
+        };
+        let odd = Box::new(Odd(Duration::from_millis(60), 0, offs));
+        let mut worker = Worker::start("odd".into(), timing, odd);
+        std::thread::sleep(Duration::from_millis(600));
+        let late_ms = worker.take_late().as_secs() * 1000.0;
+        let fault = worker.readings(|_, _| {});
+        assert!(
+            matches!(fault, Err(InstrumentFault::Slow { .. })),
+            "{fault:?}"
+        );
+        assert!((20.0..100.0).contains(&late_ms), "{late_ms}");
+        worker.end(Duration::from_secs(1));
+    }
+
+    #[test]
     fn what_was_not_read_in_time_is_silent() {
         let (mut worker, _) = started(300, 0, 10);
         let read = worker.has_read(Duration::from_millis(50));
