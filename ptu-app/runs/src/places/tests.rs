@@ -5,7 +5,7 @@ use std::net::{TcpListener, TcpStream};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant as Clock};
 
-use btu_rig::procedure::plan::{Action, Condition, Operand};
+use btu_rig::procedure::plan::{Action, Condition, Operand, What};
 use btu_rig::procedure::{Procedure, Step};
 use btu_rig::rig::LinkTrouble;
 use btu_rig::stimulus::{DoorLine, Stimulus};
@@ -54,6 +54,13 @@ const RELAYS: &str = r#"
 safe = ["io"]
 stimuli = { hcr = { at = "io", coils = [1] } }
 instruments.io = { at = "modbus:127.0.0.1:MODULE", serial = "R-1", uncertainty_ms = 150, watchdog = { register = 7, ms = 800 } }
+"#;
+
+/// A meter alone.
+const METER: &str = r#"
+safe = ["meter"]
+readings = { speed = { at = "meter", read = "volts1" } }
+instruments.meter = { at = "scpi:127.0.0.1:GENERATOR", model = "meter", serial = "M-1", uncertainty_ms = 150 }
 "#;
 
 /// A pulse generator alone.
@@ -136,7 +143,8 @@ fn generator(wrong: Wrong, log: Log) -> u16 {
                     continue;
                 }
                 ("*IDN?", "model") => "ACME,SCALE,1,1",
-                ("*IDN?", _) => "ACME,GENERATOR,1,1",
+                ("*IDN?", _) => "ACME,GENERATOR,METER,1",
+                ("MEAS:VOLT? (@101)", answer) => answer,
                 ("SYST:ERR?", error) if asked > 6 && error.starts_with('-') => error,
                 ("SYST:ERR?", _) => "0,\"No error\"",
                 _ => {
@@ -527,6 +535,79 @@ fn doors_and_waits_are_fitted() {
             matches!(**until, Action::Until { within, .. } if within == protocol::Duration::from_ms(400))
         );
     }
+}
+
+/// Goal: overload of a meter is no reading.
+#[test]
+fn only_numbers_are_read() {
+    for (answer, is_read) in [
+        ("1.5", true),
+        ("9.91E37", false),
+        ("nan", false),
+        ("inf", false),
+    ] {
+        let port = generator(answer, Log::default());
+        let text = METER.replace("GENERATOR", &port.to_string());
+        let placed = Placed::open(&Arc::new(bench(&text).expect("a bench")));
+        let said = placed.err().map(|fault| fault.to_string());
+        let refused = |said: &String| said.contains(&format!("{answer} is no answer to MEAS"));
+        assert_eq!(
+            said.as_ref().map(refused),
+            (!is_read).then_some(true),
+            "{said:?}"
+        );
+    }
+}
+
+/// Goal: a step that continues a moving one is wider by the motion, too. Method: a step that measures at a moment of a motion,
+/// and the same again without its motion.
+#[test]
+fn motion_of_a_step_that_is_continued_counts() {
+    let text = BENCH.replace("MODULE", "1").replace("GENERATOR", "2");
+    let moves = |action: &Action| {
+        matches!(
+            action,
+            Action::Stimulus(Stimulus::Speed { .. } | Stimulus::Travel { .. })
+        )
+    };
+    let at = |step: &Step| {
+        let what = step.measures.first().map(|measure| &measure.what);
+        matches!(what, Some(What::At { signal, .. }) if signal.definition().unit == "m"
+            || signal.definition().unit == "km/h")
+    };
+    let places = bench(&text).expect("a bench");
+    let fit = |plain| places.fit(plain, &|note| note.to_string());
+    let all = procedures(&setup(&[]));
+    let steps = |all: &[Arc<Procedure>]| {
+        all.iter()
+            .flat_map(|one| one.steps.clone())
+            .collect::<Vec<_>>()
+    };
+    let wider = |(plain, fitted): &(Step, Step)| {
+        at(plain)
+            && plain.actions.iter().any(moves)
+            && plain.measures[0].high != fitted.measures[0].high
+    };
+    let mut pairs = steps(&all).into_iter().zip(steps(&fit(all.clone())));
+    let (first, _) = pairs.find(wider).expect("a step");
+    let mut second = Step {
+        continues: true,
+        ..first.clone()
+    };
+    second.actions.retain(|action| !moves(action));
+    let last = Step {
+        continues: false,
+        ..second.clone()
+    };
+    let mut moved = all[..1].to_vec();
+    Arc::make_mut(&mut moved[0]).steps = vec![first.clone(), second, last];
+    let fitted = fit(moved);
+    let [one, two, three] = &fitted[0].steps[..] else {
+        panic!("{:?}", fitted[0].steps)
+    };
+    assert_ne!(one.measures[0].high, first.measures[0].high);
+    assert_eq!(one.measures[0].high, two.measures[0].high);
+    assert_eq!(three.measures[0].high, first.measures[0].high);
 }
 
 /// Goal: a relay that is stuck leaves no other closed where a bench is tried. Method: its contact stays open.
