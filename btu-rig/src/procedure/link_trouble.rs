@@ -47,7 +47,7 @@ pub enum LinkTrouble {
     /// An instrument of the bench does not do its part.
     #[error("instrument {instrument} of the bench: {fault}")]
     Instrument {
-        /// Its name in the bench file.
+        /// As the bench file names it.
         instrument: String,
         /// What it does or does not.
         fault: Box<InstrumentFault>,
@@ -187,7 +187,7 @@ pub enum InstrumentFault {
     /// Another model answers.
     #[error("wrong model: {found} answers where {expected} is expected")]
     OtherModel {
-        /// Its own word.
+        /// Its answer to `*IDN?`.
         found: String,
         /// What its driver is for.
         expected: String,
@@ -195,9 +195,9 @@ pub enum InstrumentFault {
     /// It reports an error after a command.
     #[error("it refused {command}: {error}")]
     Refused {
-        /// The command.
+        /// As it was sent.
         command: String,
-        /// Its own word.
+        /// The entry of its error queue, as it answered.
         error: String,
     },
     /// More errors came than it keeps.
@@ -208,27 +208,27 @@ pub enum InstrumentFault {
     OutOfRange {
         /// The driver's name of the value.
         what: String,
-        /// The value.
+        /// As the driver would have put it.
         value: String,
-        /// Least.
+        /// Least that the driver states.
         low: String,
-        /// Greatest.
+        /// Greatest that the driver states.
         high: String,
     },
     /// What it answered cannot be read.
     #[error("{found} is no answer to {asked}")]
     NoAnswer {
-        /// The question.
+        /// As it was sent, or how much was asked for.
         asked: String,
-        /// The answer.
+        /// As it came.
         found: String,
     },
     /// The contact that proves a relay says otherwise.
     #[error("the relay of {contact} is stuck: it was ordered {ordered} and is proved {}", 1 - .ordered)]
     Stuck {
-        /// The stimulus.
+        /// Stimulus of the bench file that the relay makes.
         contact: String,
-        /// 1 = closed.
+        /// 1 = it was to close, 0 = to open.
         ordered: u8,
     },
 }

@@ -54,8 +54,10 @@ wordings! {
         clock_unknown: "{now}; the system does not say whether it is set by the network", "{now}, 네트워크로 맞추는지 알 수 없음";
         no_server: "none named; with --server it is tried", "지정하지 않음. --server로 확인";
         bench: "bench", "시험대";
-        instrument_ok: "{name} {serial}: acts and reads within {took} ms, {stated} ms stated; registered", "{name} {serial}: 작동과 판독 {took} ms (명시 {stated} ms). 등록함";
-        instrument_late: "{name} {serial}: acts and reads within {took} ms, and the bench file states {stated} ms", "{name} {serial}: 작동과 판독 {took} ms, 시험대 파일에는 {stated} ms";
+        acts_and_reads: "acts and reads", "작동과 판독";
+        switches_off: "switches off", "출력 차단";
+        instrument_ok: "{name} {serial}: {does} within {took} ms, {stated} ms stated; registered", "{name} {serial}: {does} {took} ms (명시 {stated} ms). 등록함";
+        instrument_late: "{name} {serial}: {does} within {took} ms, and the bench file states {stated} ms", "{name} {serial}: {does} {took} ms, 시험대 파일에는 {stated} ms";
         state_more: "state more in uncertainty_ms: limits become as much wider", "uncertainty_ms를 늘리십시오. 한계가 그만큼 넓어집니다";
         instrument_wrong: "{name} {serial}: {why}", "{name} (일련번호 {serial}): {why}";
         check_instrument: "check power, network and address of the instrument; docs/bench.md says more", "계측기의 전원, 네트워크, 주소를 확인하십시오. 자세한 내용: docs/bench.md";

@@ -1,16 +1,18 @@
 //! The bench file, `benches/NAME.toml`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-use protocol::message::{ModeSwitch, Outputs, TrainLines};
+use protocol::message::{Outputs, TrainLines};
 use protocol::signal::Signal;
 use serde::Deserialize;
 use thiserror::Error;
 use toml::Spanned;
 
 use super::model::Model;
+use super::placed::SAFE_WITHIN;
+use super::points::{check_reading, check_stimulus};
 
 /// Why a bench file or a driver is refused.
 #[derive(Debug, Error)]
@@ -126,7 +128,7 @@ pub enum Place<'a> {
 }
 
 impl Point {
-    /// Where it is.
+    /// What the word of `at` means.
     pub fn place(&self) -> Place<'_> {
         match self.at.as_str() {
             "frames" => Place::Frames,
@@ -135,10 +137,37 @@ impl Point {
             name => Place::Instrument(name),
         }
     }
+
+    /// No number of it is beyond reason.
+    fn check(&self) -> Result<(), String> {
+        let terminals = self.coils.iter().copied();
+        let terminals = terminals.chain(self.proved_by).chain(self.input);
+        if terminals.max() > Some(LAST_TERMINAL) {
+            return Err(format!("coils and inputs are 0 to {LAST_TERMINAL}"));
+        }
+        if self.pulse_ms > MOST_MS {
+            return Err(format!("pulse_ms is at most {MOST_MS}"));
+        }
+        if !(1..=MOST_S).contains(&self.within_s.unwrap_or(OPERATOR_S)) {
+            return Err(format!("within_s is 1 to {MOST_S}"));
+        }
+        if !(self.uncertainty.is_finite() && self.uncertainty >= 0.0) {
+            return Err("uncertainty is a number, and not negative".into());
+        }
+        match self.scale.is_none_or(|scale| scale.is_normal()) {
+            true => Ok(()),
+            false => Err("scale is a number, and not 0".into()),
+        }
+    }
 }
 
 /// Time a person has, s [default].
 const OPERATOR_S: u64 = 60;
+/// Greatest times that a bench file may state.
+const MOST_MS: u64 = 60_000;
+const MOST_S: u64 = 3_600;
+/// As many coils as one request writes (Modbus application protocol 6.11), counted from 0.
+const LAST_TERMINAL: u16 = 1967;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -155,7 +184,7 @@ struct Text {
 /// A bench file that was checked.
 #[derive(Clone, Debug)]
 pub struct Places {
-    /// Its name.
+    /// As runs and notes call the bench.
     pub name: String,
     /// SHA-256 of its text.
     pub sha256: String,
@@ -228,7 +257,9 @@ impl Places {
         for (name, entry) in &read.instruments {
             let refuse = |why| wrong(&entry.span(), format!("instrument {name}: {why}"));
             let entry = entry.get_ref();
-            entry.check(switches(name)).map_err(refuse)?;
+            entry
+                .check(switches(name), read.instruments.len())
+                .map_err(refuse)?;
             if let Some(driver) = &entry.model {
                 models.insert(name.clone(), Arc::new(model(driver).map_err(refuse)?));
             }
@@ -245,12 +276,21 @@ impl Places {
         }
         let of = |name: &str| (instruments.get(name), models.get(name).map(|m| &**m));
         let mut stimuli_at = BTreeMap::new();
+        let mut taken = BTreeSet::new();
         for (name, point) in &read.stimuli {
             let refuse = |why| wrong(&point.span(), format!("stimulus {name}: {why}"));
             let known = stimuli().find(|known| known == name);
             let known = known.ok_or_else(|| refuse("there is no such stimulus".into()))?;
             let place = point.get_ref().place();
+            point.get_ref().check().map_err(refuse)?;
             check_stimulus(known, point.get_ref(), of(&point.get_ref().at)).map_err(refuse)?;
+            if let Place::Instrument(instrument) = place {
+                let coils = point.get_ref().coils.iter();
+                let mut twice = coils.filter(|coil| !taken.insert((instrument, **coil)));
+                if let Some(coil) = twice.next() {
+                    return Err(refuse(format!("coil {coil} has another use")));
+                }
+            }
             if place != Place::Frames {
                 stimuli_at.insert(known, point.get_ref().clone());
             }
@@ -258,10 +298,16 @@ impl Places {
         let mut readings_at = BTreeMap::new();
         for (name, point) in &read.readings {
             let refuse = |why| wrong(&point.span(), format!("reading {name}: {why}"));
-            let mut known = READINGS.into_iter().map(|(signal, _)| signal);
-            let known = known.find(|known| known.name() == name);
-            let known = known.ok_or_else(|| refuse("no contact or display of the unit".into()))?;
-            check_reading(point.get_ref(), of(&point.get_ref().at)).map_err(refuse)?;
+            let known = READINGS.iter().find(|(known, _)| known.name() == name);
+            let (known, contact) =
+                *known.ok_or_else(|| refuse("no contact or display of the unit".into()))?;
+            point.get_ref().check().map_err(refuse)?;
+            check_reading(
+                !contact.is_empty(),
+                point.get_ref(),
+                of(&point.get_ref().at),
+            )
+            .map_err(refuse)?;
             if point.get_ref().place() != Place::Frames {
                 readings_at.insert(known, point.get_ref().clone());
             }
@@ -275,6 +321,14 @@ impl Places {
             stimuli: stimuli_at,
             readings: readings_at,
         })
+    }
+
+    /// The instrument proves a relay or reads, so that its check times more than that it switches off.
+    pub fn times_more_than_off(&self, instrument: &str) -> bool {
+        let here = |point: &Point| point.place() == Place::Instrument(instrument);
+        let mut stimuli = self.stimuli.values();
+        stimuli.any(|point| here(point) && point.proved_by.is_some())
+            || self.readings.values().any(here)
     }
 
     /// Everything that frames to the unit's inputs carry has another place.
@@ -299,7 +353,7 @@ impl InstrumentEntry {
         }
     }
 
-    fn check(&self, switches: bool) -> Result<(), String> {
+    fn check(&self, switches: bool, instruments: usize) -> Result<(), String> {
         let (kind, address) = self.at.split_once(':').unwrap_or_default();
         let port = address
             .rsplit_once(':')
@@ -313,49 +367,24 @@ impl InstrumentEntry {
         if (kind == "scpi") != self.model.is_some() {
             return Err("a SCPI instrument has a model, a Modbus module has none".into());
         }
-        if self.poll_ms == 0 || self.uncertainty_ms < self.poll_ms {
-            return Err("uncertainty_ms is at least poll_ms, and that at least 1".into());
+        if self.poll_ms == 0 || self.uncertainty_ms <= self.poll_ms {
+            return Err("uncertainty_ms is more than poll_ms, and that at least 1".into());
+        }
+        let most_ms = SAFE_WITHIN.as_millis() as u64 / instruments as u64;
+        if self.uncertainty_ms > most_ms {
+            return Err(format!(
+                "uncertainty_ms is at most {most_ms}: all {instruments} are off within 1 s"
+            ));
+        }
+        if let Some(watchdog) = self.watchdog
+            && u64::from(watchdog.ms) <= self.poll_ms
+        {
+            return Err("the watchdog waits longer than poll_ms".into());
         }
         if switches && self.watchdog.is_none() && self.by_hand.is_none() {
             return Err("it drives outputs: give its watchdog, or say in by_hand what is to be switched off if the program is killed".into());
         }
         Ok(())
-    }
-}
-
-type Named<'a> = (Option<&'a InstrumentEntry>, Option<&'a Model>);
-
-fn check_stimulus(name: &str, point: &Point, (entry, model): Named<'_>) -> Result<(), String> {
-    let Place::Instrument(instrument) = point.place() else {
-        let cab = !["code", "crosstalk", "tacho1", "tacho2", "marker", "twc"].contains(&name);
-        return match point.place() {
-            Place::Operator(_) if !cab => Err("no person is quick enough for it".into()),
-            _ => Ok(()),
-        };
-    };
-    let act = act_of(name);
-    match (entry.map(InstrumentEntry::at), act) {
-        (None, _) => Err(format!("no instrument {instrument}")),
-        (Some(At::Scpi(_)), Some(act)) => {
-            match model.is_some_and(|model| model.acts.contains_key(act)) {
-                true => Ok(()),
-                false => Err(format!("the model of {instrument} has no act {act}")),
-            }
-        }
-        (Some(At::Modbus(..)), None) => {
-            let coils = match name {
-                "mode_switch" => ModeSwitch::ALL.len(),
-                "marker" => 4,
-                "controller" | "entries" | "twc" | "crosstalk" => 0,
-                _ => 1,
-            };
-            match point.coils.len() {
-                n if n == coils && n > 0 => Ok(()),
-                _ if coils == 0 => Err("a module has no contacts for it".into()),
-                n => Err(format!("it takes {coils} coils, not {n}")),
-            }
-        }
-        _ => Err(format!("{instrument} is no instrument for it")),
     }
 }
 
@@ -365,23 +394,5 @@ pub(super) fn act_of(stimulus: &str) -> Option<&'static str> {
         "code" => Some("code"),
         "tacho1" | "tacho2" => Some("pulses"),
         _ => None,
-    }
-}
-
-fn check_reading(point: &Point, (entry, model): Named<'_>) -> Result<(), String> {
-    let Place::Instrument(instrument) = point.place() else {
-        return Ok(());
-    };
-    match entry.map(InstrumentEntry::at) {
-        None => Err(format!("no instrument {instrument}")),
-        Some(At::Modbus(..)) if point.input.is_some() => Ok(()),
-        Some(At::Modbus(..)) => Err("which input?".into()),
-        Some(At::Scpi(_)) => {
-            let read = point.read.as_deref().unwrap_or_default();
-            match model.is_some_and(|model| model.reads.contains_key(read)) {
-                true => Ok(()),
-                false => Err(format!("the model of {instrument} reads no \"{read}\"")),
-            }
-        }
     }
 }

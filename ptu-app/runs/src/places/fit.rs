@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use btu_rig::procedure::plan::{Action, Expectation, Procedure, Step};
-use btu_rig::stimulus::Stimulus;
+use btu_rig::stimulus::{DoorLine, Stimulus};
 use protocol::Duration;
 use protocol::signal::Signal;
 
 use super::file::{InstrumentEntry, Place, Places, Point};
-use super::widen::READ_ANY;
-use super::worker::Values;
+use super::model::code_values;
+use super::widen::{Motion, READ_ANY};
 use crate::words::BenchNote;
 
 /// What a stimulus needs.
@@ -30,14 +30,27 @@ fn needs(stimulus: &Stimulus) -> &'static [&'static str] {
         | Stimulus::MarkerMoved { .. }
         | Stimulus::MarkersAlong { section: Some(_) } => &["marker"],
         Stimulus::Station(_) | Stimulus::Orders(Some(_)) | Stimulus::Wayside(_) => &["twc"],
-        Stimulus::Doors { .. } | Stimulus::DoorsFollow { .. } => &["doors_closed"],
+        Stimulus::Doors { .. } | Stimulus::DoorsFollow { .. } => &[
+            "doors_closed",
+            "left_closed",
+            "left_locked",
+            "right_closed",
+            "right_locked",
+        ],
         Stimulus::SideDoors { left: true, .. } | Stimulus::DoorObstacle { left: true, .. } => {
             &["doors_by_side", "left_closed", "left_locked"]
         }
         Stimulus::SideDoors { .. } | Stimulus::DoorObstacle { .. } => {
             &["doors_by_side", "right_closed", "right_locked"]
         }
-        Stimulus::DoorLine { on: Some(_), .. } => &["doors_closed", "doors_by_side"],
+        Stimulus::DoorLine { on: Some(_), line } => match line {
+            DoorLine::All => &["doors_closed"],
+            DoorLine::LeftClosed => &["left_closed"],
+            DoorLine::LeftLocked => &["left_locked"],
+            DoorLine::RightClosed => &["right_closed"],
+            DoorLine::RightLocked => &["right_locked"],
+            DoorLine::BySide => &["doors_by_side"],
+        },
         Stimulus::Hcr { .. } => &["hcr"],
         Stimulus::MaintenanceKey { .. } => &["maintenance_key"],
         Stimulus::TrainNumber { number: 1.. } => &["entries"],
@@ -49,12 +62,48 @@ fn needs(stimulus: &Stimulus) -> &'static [&'static str] {
         Stimulus::Reverser { .. } => &["forward", "backward"],
         Stimulus::Acknowledge => &["acknowledge"],
         Stimulus::Start => &["start"],
-        _ => &[],
+        Stimulus::Crosstalk { .. }
+        | Stimulus::CodeOff
+        | Stimulus::CodesAlong { on: false }
+        | Stimulus::TrainDriven { on: false }
+        | Stimulus::Adhesion { .. }
+        | Stimulus::MarkersAlong { section: None }
+        | Stimulus::Orders(None)
+        | Stimulus::DoorLine { on: None, .. }
+        | Stimulus::TrainNumber { number: 0 }
+        | Stimulus::WheelDiameter { .. }
+        | Stimulus::ControllerVolts { volts: None }
+        | Stimulus::ControllerContacts { contacts: None }
+        | Stimulus::Switch { .. }
+        | Stimulus::CutOut { .. }
+        | Stimulus::Failure { .. }
+        | Stimulus::Gradient { .. }
+        | Stimulus::Tcms(_)
+        | Stimulus::AtoEnable { .. }
+        | Stimulus::Load { .. }
+        | Stimulus::PtuArm
+        | Stimulus::PtuAskToArm
+        | Stimulus::PtuDisarm
+        | Stimulus::PtuSilent { .. }
+        | Stimulus::PtuCode { .. }
+        | Stimulus::PtuSpeed { .. }
+        | Stimulus::PtuMarker { .. }
+        | Stimulus::PtuTwc(_)
+        | Stimulus::PtuRelease
+        | Stimulus::PtuSelfTest
+        | Stimulus::PtuClearLog => &[],
     }
 }
 
 /// The action itself, wherever it is done.
 pub(super) fn inner(action: &Action) -> &Action {
+    match action {
+        Action::OnBench(action) | Action::OnTrain(action) => action,
+        action => action,
+    }
+}
+
+pub(super) fn inner_mut(action: &mut Action) -> &mut Action {
     match action {
         Action::OnBench(action) | Action::OnTrain(action) => action,
         action => action,
@@ -92,29 +141,35 @@ impl Places {
                 .find_map(|action| self.lacks_for(action));
             procedure.lacks = lacks.map(say);
         }
+        self.wait_longer(&mut procedure.setup);
+        self.wait_longer(&mut procedure.cleanup);
         self.ask_for(&mut procedure.setup, say);
         self.ask_for(&mut procedure.cleanup, say);
         let mut before: Option<String> = None;
+        let mut motion = Motion::default();
         for step in &mut procedure.steps {
             let own = step
                 .lacks
                 .is_none()
                 .then(|| self.step_lacks(step).map(say))
                 .flatten();
+            if !step.continues {
+                motion = Motion::default();
+            }
             // It cannot begin in the state that a step left which was not run.
             let lacks = own.or_else(|| before.clone().filter(|_| step.continues));
             if let Some(lacks) = &lacks {
                 step.lacks = Some(lacks.clone());
             } else {
-                self.fit_step(step, say);
+                self.fit_step(step, &mut motion, say);
             }
             before = lacks;
         }
     }
 
-    fn fit_step(&self, step: &mut Step, say: &dyn Fn(BenchNote) -> String) {
+    fn fit_step(&self, step: &mut Step, motion: &mut Motion, say: &dyn Fn(BenchNote) -> String) {
         let before = worst_case(&step.actions);
-        self.widen(step, say);
+        self.widen(step, motion, say);
         self.see_for(step, say);
         self.ask_for(&mut step.actions, say);
         let longer =
@@ -131,7 +186,14 @@ impl Places {
     fn lacks_for(&self, action: &Action) -> Option<BenchNote> {
         match inner(action) {
             Action::Stimulus(stimulus) => {
-                let missing = needs(stimulus).iter().find(|name| self.is_none(name));
+                // Without word of doors by side, the unit goes by the line of all doors.
+                let of_all = matches!(
+                    stimulus,
+                    Stimulus::Doors { .. } | Stimulus::DoorsFollow { .. }
+                ) && self.is_none("doors_by_side");
+                let mut needs = needs(stimulus).iter();
+                let missing =
+                    needs.find(|name| self.is_none(name) && (!of_all || **name == "doors_closed"));
                 missing
                     .map(|name| self.no_place(name))
                     .or_else(|| self.beyond(stimulus))
@@ -173,22 +235,19 @@ impl Places {
         let Place::Instrument(name) = self.stimuli.get("code")?.place() else {
             return None;
         };
+        let values = code_values(carrier_hz, rate_hz, level_mv);
+        if values["level_mv"] == 0.0 {
+            return None;
+        }
         let model = self.models.get(name)?;
-        let can =
-            level_mv == 0.0 || rate_hz > 0.0 || !model.acts.get("code")?.unmodulated.is_empty();
-        if !can {
+        if rate_hz <= 0.0 && model.acts.get("code")?.get_ref().unmodulated.is_empty() {
             return Some(self.no_place("code, unmodulated"));
         }
-        let values = Values::from([
-            ("carrier_hz", carrier_hz),
-            ("rate_hz", rate_hz),
-            ("level_mv", level_mv),
-        ]);
         let beyond = model.out_of_range(&values)?;
         Some(BenchNote::Beyond(
             self.name.clone(),
             name.to_owned(),
-            beyond.to_string(),
+            beyond,
         ))
     }
 

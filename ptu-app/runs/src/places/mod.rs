@@ -12,6 +12,7 @@ mod fit;
 mod modbus;
 mod model;
 mod placed;
+mod points;
 mod scpi;
 #[cfg(test)]
 mod tests;

@@ -17,7 +17,7 @@ use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted, span};
 /// How long a relay and the contact that proves it may differ [default: pull-in, bounce and a poll].
 const RELAY_TAKES: Duration = Duration::from_millis(150);
 
-/// A connected module.
+/// A module that was switched off after connecting, with the points of the bench file that it has.
 pub(super) struct Module {
     stream: TcpStream,
     unit: u8,
@@ -26,6 +26,9 @@ pub(super) struct Module {
     readings: Vec<(Signal, Point)>,
     /// What was last written; none = not known.
     written: Option<Vec<bool>>,
+    /// When it was last asked, and after how long without a question it drops its outputs.
+    asked: Instant,
+    drops_after: Option<Duration>,
     coils: usize,
     inputs: u16,
     /// Count of marker pulses, and the coil that is on until then.
@@ -92,6 +95,8 @@ impl Module {
             stimuli,
             readings,
             written: None,
+            asked: Instant::now(),
+            drops_after: watchdog.map(|watchdog| Duration::from_millis(u64::from(watchdog.ms))),
             pulses: None,
             pulse: None,
             astray: BTreeMap::new(),
@@ -109,6 +114,7 @@ impl Module {
         generate: impl FnOnce(&mut ModbusRequest, &mut Vec<u8>) -> Result<(), ErrorKind>,
     ) -> Result<(ModbusRequest, Vec<u8>), InstrumentFault> {
         self.transaction = self.transaction.wrapping_add(1);
+        self.asked = Instant::now();
         let mut request = ModbusRequest::new_tcp_udp(self.unit, self.transaction);
         let mut out = Vec::new();
         let refused = |request: &ModbusRequest, error: ErrorKind| InstrumentFault::Refused {
@@ -202,7 +208,11 @@ impl Instrument for Module {
         read: &mut BTreeMap<Signal, f64>,
     ) -> Result<bool, InstrumentFault> {
         let ordered = self.ordered(wanted);
-        let sets = self.coils > 0 && self.written.as_ref() != Some(&ordered);
+        // Where it was not asked for so long, it has dropped them itself.
+        let dropped = |after: Duration| self.asked.elapsed() >= after;
+        let known = self.inputs > 0 && !self.drops_after.is_some_and(dropped);
+        let written = self.written.as_ref().filter(|_| known);
+        let sets = self.coils > 0 && written != Some(&ordered);
         if sets {
             self.ask(|request, out| request.generate_set_coils_bulk(0, &ordered, out))?;
             self.written = Some(ordered.clone());

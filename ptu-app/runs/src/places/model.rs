@@ -1,13 +1,16 @@
 //! The driver of a SCPI instrument, `instruments/NAME.toml`: templates of commands, questions, ranges.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use btu_rig::rig::InstrumentFault;
 use serde::Deserialize;
+use toml::Spanned;
 
 use super::file::PlacesError;
+use super::worker::Values;
 
-/// A driver.
+/// A driver whose names and values were checked.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
@@ -23,13 +26,13 @@ pub struct Model {
     pub off: Vec<String>,
     /// What it does for stimuli.
     #[serde(default)]
-    pub acts: BTreeMap<String, Act>,
+    pub acts: BTreeMap<String, Spanned<Act>>,
     /// What it reads.
     #[serde(default)]
     pub reads: BTreeMap<String, Read>,
     /// Least and greatest of values that it takes.
     #[serde(default)]
-    pub ranges: BTreeMap<String, [f64; 2]>,
+    pub ranges: BTreeMap<String, Spanned<[f64; 2]>>,
 }
 
 /// Commands for a stimulus.
@@ -37,19 +40,19 @@ pub struct Model {
 #[serde(deny_unknown_fields)]
 pub struct Act {
     /// With these values.
-    pub on: Vec<String>,
+    pub on: Vec<Spanned<String>>,
     /// A carrier without a code rate; none: it cannot.
     #[serde(default)]
-    pub unmodulated: Vec<String>,
-    /// Taken away.
-    pub off: Vec<String>,
+    pub unmodulated: Vec<Spanned<String>>,
+    /// Commands that end the stimulus.
+    pub off: Vec<Spanned<String>>,
 }
 
-/// A question.
+/// A question to an instrument, and where the value is in its answer.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Read {
-    /// Its text.
+    /// The line that is sent.
     pub ask: String,
     /// Which of the numbers of the answer, counted from 0.
     #[serde(default)]
@@ -79,37 +82,42 @@ impl Model {
     /// It is wrong, in a line that is named.
     pub fn from_toml(text: &str) -> Result<Self, PlacesError> {
         let model: Self = toml::from_str(text)?;
-        let wrong = |found: &str, why: String| PlacesError::Wrong {
-            line: 1 + text
-                .split(found)
-                .next()
-                .unwrap_or(text)
-                .matches('\n')
-                .count(),
+        let wrong = |at: Range<usize>, why: String| PlacesError::Wrong {
+            line: 1 + text[..at.start].matches('\n').count(),
             why,
         };
         for (name, act) in &model.acts {
             let Some((_, values)) = ACTS.iter().find(|(known, _)| known == name) else {
                 return Err(wrong(
-                    name,
+                    act.span(),
                     format!("no act \"{name}\": it is code or pulses"),
                 ));
             };
+            let act = act.get_ref();
             for command in act.on.iter().chain(&act.unmodulated).chain(&act.off) {
-                let used = command.split('{').skip(1);
+                let used = command.get_ref().split('{').skip(1);
                 let mut used = used.map(|rest| rest.split('}').next().unwrap_or(rest));
                 if let Some(other) = used.find(|value| !values.contains(value)) {
                     let known = values.join(", ");
                     return Err(wrong(
-                        command,
+                        command.span(),
                         format!("no value \"{other}\" of {name}: {known}"),
                     ));
                 }
             }
         }
-        for (name, [low, high]) in &model.ranges {
+        for (name, range) in &model.ranges {
+            let mut known = ACTS.iter().flat_map(|(_, values)| *values);
+            if !known.any(|known| known == name) {
+                let why = format!("range of {name}: no act has this value");
+                return Err(wrong(range.span(), why));
+            }
+            let [low, high] = range.get_ref();
             if !(low.is_finite() && low < high) {
-                return Err(wrong(name, format!("range of {name}: [least, greatest]")));
+                return Err(wrong(
+                    range.span(),
+                    format!("range of {name}: [least, greatest]"),
+                ));
             }
         }
         Ok(model)
@@ -118,9 +126,11 @@ impl Model {
     /// The value that is out of range, if one is.
     pub fn out_of_range(&self, values: &BTreeMap<&'static str, f64>) -> Option<InstrumentFault> {
         // A carrier that is not modulated has no rate.
-        let given = |(what, value): &(&&str, &f64)| **what != "rate_hz" || **value > 0.0;
+        let given = |(what, value): &(&&str, &f64)| {
+            !["rate_hz", "period_s"].contains(what) || **value > 0.0
+        };
         values.iter().filter(given).find_map(|(what, value)| {
-            let [low, high] = self.ranges.get(*what)?;
+            let [low, high] = self.ranges.get(*what)?.get_ref();
             (!(*low..=*high).contains(value)).then(|| InstrumentFault::OutOfRange {
                 what: (*what).to_owned(),
                 value: value.to_string(),
@@ -129,6 +139,19 @@ impl Model {
             })
         })
     }
+}
+
+/// Values of an antenna signal.
+pub(super) fn code_values(carrier_hz: f64, rate_hz: f64, level_mv: f64) -> Values {
+    // Without a carrier there is none, whatever its level.
+    let level_mv = if carrier_hz > 0.0 { level_mv } else { 0.0 };
+    Values::from([
+        ("carrier_hz", carrier_hz),
+        ("rate_hz", rate_hz),
+        ("period_s", if rate_hz > 0.0 { 1.0 / rate_hz } else { 0.0 }),
+        ("level_mv", level_mv),
+        ("level_v", level_mv / 1000.0),
+    ])
 }
 
 /// A command with its values.

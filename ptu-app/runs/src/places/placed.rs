@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant as Clock};
 
 use btu_rig::rig::{InstrumentFault, LinkTrouble};
-use protocol::frame::{Decoder, FLAG, Header, encode};
+use protocol::frame::{Decoder, FLAG, Header, MAX_PENDING, encode};
 use protocol::link::{End, Link};
 use protocol::message::{Channel, IoInput, IoOutput, Message, ModeSwitch, Outputs};
 use protocol::signal::Signal;
@@ -12,11 +12,12 @@ use protocol::{Instant, Speed};
 
 use super::file::{At, Place, Places, Point, READINGS, lines};
 use super::modbus::Module;
+use super::model::code_values;
 use super::scpi::Scpi;
 use super::worker::{Instrument, Timing, Values, Wanted, Worker};
 
 /// All outputs are off after this, on every end.
-const SAFE_WITHIN: Duration = Duration::from_secs(1);
+pub(super) const SAFE_WITHIN: Duration = Duration::from_secs(1);
 /// Periods without a pulse after which a wheel stands.
 const STANDS_AFTER: u64 = 2;
 /// A frequency that differs by less is not set anew.
@@ -95,7 +96,7 @@ impl Placed {
     }
 
     /// Tries each instrument by itself, in so many rounds. A relay that proves itself is switched in each, and the round is over
-    /// when it is proved; the slowest round counts.
+    /// when it is proved; the slowest round counts, and the time until the next reading with it.
     pub fn check(places: &Places, rounds: u32) -> Vec<Checked> {
         let tried = |name: &String| {
             let mut instrument = open(places, name)?;
@@ -105,18 +106,23 @@ impl Placed {
             let on = loops
                 .map(|(loop_, _)| (*loop_, Values::from([("on", 1.0)])))
                 .collect();
-            let mut slowest = Duration::ZERO;
-            for _ in 0..rounds {
+            let mut round = || {
                 let began = Clock::now();
                 instrument.off()?;
                 instrument.cycle(&on, &mut Default::default())?;
                 while !instrument.proved() {
                     instrument.cycle(&on, &mut Default::default())?;
                 }
-                slowest = slowest.max(began.elapsed());
-            }
-            instrument.off()?;
-            Ok(slowest.as_secs_f64() * 1000.0)
+                Ok(began.elapsed())
+            };
+            let slowest = (0..rounds).try_fold(Duration::ZERO, |slowest, _| {
+                round().map(|took| slowest.max(took))
+            });
+            // A relay that is stuck leaves others closed.
+            let off = instrument.off();
+            let slowest = slowest?;
+            let poll_ms = places.instruments[name].poll_ms as f64;
+            off.map(|()| slowest.as_secs_f64() * 1000.0 + poll_ms)
         };
         let names = places.safe.iter();
         names.map(|name| (name.clone(), tried(name))).collect()
@@ -191,7 +197,7 @@ impl Placed {
 
     /// Switches all outputs off, in the order of the bench file.
     pub fn release(&mut self) {
-        // One that does not answer takes no time of the others.
+        // An instrument that does not answer takes no time from the others.
         let each = SAFE_WITHIN / (self.workers.len() as u32).max(1);
         self.workers.iter_mut().for_each(|worker| worker.end(each));
     }
@@ -199,35 +205,23 @@ impl Placed {
     /// Takes out of the inputs what has a place.
     fn place(&mut self, now: Instant, mut input: IoInput) -> IoInput {
         let placed = |name: &str| self.places.stimuli.contains_key(name);
-        let mut want = |name, values: &[(&'static str, f64)]| {
-            self.wanted
-                .insert(name, values.iter().copied().collect::<Values>());
+        let mut want = |name, values: Values| {
+            self.wanted.insert(name, values);
         };
         for (name, line) in lines().filter(|(name, _)| placed(name)) {
             want(
                 name,
-                &[("on", f64::from(u8::from(input.lines.contains(line))))],
+                Values::from([("on", f64::from(u8::from(input.lines.contains(line))))]),
             );
             input.lines.remove(line);
         }
         if placed("code") {
-            let (rate_hz, level_mv) = (
+            let values = code_values(
+                f64::from(input.carrier_hz),
                 f64::from(input.code_rate_chz) / 100.0,
                 f64::from(input.level_mv),
             );
-            let carrier_hz = f64::from(input.carrier_hz);
-            // Without a carrier there is none, whatever its level.
-            let level_mv = if carrier_hz > 0.0 { level_mv } else { 0.0 };
-            want(
-                "code",
-                &[
-                    ("carrier_hz", carrier_hz),
-                    ("rate_hz", rate_hz),
-                    ("period_s", if rate_hz > 0.0 { 1.0 / rate_hz } else { 0.0 }),
-                    ("level_mv", level_mv),
-                    ("level_v", level_mv / 1000.0),
-                ],
-            );
+            want("code", values);
             (input.carrier_hz, input.code_rate_chz, input.level_mv) = (0, 0, 0);
         }
         let tachos = [
@@ -238,20 +232,23 @@ impl Placed {
             if placed(name) {
                 let backward = input.tacho_backward >> channel & 1;
                 let hz = self.pulses[channel].step(now, *count, *age_us);
-                want(name, &[("hz", hz), ("backward", f64::from(backward))]);
+                want(
+                    name,
+                    Values::from([("hz", hz), ("backward", f64::from(backward))]),
+                );
                 input.tacho_backward &= !(1 << channel);
                 (*count, *age_us) = (0, 0);
             }
         }
         if placed("marker") {
             let (psm, count) = (f64::from(input.marker), f64::from(input.marker_edges));
-            want("marker", &[("psm", psm), ("count", count)]);
+            want("marker", Values::from([("psm", psm), ("count", count)]));
             (input.marker, input.marker_edges, input.marker_edge_us) = (0, 0, 0);
         }
         if placed("mode_switch") {
             want(
                 "mode_switch",
-                &[("position", f64::from(input.mode_switch.code()))],
+                Values::from([("position", f64::from(input.mode_switch.code()))]),
             );
             input.mode_switch = ModeSwitch::Off;
         }
@@ -295,7 +292,12 @@ impl Bodies {
     /// The next that is whole, stuffed as it came; what is no frame, as one that is damaged on purpose, goes on as it is.
     fn next(&mut self, out: &mut Vec<u8>) -> Option<(Header, Message)> {
         loop {
-            let end = self.0.iter().position(|byte| *byte == FLAG)?;
+            let Some(end) = self.0.iter().position(|byte| *byte == FLAG) else {
+                if self.0.len() > MAX_PENDING {
+                    out.append(&mut self.0);
+                }
+                return None;
+            };
             let body: Vec<u8> = self.0.drain(..=end).collect();
             if body.len() == 1 {
                 continue;

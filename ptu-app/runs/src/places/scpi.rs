@@ -4,19 +4,26 @@ use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
 use std::sync::Arc;
+use std::time::Instant;
 
 use btu_rig::rig::InstrumentFault;
 use protocol::signal::Signal;
+use toml::Spanned;
 
 use super::file::{Place, Places, Point, act_of};
 use super::modbus::{connect, io_fault};
 use super::model::{Model, filled};
-use super::worker::{Instrument, Values, Wanted};
+use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted, span};
 
 /// Number of the error that says that its queue is full (SCPI-99 21.8.11).
 const QUEUE_OVERFLOW: i32 = -350;
 
-/// A connected instrument.
+/// Infinities and what is no number are answered as this and more (SCPI-99 7.2.1.4 and 7.2.1.5).
+const OVERLOAD: f64 = 9.9e37;
+/// Longest answer, bytes.
+const LONGEST: usize = 4096;
+
+/// An instrument whose model was checked, with the points of the bench file that it has.
 pub(super) struct Scpi {
     stream: BufReader<TcpStream>,
     model: Arc<Model>,
@@ -66,17 +73,44 @@ impl Scpi {
 
     fn ask(&mut self, question: &str) -> Result<String, InstrumentFault> {
         self.say(question)?;
-        let mut answer = String::new();
-        match self.stream.read_line(&mut answer) {
-            Ok(0) => Err(InstrumentFault::Disconnected(question.to_owned())),
-            Ok(_) => Ok(answer.trim().to_owned()),
-            Err(error) => Err(io_fault(&error)),
+        self.answer(question, Instant::now() + ANSWERS_WITHIN)
+    }
+
+    /// A line, whole until then, however its bytes come.
+    fn answer(&mut self, question: &str, until: Instant) -> Result<String, InstrumentFault> {
+        let mut answer = Vec::new();
+        while !answer.ends_with(b"\n") {
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Err(InstrumentFault::Silent(span(ANSWERS_WITHIN)));
+            }
+            let came = self.stream.get_ref().set_read_timeout(Some(left));
+            let came = came.and_then(|()| self.stream.fill_buf());
+            let came = came.map_err(|error| io_fault(&error))?;
+            if came.is_empty() {
+                return Err(InstrumentFault::Disconnected(question.to_owned()));
+            }
+            let end = came.iter().position(|byte| *byte == b'\n');
+            let end = end.map_or(came.len(), |end| end + 1);
+            answer.extend_from_slice(&came[..end]);
+            self.stream.consume(end);
+            if answer.len() > LONGEST {
+                return Err(InstrumentFault::NoAnswer {
+                    asked: question.to_owned(),
+                    found: format!("{} bytes", answer.len()),
+                });
+            }
         }
+        Ok(String::from_utf8_lossy(&answer).trim().to_owned())
     }
 
     /// Sends a command, and asks whether it was taken.
     fn command(&mut self, command: &str) -> Result<(), InstrumentFault> {
         self.say(command)?;
+        self.taken(command)
+    }
+
+    fn taken(&mut self, command: &str) -> Result<(), InstrumentFault> {
         let asked = self.model.error.clone();
         let error = self.ask(&asked)?;
         let number = error.split(',').next().unwrap_or_default().trim();
@@ -97,6 +131,7 @@ impl Scpi {
     fn act(&mut self, stimulus: &str, channel: u8, values: &Values) -> Result<(), InstrumentFault> {
         let model = self.model.clone();
         let act = act_of(stimulus).and_then(|act| model.acts.get(act));
+        let act = act.map(Spanned::get_ref);
         let Some(act) = act else {
             return Ok(());
         };
@@ -107,6 +142,12 @@ impl Scpi {
             (false, Some(0.0)) => &act.unmodulated,
             _ => &act.on,
         };
+        if commands.is_empty() && !is_off {
+            return Err(InstrumentFault::Refused {
+                command: format!("{stimulus}, unmodulated"),
+                error: "its driver has no commands for it".into(),
+            });
+        }
         let mut values = values.clone();
         values.insert("channel", f64::from(channel));
         if !is_off && let Some(fault) = model.out_of_range(&values) {
@@ -114,7 +155,7 @@ impl Scpi {
         }
         commands
             .iter()
-            .try_for_each(|command| self.command(&filled(command, &values)))
+            .try_for_each(|command| self.command(&filled(command.get_ref(), &values)))
     }
 }
 
@@ -143,7 +184,8 @@ impl Instrument for Scpi {
             };
             let found = self.ask(&asked.ask)?;
             let field = found.split(',').nth(asked.field).unwrap_or_default();
-            let Ok(value) = field.trim().parse::<f64>() else {
+            let value = field.trim().parse::<f64>().ok();
+            let Some(value) = value.filter(|value| value.abs() < OVERLOAD) else {
                 return Err(InstrumentFault::NoAnswer {
                     asked: asked.ask.clone(),
                     found,
@@ -157,8 +199,11 @@ impl Instrument for Scpi {
     fn off(&mut self) -> Result<(), InstrumentFault> {
         self.set.clear();
         let commands = self.model.off.clone();
-        commands
-            .iter()
-            .try_for_each(|command| self.command(command))
+        // All are sent before one is asked for, so that no old error and no late answer keeps an output on.
+        commands.iter().try_for_each(|command| self.say(command))?;
+        match commands.is_empty() {
+            true => Ok(()),
+            false => self.taken(&commands.join(", ")),
+        }
     }
 }

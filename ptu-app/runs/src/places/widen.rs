@@ -8,8 +8,15 @@ use protocol::Duration;
 use protocol::signal::Signal;
 
 use super::file::{Place, Places, Point};
-use super::fit::inner;
+use super::fit::{inner, inner_mut};
 use crate::words::BenchNote;
+
+/// Greatest speed and acceleration of steps that continue each other.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Motion {
+    speed_mps: f64,
+    accel_mps2: f64,
+}
 
 /// Whatever is read.
 pub(super) const READ_ANY: fn(Signal) -> bool = |_| true;
@@ -35,9 +42,14 @@ impl Places {
         late.max().unwrap_or(Duration::ZERO)
     }
 
-    pub(super) fn widen(&self, step: &mut Step, say: &dyn Fn(BenchNote) -> String) {
+    /// Motion is what steps before left that this one continues, and becomes what this one leaves.
+    pub(super) fn widen(
+        &self,
+        step: &mut Step,
+        motion: &mut Motion,
+        say: &dyn Fn(BenchNote) -> String,
+    ) {
         let acts = self.acts_late();
-        let mut motion = (0.0f64, 0.0f64);
         for action in &step.actions {
             if let Action::Stimulus(
                 Stimulus::Speed {
@@ -49,7 +61,8 @@ impl Places {
                 },
             ) = inner(action)
             {
-                motion = (motion.0.max(speed.mps()), motion.1.max(*accel_mps2));
+                motion.speed_mps = motion.speed_mps.max(speed.mps());
+                motion.accel_mps2 = motion.accel_mps2.max(*accel_mps2);
             }
         }
         for measure in &mut step.measures {
@@ -64,8 +77,8 @@ impl Places {
                 What::Time { .. } => late.as_secs() * 1000.0,
                 What::At { signal, .. } => {
                     let moves = match signal.definition().unit {
-                        "km/h" => motion.1 * 3.6,
-                        "m" => motion.0,
+                        "km/h" => motion.accel_mps2 * 3.6,
+                        "m" => motion.speed_mps,
                         _ => 0.0,
                     };
                     of_value(signal) + moves * late.as_secs()
@@ -99,12 +112,7 @@ impl Places {
                 wider = true;
             }
         }
-        for action in &mut step.actions {
-            if let Action::Until { within, .. } = action {
-                *within += late;
-                wider = true;
-            }
-        }
+        wider |= self.wait_longer(&mut step.actions);
         // Until all instruments have acted, the unit shows what was before; until all have read, some of them do.
         let holds = |expected: &Expectation| matches!(expected, Expectation::Holds { .. });
         let acted = matches!(step.actions.last().map(inner), Some(Action::Stimulus(_)));
@@ -119,6 +127,19 @@ impl Places {
             step.origin
                 .add(say(BenchNote::Wider(self.name.clone(), used, by)));
         }
+    }
+
+    /// Gives what is waited for as much more time as instruments act and read late; whether there is any.
+    pub(super) fn wait_longer(&self, actions: &mut [Action]) -> bool {
+        let late = self.acts_late() + self.reads_late(&READ_ANY);
+        let mut longer = false;
+        for action in actions.iter_mut().map(inner_mut) {
+            if let Action::Until { within, .. } = action {
+                *within += late;
+                longer = true;
+            }
+        }
+        longer
     }
 
     /// Instruments behind signals, and those that act, with their serial numbers.

@@ -1,6 +1,7 @@
 //! A thread for each instrument: it sets what is wanted, reads, watches its time, and switches outputs off on every end.
 
 use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -71,12 +72,19 @@ pub(super) struct Timing {
 }
 
 impl Worker {
-    pub fn start(name: String, timing: Timing, instrument: Box<dyn Instrument>) -> Self {
+    pub fn start(name: String, timing: Timing, mut instrument: Box<dyn Instrument>) -> Self {
         let shared = Arc::new((Mutex::new(State::default()), Condvar::new()));
         let worked = shared.clone();
         let thread = std::thread::spawn(move || {
-            work(&worked, timing, instrument);
+            let ended = kept(|| work(&worked, timing, &mut *instrument));
+            // Whatever happened before: outputs are not left on.
+            let off = kept(|| instrument.off());
             let mut state = lock(&worked.0);
+            if let Some(why) = ended.err().or(off.err()) {
+                state
+                    .fault
+                    .get_or_insert(InstrumentFault::Disconnected(why));
+            }
             state.ended = true;
             worked.1.notify_all();
         });
@@ -118,13 +126,20 @@ impl Worker {
         let waits = |state: &mut State| !state.has_read && state.fault.is_none();
         let waited = self.shared.1.wait_timeout_while(state, within, waits);
         let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        state.fault.clone().map_or(Ok(()), Err)
+        match (&state.fault, state.has_read) {
+            (Some(fault), _) => Err(fault.clone()),
+            (None, true) => Ok(()),
+            (None, false) => Err(InstrumentFault::Silent(span(within))),
+        }
     }
 
     /// Switches its outputs off and waits for that, no longer than this.
     pub fn end(&mut self, within: Duration) {
         let mut state = lock(&self.shared.0);
-        state.ends = true;
+        // It was waited for once.
+        if std::mem::replace(&mut state.ends, true) {
+            return;
+        }
         self.shared.1.notify_all();
         let waits = |state: &mut State| !state.ended;
         let waited = self.shared.1.wait_timeout_while(state, within, waits);
@@ -145,7 +160,7 @@ fn lock(state: &Mutex<State>) -> MutexGuard<'_, State> {
 fn work(
     (shared, changed): &(Mutex<State>, Condvar),
     timing: Timing,
-    mut instrument: Box<dyn Instrument>,
+    instrument: &mut dyn Instrument,
 ) {
     let patience = UNFED + AFTER_EACH_OTHER * timing.place;
     let mut read = BTreeMap::new();
@@ -167,7 +182,8 @@ fn work(
         is_off = !fed;
         let wanted = if fed { &wanted } else { &nothing };
         let cycled = instrument.cycle(wanted, &mut read);
-        let took = began.elapsed();
+        // What changed just after a reading is read by the next.
+        let took = began.elapsed() + timing.poll;
         late = match took > timing.uncertainty {
             true => late + 1,
             false if cycled == Ok(true) => 0,
@@ -183,18 +199,119 @@ fn work(
         let mut state = lock(shared);
         state.read.clone_from(&read);
         if took > timing.uncertainty {
-            state.late = state.late.max(took);
+            state.late = state.late.max(took - timing.uncertainty);
         }
         state.fault = cycled.err();
         state.has_read = true;
         changed.notify_all();
         let rest = timing.poll.saturating_sub(began.elapsed());
+        let age = state.fed.filter(|_| fed).map(|at| at.elapsed());
+        let rest = age.map_or(rest, |age| rest.min(patience.saturating_sub(age)));
         let waits = |state: &mut State| !state.ends && (!fed || state.wanted == *wanted);
         drop(changed.wait_timeout_while(state, rest, waits));
     }
-    let _ = instrument.off();
+}
+
+/// A panic as its text.
+fn kept<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str);
+        let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+        text.unwrap_or("panic").to_owned()
+    })
 }
 
 pub(super) fn span(time: Duration) -> protocol::Duration {
     protocol::Duration::from_us(u64::try_from(time.as_micros()).unwrap_or(u64::MAX))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// It takes so long, panics in the cycle of this number, and counts how often it was switched off.
+    struct Odd(Duration, u32, Arc<Mutex<u32>>);
+
+    impl Instrument for Odd {
+        fn cycle(
+            &mut self,
+            _: &Wanted,
+            _: &mut BTreeMap<Signal, f64>,
+        ) -> Result<bool, InstrumentFault> {
+            std::thread::sleep(self.0);
+            self.1 = self.1.wrapping_sub(1);
+            assert_ne!(self.1, 0, "a defect");
+            Ok(true)
+        }
+
+        fn off(&mut self) -> Result<(), InstrumentFault> {
+            *self.2.lock().expect("a count") += 1;
+            Ok(())
+        }
+    }
+
+    fn started(takes_ms: u64, panics: u32, poll_ms: u64) -> (Worker, Arc<Mutex<u32>>) {
+        let offs = Arc::new(Mutex::new(0));
+        let odd = Odd(Duration::from_millis(takes_ms), panics, offs.clone());
+        let timing = Timing {
+            poll: Duration::from_millis(poll_ms),
+            uncertainty: Duration::from_secs(10),
+            place: 0,
+        };
+        (Worker::start("odd".into(), timing, Box::new(odd)), offs)
+    }
+
+    #[test]
+    fn a_panic_is_a_fault_and_switches_off() {
+        let (mut worker, offs) = started(0, 2, 10);
+        worker.has_read(Duration::from_secs(1)).expect("one cycle");
+        let began = Instant::now();
+        while worker.readings(|_, _| {}).is_ok() && began.elapsed() < Duration::from_secs(10) {
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        let fault = worker.readings(|_, _| {}).expect_err("a panic");
+        assert!(fault.to_string().contains("a defect"), "{fault}");
+        assert_eq!(*offs.lock().expect("a count"), 1);
+        let began = Instant::now();
+        worker.end(Duration::from_secs(1));
+        assert!(began.elapsed() < Duration::from_millis(500));
+    }
+
+    #[test]
+    fn a_long_poll_delays_no_switching_off() {
+        let (mut worker, offs) = started(0, 0, 5_000);
+        worker.feed(&Wanted::from([("hcr", Values::new())]));
+        std::thread::sleep(UNFED + Duration::from_millis(300));
+        assert_eq!(*offs.lock().expect("a count"), 1);
+        worker.end(Duration::from_secs(1));
+    }
+
+    #[test]
+    fn the_time_until_the_next_reading_counts_as_late() {
+        let offs = Arc::new(Mutex::new(0));
+        let timing = Timing {
+            poll: Duration::from_millis(100),
+            uncertainty: Duration::from_millis(140),
+            place: 0,
+        };
+        let odd = Box::new(Odd(Duration::from_millis(60), 0, offs));
+        let mut worker = Worker::start("odd".into(), timing, odd);
+        std::thread::sleep(Duration::from_millis(600));
+        let late_ms = worker.take_late().as_secs() * 1000.0;
+        let fault = worker.readings(|_, _| {});
+        assert!(
+            matches!(fault, Err(InstrumentFault::Slow { .. })),
+            "{fault:?}"
+        );
+        assert!((20.0..100.0).contains(&late_ms), "{late_ms}");
+        worker.end(Duration::from_secs(1));
+    }
+
+    #[test]
+    fn what_was_not_read_in_time_is_silent() {
+        let (mut worker, _) = started(300, 0, 10);
+        let read = worker.has_read(Duration::from_millis(50));
+        assert!(matches!(read, Err(InstrumentFault::Silent(_))), "{read:?}");
+        worker.end(Duration::from_secs(1));
+    }
 }

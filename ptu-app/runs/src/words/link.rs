@@ -62,6 +62,15 @@ pub fn korean(trouble: &LinkTrouble) -> String {
 }
 
 #[rustfmt::skip]
+impl super::Say for InstrumentFault {
+    fn say(&self, how: super::Manner) -> String {
+        match how.korean {
+            true => of_instrument(self),
+            false => self.to_string(),
+        }
+    }
+}
+
 fn of_instrument(fault: &InstrumentFault) -> String {
     use InstrumentFault as F;
     let ms = |duration: &protocol::Duration| duration.as_secs() * 1000.0;
@@ -69,13 +78,25 @@ fn of_instrument(fault: &InstrumentFault) -> String {
         F::NotThere { at, why } => format!("{at}에 연결하지 못함: {why}"),
         F::Disconnected(why) => format!("연결이 끊어짐: {why}"),
         F::Silent(within) => format!("{:.2} s 동안 응답 없음", within.as_secs()),
-        F::Slow { took, stated } => format!("응답 지연: {:.0} ms 걸림 (시험대 파일에는 {:.0} ms)", ms(took), ms(stated)),
+        F::Slow { took, stated } => format!(
+            "응답 지연: {:.0} ms 걸림 (시험대 파일에는 {:.0} ms)",
+            ms(took),
+            ms(stated)
+        ),
         F::OtherModel { found, expected } => format!("기종이 다름: {found} 응답 (예상 {expected})"),
         F::Refused { command, error } => format!("명령 {command}을(를) 거부함: {error}"),
         F::QueueFull(error) => format!("오류 대기열이 가득 참: {error}"),
-        F::OutOfRange { what, value, low, high } => format!("{what} 값 {value}이(가) 범위 {low}~{high}를 벗어남"),
+        F::OutOfRange {
+            what,
+            value,
+            low,
+            high,
+        } => format!("{what} 값 {value}이(가) 범위 {low}~{high}를 벗어남"),
         F::NoAnswer { asked, found } => format!("{asked}의 응답 {found}을(를) 해석할 수 없음"),
-        F::Stuck { contact, ordered } => format!("{contact} 릴레이 고착: 명령 {ordered}, 확인 접점 {}", 1 - ordered),
+        F::Stuck { contact, ordered } => format!(
+            "{contact} 릴레이 고착: 명령 {ordered}, 확인 접점 {}",
+            1 - ordered
+        ),
     }
 }
 

@@ -14,7 +14,7 @@ sentences! {
     /// What a bench of instruments makes of a step.
     BenchNote {
         NoPlace(bench: String, what: String): "bench {bench} has no {what}", "시험대 {bench}에 {what} 없음";
-        Beyond(bench: String, instrument: String, why: String): "bench {bench}: {instrument} cannot: {why}", "시험대 {bench}: 계측기 {instrument} 범위 밖 ({why})";
+        Beyond(bench: String, instrument: String, why: btu_rig::rig::InstrumentFault): "bench {bench}: {instrument} cannot: {why}", "시험대 {bench}: 계측기 {instrument} 범위 밖 ({why})";
         Do(what: String): "Please do by hand: {what}. Done?", "손으로 조작하십시오: {what}. 완료했습니까?";
         See(what: String): "Please look: {what}. Is it so?", "확인하십시오: {what}. 맞습니까?";
         Wider(bench: String, used: String, by: String): "bench {bench}: {used} (limits wider by {by})", "시험대 {bench}: {used} (한계 확대 {by})";

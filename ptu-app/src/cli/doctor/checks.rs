@@ -300,9 +300,14 @@ pub(super) fn bench(
             }
         };
         let took = format!("{took_ms:.1}");
+        let does = match places.times_more_than_off(&name) {
+            true => doctor.acts_and_reads,
+            false => doctor.switches_off,
+        };
         let of = [
             of[0],
             of[1],
+            ("does", &does as _),
             ("took", &took as _),
             ("stated", &entry.uncertainty_ms as _),
         ];

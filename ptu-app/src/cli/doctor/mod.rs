@@ -13,7 +13,8 @@ use ptu_runs::table::padded;
 
 /// Check this computer: scripts, ports, display, database, disk, clock and server
 ///
-/// Changes nothing, opens no port, and says for each finding what to do. With --bench it examines instruments alone.
+/// Without --bench it changes nothing and opens no port, and it says for each finding what to do. With --bench it examines
+/// instruments alone: it switches relays that prove themselves, and registers what it measured.
 ///
 /// Examples:
 ///   ptu doctor

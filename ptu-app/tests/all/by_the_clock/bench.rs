@@ -4,7 +4,7 @@
 use std::io::{BufRead, BufReader};
 use std::net::{TcpListener, TcpStream};
 use std::process::{Child, ChildStdout, Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
@@ -19,6 +19,9 @@ const ADDRESSES: [&str; 4] = [
     "192.0.2.23:5025",
     "192.0.2.20:502\"",
 ];
+
+/// Longest time until the bench's programs listen.
+const STARTS_WITHIN: Duration = Duration::from_secs(30);
 
 /// A program of the bench; it ends with the value.
 struct Program(Child);
@@ -59,8 +62,14 @@ impl Bench {
         instruments.extend(names.map(|(name, port)| format!("{name}={port}")));
         let module = ["module.py".to_owned(), ports[3].to_string()];
         let programs = [&instruments[..], &module].map(|program| Program::start(program).0);
+        let began = Instant::now();
         for port in ports {
             while TcpStream::connect(("127.0.0.1", port)).is_err() {
+                let waited = began.elapsed();
+                assert!(
+                    waited < STARTS_WITHIN,
+                    "no program of the bench at port {port}"
+                );
                 std::thread::sleep(Duration::from_millis(100));
             }
         }
