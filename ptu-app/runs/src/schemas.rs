@@ -8,7 +8,7 @@ use protocol::config::UnitConfig;
 use protocol::injection::FaultCatalogue;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 
-use crate::{clauses, fleet, structure, symptoms};
+use crate::{clauses, fleet, places, structure, symptoms};
 
 /// A schema, and the files that it is of.
 pub struct FileSchema {
@@ -53,6 +53,8 @@ pub fn all() -> Vec<FileSchema> {
             &["bench_scatter.toml"],
             of::<BenchScatter>(),
         ),
+        file("bench", &["benches/*.toml"], of::<places::Written>()),
+        file("instrument", &["instruments/*.toml"], of::<places::Model>()),
         file("diagnosis", &["diagnosis.toml"], of::<Settings>()),
         file("fleet", &["fleet.toml"], of::<fleet::FleetFile>()),
         file("symptoms", &["symptoms.toml"], of::<symptoms::Written>()),

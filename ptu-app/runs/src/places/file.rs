@@ -40,7 +40,7 @@ pub enum At {
 }
 
 /// An instrument as the bench file has it.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InstrumentEntry {
     /// `modbus:HOST:PORT` or `scpi:HOST:PORT`.
@@ -64,7 +64,7 @@ pub struct InstrumentEntry {
 }
 
 /// The watchdog of a module.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Watchdog {
     /// Its holding register.
@@ -82,7 +82,7 @@ fn poll_ms() -> u64 {
 }
 
 /// One stimulus or reading.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Point {
     /// `frames`, `none`, `operator` or the name of an instrument.
@@ -169,15 +169,20 @@ const MOST_S: u64 = 3_600;
 /// As many coils as one request writes (Modbus application protocol 6.11), counted from 0.
 const LAST_TERMINAL: u16 = 1967;
 
-#[derive(Deserialize)]
+/// A bench file as it is written.
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct Text {
+pub struct Written {
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, InstrumentEntry>")]
     instruments: BTreeMap<String, Spanned<InstrumentEntry>>,
+    #[schemars(with = "Vec<String>")]
     safe: Spanned<Vec<String>>,
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Point>")]
     stimuli: BTreeMap<String, Spanned<Point>>,
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Point>")]
     readings: BTreeMap<String, Spanned<Point>>,
 }
 
@@ -246,7 +251,7 @@ impl Places {
         text: &str,
         mut model: impl FnMut(&str) -> Result<Model, String>,
     ) -> Result<Self, PlacesError> {
-        let read: Text = toml::from_str(text)?;
+        let read: Written = toml::from_str(text)?;
         let wrong = |at: &Range<usize>, why: String| PlacesError::Wrong {
             line: 1 + text[..at.start].matches('\n').count(),
             why,

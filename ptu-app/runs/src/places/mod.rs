@@ -19,6 +19,6 @@ mod tests;
 mod widen;
 mod worker;
 
-pub use file::{At, InstrumentEntry, Place, Places, PlacesError, Point};
+pub use file::{At, InstrumentEntry, Place, Places, PlacesError, Point, Written};
 pub use model::Model;
 pub use placed::{Checked, Placed};

@@ -11,7 +11,7 @@ use super::file::PlacesError;
 use super::worker::Values;
 
 /// A driver whose names and values were checked.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
     /// What its answer to `*IDN?` holds.
@@ -26,30 +26,35 @@ pub struct Model {
     pub off: Vec<String>,
     /// What it does for stimuli.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Act>")]
     pub acts: BTreeMap<String, Spanned<Act>>,
     /// What it reads.
     #[serde(default)]
     pub reads: BTreeMap<String, Read>,
     /// Least and greatest of values that it takes.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, [f64; 2]>")]
     pub ranges: BTreeMap<String, Spanned<[f64; 2]>>,
 }
 
 /// Commands for a stimulus.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Act {
     /// With these values.
+    #[schemars(with = "Vec<String>")]
     pub on: Vec<Spanned<String>>,
     /// A carrier without a code rate; none: it cannot.
     #[serde(default)]
+    #[schemars(with = "Vec<String>")]
     pub unmodulated: Vec<Spanned<String>>,
     /// Commands that end the stimulus.
+    #[schemars(with = "Vec<String>")]
     pub off: Vec<Spanned<String>>,
 }
 
 /// A question to an instrument, and where the value is in its answer.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Read {
     /// The line that is sent.
