@@ -6,7 +6,7 @@ use protocol::{CYCLE, Duration, Instant};
 
 /// Frames over which the two clocks are compared: 5 s, in which a frame that is late by 120 ms counts 2 %.
 const FRAMES: u32 = 100;
-/// Time between frames from which on a frame is missing or held up, and the comparison begins anew. At a clock that is
+/// Time between frames from which on a frame is missing or held up, and the comparison begins again. At a clock that is
 /// half as fast again a frame comes every 75 ms.
 const GAP: Duration = Duration::from_ms(150);
 /// Counts from one frame to the next, beyond which the counter has jumped.

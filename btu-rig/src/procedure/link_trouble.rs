@@ -49,7 +49,7 @@ pub enum LinkTrouble {
     Instrument {
         /// As the bench file names it.
         instrument: String,
-        /// What it does or does not.
+        /// What is wrong with the instrument.
         fault: Box<InstrumentFault>,
     },
     /// Another tester has the unit.
@@ -181,7 +181,7 @@ pub enum InstrumentFault {
     Slow {
         /// What a command or a reading took.
         took: Duration,
-        /// What the bench file states.
+        /// `uncertainty_ms` of the bench file.
         stated: Duration,
     },
     /// Another model answers.
@@ -189,7 +189,7 @@ pub enum InstrumentFault {
     OtherModel {
         /// Its answer to `*IDN?`.
         found: String,
-        /// What its driver is for.
+        /// Part of the answer to `*IDN?` that its driver names.
         expected: String,
     },
     /// It reports an error after a command.

@@ -235,7 +235,40 @@ pub struct Measure {
     pub origin: Origin,
 }
 
+impl What {
+    /// Calls `f` with each signal that is read.
+    pub fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
+        match self {
+            Self::Time { from, to } => {
+                if let TimeFrom::Condition(condition) = from {
+                    condition.for_each_signal(f);
+                }
+                to.for_each_signal(f);
+            }
+            Self::At { signal, when } => {
+                f(*signal);
+                when.for_each_signal(f);
+            }
+            Self::Value(signal)
+            | Self::Maximum(signal)
+            | Self::Minimum(signal)
+            | Self::Change(signal) => f(*signal),
+            Self::SelfTest { .. } => {}
+        }
+    }
+}
+
 impl Measure {
+    /// Lowers the least and raises the greatest permitted value by so much; the other way round if negative.
+    pub fn widen(&mut self, by: f64) {
+        let shift = |limit: &mut Operand, by: f64| match limit {
+            Operand::Literal(number) => *number += by,
+            Operand::Measured { offset, .. } => *offset += by,
+        };
+        self.low.iter_mut().for_each(|low| shift(low, -by));
+        self.high.iter_mut().for_each(|high| shift(high, by));
+    }
+
     /// Unit of its value; that of a self-test's item comes with the result.
     pub fn unit(&self) -> &'static str {
         match &self.what {
@@ -303,23 +336,7 @@ impl Step {
             }
         }
         for measure in &self.measures {
-            match &measure.what {
-                What::Time { from, to } => {
-                    if let TimeFrom::Condition(condition) = from {
-                        condition.for_each_signal(f);
-                    }
-                    to.for_each_signal(f);
-                }
-                What::At { signal, when } => {
-                    f(*signal);
-                    when.for_each_signal(f);
-                }
-                What::Value(signal)
-                | What::Maximum(signal)
-                | What::Minimum(signal)
-                | What::Change(signal) => f(*signal),
-                What::SelfTest { .. } => {}
-            }
+            measure.what.for_each_signal(f);
         }
     }
 

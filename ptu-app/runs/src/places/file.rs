@@ -20,7 +20,7 @@ pub enum PlacesError {
     /// It is not as TOML, or has another key.
     #[error("{0}")]
     Toml(#[from] toml::de::Error),
-    /// What it says does not fit.
+    /// A value of the file does not fit.
     #[error("line {line}: {why}")]
     Wrong {
         /// Counted from 1.
@@ -103,7 +103,7 @@ pub struct Point {
     /// Channel of the instrument, put into its commands.
     #[serde(default)]
     pub channel: u8,
-    /// What of the driver is read.
+    /// Name of the driver's question for the reading.
     pub read: Option<String>,
     /// Signal per unit of what is read.
     pub scale: Option<f64>,
@@ -330,10 +330,8 @@ impl Places {
 
     /// The instrument proves a relay or reads, so that its check times more than that it switches off.
     pub fn times_more_than_off(&self, instrument: &str) -> bool {
-        let here = |point: &Point| point.place() == Place::Instrument(instrument);
-        let mut stimuli = self.stimuli.values();
-        stimuli.any(|point| here(point) && point.proved_by.is_some())
-            || self.readings.values().any(here)
+        let (stimuli, readings) = self.points_at(instrument);
+        !readings.is_empty() || (stimuli.iter()).any(|(_, point)| point.proved_by.is_some())
     }
 
     /// Everything that frames to the unit's inputs carry has another place.
@@ -390,14 +388,5 @@ impl InstrumentEntry {
             return Err("it drives outputs: give its watchdog, or say in by_hand what is to be switched off if the program is killed".into());
         }
         Ok(())
-    }
-}
-
-/// What a SCPI instrument does for a stimulus.
-pub(super) fn act_of(stimulus: &str) -> Option<&'static str> {
-    match stimulus {
-        "code" => Some("code"),
-        "tacho1" | "tacho2" => Some("pulses"),
-        _ => None,
     }
 }

@@ -11,7 +11,7 @@ use rmodbus::client::ModbusRequest;
 use rmodbus::guess_response_frame_len;
 use rmodbus::{ErrorKind, ModbusProto};
 
-use super::file::{Place, Places, Point, Watchdog};
+use super::file::{Places, Point, Watchdog};
 use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted, span};
 
 /// How long a relay and the contact that proves it may differ [default: pull-in, bounce and a poll].
@@ -78,11 +78,7 @@ impl Module {
         (address, unit): (&str, u8),
         watchdog: Option<Watchdog>,
     ) -> Result<Self, InstrumentFault> {
-        let here = |point: &Point| point.place() == Place::Instrument(name);
-        let stimuli = places.stimuli.iter().filter(|(_, point)| here(point));
-        let stimuli: Vec<_> = stimuli.map(|(at, point)| (*at, point.clone())).collect();
-        let readings = places.readings.iter().filter(|(_, point)| here(point));
-        let readings: Vec<_> = readings.map(|(at, point)| (*at, point.clone())).collect();
+        let (stimuli, readings) = places.points_at(name);
         let coils = stimuli.iter().flat_map(|(_, point)| &point.coils);
         let proofs = stimuli.iter().filter_map(|(_, point)| point.proved_by);
         let inputs = readings.iter().filter_map(|(_, point)| point.input);

@@ -28,7 +28,7 @@ pub struct Model {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Act>")]
     pub acts: BTreeMap<String, Spanned<Act>>,
-    /// What it reads.
+    /// Questions of the instrument, by the names that readings give.
     #[serde(default)]
     pub reads: BTreeMap<String, Read>,
     /// Least and greatest of values that it takes.

@@ -20,7 +20,7 @@ use super::worker::{Instrument, Timing, Values, Wanted, Worker};
 pub(super) const SAFE_WITHIN: Duration = Duration::from_secs(1);
 /// Periods without a pulse after which a wheel stands.
 const STANDS_AFTER: u64 = 2;
-/// A frequency that differs by less is not set anew.
+/// A frequency that differs by less is not set again.
 const SAME_HZ: f64 = 0.001;
 
 /// The instruments of a bench at work.

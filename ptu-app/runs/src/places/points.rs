@@ -1,12 +1,29 @@
 //! What a stimulus or a reading can be at, and what it has to state there.
 
 use protocol::message::ModeSwitch;
+use protocol::signal::Signal;
 
-use super::file::{At, InstrumentEntry, Place, Point, act_of};
+use super::file::{At, InstrumentEntry, Place, Places, Point};
 use super::model::Model;
 
 /// The instrument at which a point is, and its driver.
 pub(super) type Named<'a> = (Option<&'a InstrumentEntry>, Option<&'a Model>);
+
+/// Stimuli and readings of an instrument.
+pub(super) type PointsAt = (Vec<(&'static str, Point)>, Vec<(Signal, Point)>);
+
+impl Places {
+    /// The stimuli and readings that this instrument has.
+    pub(super) fn points_at(&self, instrument: &str) -> PointsAt {
+        let here = |point: &Point| point.place() == Place::Instrument(instrument);
+        let stimuli = self.stimuli.iter().filter(|(_, point)| here(point));
+        let readings = self.readings.iter().filter(|(_, point)| here(point));
+        (
+            stimuli.map(|(at, point)| (*at, point.clone())).collect(),
+            readings.map(|(at, point)| (*at, point.clone())).collect(),
+        )
+    }
+}
 
 pub(super) fn check_stimulus(
     name: &str,
@@ -76,5 +93,14 @@ pub(super) fn check_reading(
                 false => Err(format!("the model of {instrument} reads no \"{read}\"")),
             }
         }
+    }
+}
+
+/// What a SCPI instrument does for a stimulus.
+pub(super) fn act_of(stimulus: &str) -> Option<&'static str> {
+    match stimulus {
+        "code" => Some("code"),
+        "tacho1" | "tacho2" => Some("pulses"),
+        _ => None,
     }
 }

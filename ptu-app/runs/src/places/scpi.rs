@@ -10,9 +10,10 @@ use btu_rig::rig::InstrumentFault;
 use protocol::signal::Signal;
 use toml::Spanned;
 
-use super::file::{Place, Places, Point, act_of};
+use super::file::{Places, Point};
 use super::modbus::{connect, io_fault};
 use super::model::{Model, filled};
+use super::points::act_of;
 use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted, span};
 
 /// Number of the error that says that its queue is full (SCPI-99 21.8.11).
@@ -35,9 +36,7 @@ pub(super) struct Scpi {
 impl Scpi {
     /// Connects and checks: the model, and an error queue that is empty.
     pub fn open(places: &Places, name: &str, address: &str) -> Result<Self, InstrumentFault> {
-        let here = |point: &Point| point.place() == Place::Instrument(name);
-        let stimuli = places.stimuli.iter().filter(|(_, point)| here(point));
-        let readings = places.readings.iter().filter(|(_, point)| here(point));
+        let (stimuli, readings) = places.points_at(name);
         let missing = || InstrumentFault::NotThere {
             at: address.to_owned(),
             why: "no driver".into(),
@@ -45,8 +44,8 @@ impl Scpi {
         let mut scpi = Self {
             stream: BufReader::new(connect(address)?),
             model: places.models.get(name).cloned().ok_or_else(missing)?,
-            stimuli: stimuli.map(|(at, point)| (*at, point.clone())).collect(),
-            readings: readings.map(|(at, point)| (*at, point.clone())).collect(),
+            stimuli,
+            readings,
             set: Wanted::new(),
         };
         let found = scpi.ask("*IDN?")?;

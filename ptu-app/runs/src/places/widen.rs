@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use btu_rig::procedure::plan::{Action, Expectation, Measure, Operand, Step, TimeFrom, What};
+use btu_rig::procedure::plan::{Action, Expectation, Step, What};
 use btu_rig::stimulus::Stimulus;
 use protocol::Duration;
 use protocol::signal::Signal;
@@ -18,7 +18,7 @@ pub(super) struct Motion {
     accel_mps2: f64,
 }
 
-/// Whatever is read.
+/// Any signal that the bench reads.
 pub(super) const READ_ANY: fn(Signal) -> bool = |_| true;
 
 impl Places {
@@ -66,7 +66,10 @@ impl Places {
             }
         }
         for measure in &mut step.measures {
-            let signals = signals_of(measure);
+            let mut signals = BTreeSet::new();
+            measure.what.for_each_signal(&mut |signal| {
+                signals.insert(signal);
+            });
             let late = acts + self.reads_late(&|signal| signals.contains(&signal));
             let of_value = |signal: &Signal| {
                 self.readings
@@ -91,8 +94,7 @@ impl Places {
             };
             let used = self.used_for(&signals, acts);
             if by > 0.0 && !used.is_empty() {
-                measure.low.iter_mut().for_each(|low| shift(low, -by));
-                measure.high.iter_mut().for_each(|high| shift(high, by));
+                measure.widen(by);
                 measure.within += late;
                 let by = format!("{:.1} {}", by, measure.unit());
                 measure
@@ -157,39 +159,5 @@ impl Places {
             .into_iter()
             .map(|name| format!("{name} {}", self.instruments[name].serial));
         told.collect::<Vec<_>>().join(", ")
-    }
-}
-
-fn signals_of(measure: &Measure) -> BTreeSet<Signal> {
-    let mut signals = BTreeSet::new();
-    let mut note = |signal| {
-        signals.insert(signal);
-    };
-    match &measure.what {
-        What::Time { from, to } => {
-            if let TimeFrom::Condition(from) = from {
-                from.for_each_signal(&mut note);
-            }
-            to.for_each_signal(&mut note);
-        }
-        What::At { signal, when } => {
-            note(*signal);
-            when.for_each_signal(&mut note);
-        }
-        What::Value(signal)
-        | What::Maximum(signal)
-        | What::Minimum(signal)
-        | What::Change(signal) => {
-            note(*signal);
-        }
-        What::SelfTest { .. } => {}
-    }
-    signals
-}
-
-fn shift(limit: &mut Operand, by: f64) {
-    match limit {
-        Operand::Literal(number) => *number += by,
-        Operand::Measured { offset, .. } => *offset += by,
     }
 }

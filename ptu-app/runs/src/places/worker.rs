@@ -65,7 +65,7 @@ pub(super) struct Worker {
 #[derive(Clone, Copy)]
 pub(super) struct Timing {
     pub poll: Duration,
-    /// What the bench file states.
+    /// `uncertainty_ms` of the bench file.
     pub uncertainty: Duration,
     /// Place in the order in which outputs are switched off.
     pub place: u32,
@@ -105,7 +105,7 @@ impl Worker {
         }
     }
 
-    /// What it read last.
+    /// Tells each signal that the instrument read last.
     pub fn readings(&self, mut each: impl FnMut(Signal, f64)) -> Result<(), InstrumentFault> {
         let state = lock(&self.shared.0);
         state

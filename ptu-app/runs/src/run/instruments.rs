@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use btu_rig::procedure::plan::Operand;
 use fault_db::{Instrument, Store};
 
 use super::bench_setup::BenchSetup;
@@ -52,18 +51,10 @@ pub(super) fn guard_band(tasks: &mut [Task], store: &Store) -> Result<(), Failur
             let Some(off) = used.iter().find_map(of_unit) else {
                 continue;
             };
-            measure.low.iter_mut().for_each(|low| shift(low, off));
-            measure.high.iter_mut().for_each(|high| shift(high, -off));
+            measure.widen(-off);
         }
     }
     Ok(())
-}
-
-fn shift(limit: &mut Operand, by: f64) {
-    match limit {
-        Operand::Literal(number) => *number += by,
-        Operand::Measured { offset, .. } => *offset += by,
-    }
 }
 
 fn not_calibrated(instrument: &Instrument) -> RunTrouble {
