@@ -34,7 +34,8 @@ pub struct CodeDecoder {
     /// When the code in force was confirmed last.
     confirmed: Instant,
     candidate: Code,
-    steady: OnDelay,
+    /// Since when the candidate is there, as far as was heard.
+    since: Instant,
     /// The candidate comes back after a more restrictive code: it must be steady for the hold time.
     comes_back: bool,
     heard: Heard,
@@ -58,7 +59,7 @@ impl CodeDecoder {
             code: Code::None,
             confirmed: Instant::ZERO,
             candidate: Code::None,
-            steady: OnDelay::default(),
+            since: Instant::ZERO,
             comes_back: false,
             heard: Heard::default(),
             restricted: None,
@@ -82,9 +83,7 @@ impl CodeDecoder {
     ) {
         let match_ = lookup(signal, config);
         let receiver = &config.receiver;
-        // A receiver of waveforms has had the code for a while when it hands it on.
-        let detect_ms = u64::from(receiver.detect_ms).saturating_sub(signal.heard_for.as_ms());
-        let detect = Duration::from_ms(detect_ms);
+        let detect = Duration::from_ms(u64::from(receiver.detect_ms));
         let hold = Duration::from_ms(u64::from(receiver.hold_ms));
         self.heard.note(now, match_, hold);
         let stricter = |code: Code, than: Code| most_kmh(code, config) < most_kmh(than, config);
@@ -97,20 +96,24 @@ impl CodeDecoder {
             let comes_back = self.restricted.is_some_and(|at| now.since(at) < hold);
             self.comes_back = comes_back && stricter(self.code, match_) && confirms;
             self.candidate = match_;
-            self.steady.clear();
+            self.since = now;
         }
+        // A receiver of waveforms has had the code for a while when it hands it on.
+        self.since = self.since.min(now.back(signal.heard_for));
         // What may be over already permits no more.
         let patience = match stricter(match_, self.code) {
             true => detect,
-            false if self.comes_back => hold,
+            // Its beginning is known only so exactly.
+            false if self.comes_back => hold + Duration::from_us(signal.heard_for.as_us() / 8),
             false => detect + signal.lags,
         };
-        let steady = (self.steady).update(now, match_ != Code::None, patience);
+        let steady = match_ != Code::None && now.since(self.since) >= patience;
         if match_ != Code::None && match_ != self.code {
             self.other = Some((match_, now));
         }
         // A code that is steady is detected with the scan in which its time is over.
-        let enough = self.heard.time(match_) >= detect + SCAN || !confirms;
+        let heard = self.heard.time(match_) + signal.heard_for;
+        let enough = heard >= detect + SCAN || !confirms;
         let takes_over = enough && match_ != Code::None && stricter(match_, self.code);
         if steady || takes_over && confirms {
             if stricter(match_, self.code) {
@@ -135,7 +138,8 @@ impl CodeDecoder {
             log.push(now, Event::CodeLost, 0);
         }
         let strange = match_ == Code::None && in_level(signal, receiver);
-        self.report_unknown(now, strange, signal, detect + hold, log);
+        let patience = detect + hold - signal.heard_for;
+        self.report_unknown(now, strange, signal, patience, log);
     }
 
     fn confirm(&mut self, now: Instant, signal: AntennaSignal, code: Code) {

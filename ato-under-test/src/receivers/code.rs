@@ -127,6 +127,8 @@ pub struct Heard {
     pub goes_on: bool,
     /// There is too little noise to hide a break.
     pub is_clear: bool,
+    /// Of a slow code: time that the window shows it to be there already, s, and time for which it may be over.
+    pub spell_s: Option<[f32; 2]>,
 }
 
 /// Receives the codes of one carrier.
@@ -138,9 +140,9 @@ pub struct CodeReceiver {
     pub(super) apart: f32,
     /// Share of the steps of rates that fit a usual window.
     finer: f32,
-    line: [Phasor; MOST],
+    pub(super) line: [Phasor; MOST],
     pub(super) window: usize,
-    place: usize,
+    pub(super) place: usize,
     pub(super) filled: usize,
 }
 
@@ -219,7 +221,7 @@ impl CodeReceiver {
         let on = self.on_carrier();
         let mean = mean_of(&on.values[all.clone()], |value| value);
         let power = power_around(&on.values[all.clone()], mean);
-        let heard = |rate_hz, level_mv, validity, snr_db, goes_on, is_clear| {
+        let heard = |rate_hz, level_mv, validity, snr_db, goes_on, is_clear, spell_s| {
             (level_mv >= self.reception.level_min_mv).then_some(Heard {
                 carrier_hz: self.reception.carrier_hz + on.offset_hz,
                 rate_hz,
@@ -228,11 +230,15 @@ impl CodeReceiver {
                 snr_db,
                 goes_on,
                 is_clear,
+                spell_s,
             })
         };
+        let is_slow = self.finer < 1.0;
         let flat = libm::sqrtf(2.0 * (power - on.noise).max(0.0)) < FLAT * mean;
         if flat && on.beside < BESIDE * mean * mean {
-            return heard(0.0, mean / SQRT_2, 1.0, None, true, true);
+            // The window's ends count for little.
+            let spell_s = is_slow.then(|| [NEARLY * self.window_s(), 0.0]);
+            return heard(0.0, mean / SQRT_2, 1.0, None, true, true, spell_s);
         }
         let (tone, rate_hz, [is_whole, goes_on]) = self.rate(&on, mean, rates_hz)?;
         let share = tone.power() / power;
@@ -245,6 +251,10 @@ impl CodeReceiver {
             && on.beside < BESIDE * keying
             && (is_whole || !is_clear);
         let share_on = on_share(tone.amplitude / mean);
+        let spell_s = match is_slow {
+            true => Some(self.spell_s(&on, (tone, rate_hz), share_on)?),
+            false => None,
+        };
         let signal = match SHARES_ON.contains(&share_on) {
             true if code_alone => {
                 let square = mean_of(&on.values[all], |value| value * value);
@@ -261,7 +271,15 @@ impl CodeReceiver {
         };
         let snr_db = Some(10.0 * libm::log10f(signal / (2.0 * on.noise).max(1e-6)));
         let level_mv = libm::sqrtf(signal / 2.0);
-        heard(rate_hz, level_mv, share.min(1.0), snr_db, goes_on, is_clear)
+        heard(
+            rate_hz,
+            level_mv,
+            share.min(1.0),
+            snr_db,
+            goes_on,
+            is_clear,
+            spell_s,
+        )
     }
 
     /// Level of a carrier that is on for half of the window, mV rms.
@@ -349,7 +367,7 @@ impl CodeReceiver {
         {
             return Some((nearest, nearest.rate_hz + offset_hz, lasts));
         }
-        let steps = ((RATES_HZ.1 - RATES_HZ.0) / RATE_STEP_HZ) as usize;
+        let steps = ((RATES_HZ.1 - self.finer * RATES_HZ.0) / self.finer / RATE_STEP_HZ) as usize;
         let others = (0..steps).map(|step| self.finer * (RATES_HZ.0 + step as f32 * RATE_STEP_HZ));
         let nearest = strongest(&mut others.chain(table_hz.iter().copied()))?;
         let (offset_hz, lasts) = self.offset_of_rate(on, nearest)?;

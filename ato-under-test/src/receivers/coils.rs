@@ -16,6 +16,8 @@ use super::sensor::SensorInput;
 const SAMPLE_HZ: f32 = COIL_SAMPLE_HZ as f32;
 /// Coils and lines.
 const COILS: usize = Coil::ALL.len();
+/// Coils of antennas; the others are lines of speed sensors.
+const IN_ANTENNAS: [Coil; 3] = [Coil::AtpAntenna, Coil::TwcAntenna, Coil::MarkerAntenna];
 /// Scans without samples after which a coil has been silent for long, and its receiver rests.
 const RESTS_AFTER: u8 = 100;
 /// Time of its window that a code may lack when it is heard, ms: the window's ends count for little.
@@ -63,6 +65,8 @@ pub struct Coils {
     silent: [u8; COILS],
     /// What injected faults leave of the level between rail and ATP receiver.
     atp_gain: f32,
+    /// Antennas are heard by sound, and not in frames.
+    by_sound: bool,
     /// Codes shift their carrier.
     shifts: bool,
     /// An injected fault has the ATP receiver hear the weaker of two codes.
@@ -94,6 +98,7 @@ impl Coils {
             parts: [0; COILS],
             silent: [RESTS_AFTER; COILS],
             atp_gain: 1.0,
+            by_sound: false,
             shifts: config.receiver.shift_hz > 0.0,
             unselective: false,
             heard: None,
@@ -123,19 +128,40 @@ impl Coils {
         self.silent[place] = 0;
     }
 
+    /// Takes a scan of what is heard by sound: in the ATP antenna, and in those of TWC and markers together.
+    pub fn hear(&mut self, heard: &[[i16; COIL_SAMPLES]; 2]) {
+        self.by_sound = true;
+        self.marker.2 += COIL_SAMPLES as f32;
+        let [atp, others] = heard;
+        let antennas = [
+            (Coil::AtpAntenna, atp),
+            (Coil::TwcAntenna, others),
+            (Coil::MarkerAntenna, others),
+        ];
+        for (coil, samples) in antennas {
+            let place = usize::from(coil.code());
+            (self.parts[place], self.silent[place]) = (0, 0);
+            for part in samples.as_chunks().0 {
+                self.receive(coil, part);
+            }
+        }
+    }
+
     /// The end of a scan, with its input frame: what was received in it, if samples came of late.
     pub fn end_scan(&mut self, mut input: IoInput) -> Option<Sampled> {
         for (place, coil) in Coil::ALL.iter().enumerate() {
+            let by_sound = self.by_sound && IN_ANTENNAS.contains(coil);
             if self.silent[place] < RESTS_AFTER {
-                while usize::from(self.parts[place]) < COIL_PARTS {
+                while !by_sound && usize::from(self.parts[place]) < COIL_PARTS {
                     self.receive(*coil, &[0; COIL_PART]);
                 }
                 self.silent[place] += 1;
             }
             self.parts[place] = 0;
         }
-        let rests = |coil: Coil| self.silent[usize::from(coil.code())] == RESTS_AFTER;
-        if rests(Coil::AtpAntenna) && rests(Coil::Sensor1A) {
+        let [antenna_rests, sensors_rest] = [Coil::AtpAntenna, Coil::Sensor1A]
+            .map(|coil| self.silent[usize::from(coil.code())] == RESTS_AFTER);
+        if antenna_rests && sensors_rest {
             return None;
         }
         let (mut heard_for, mut lags) = (Duration::ZERO, Duration::ZERO);
@@ -152,24 +178,30 @@ impl Coils {
                 true => window_ms * HEARD_EARLY_PERCENT / 100,
                 false => HEARD_EARLY_MS,
             };
-            heard_for = Duration::from_ms(window_ms.saturating_sub(early_ms));
+            let [there_s, over_s] = (heard.spell_s)
+                .unwrap_or([window_ms.saturating_sub(early_ms) as f32 / 1000.0, 0.0]);
+            heard_for = Duration::from_ms((there_s * 1000.0) as u64);
             let ends = stands_in > 0 || !heard.goes_on;
             lags = Duration::from_ms(match (ends, heard.is_clear) {
                 (true, _) => of_ends(HEARD_LATE_MS) + window_ms / HEARD_LATE_PART,
                 (false, false) => of_ends(HEARD_LATE_MS),
-                (false, true) => 0,
+                (false, true) => (over_s * 1000.0) as u64,
             });
         }
-        let [one, two] = &self.sensors;
-        let sample_us = 1e6 / SAMPLE_HZ;
-        let age_us = |since: f32| (since * sample_us).min(f32::from(u16::MAX)) as u16;
-        (input.tacho1_count, input.tacho1_edge_us) = (one.count(), age_us(one.since()));
-        (input.tacho2_count, input.tacho2_edge_us) = (two.count(), age_us(two.since()));
-        input.tacho_backward = u8::from(one.backward()) | u8::from(two.backward()) << 1;
+        if !sensors_rest {
+            let [one, two] = &self.sensors;
+            let sample_us = 1e6 / SAMPLE_HZ;
+            let age_us = |since: f32| (since * sample_us).min(f32::from(u16::MAX)) as u16;
+            (input.tacho1_count, input.tacho1_edge_us) = (one.count(), age_us(one.since()));
+            (input.tacho2_count, input.tacho2_edge_us) = (two.count(), age_us(two.since()));
+            input.tacho_backward = u8::from(one.backward()) | u8::from(two.backward()) << 1;
+        }
         let age = (self.marker.2 / SAMPLE_HZ * 1e6) as u64;
         (input.marker, input.marker_edges) = (self.marker.0, self.marker.1);
         input.marker_edge_us = age.min(u64::from(u16::MAX)) as u16;
-        self.marker.2 += COIL_SAMPLES as f32;
+        if !self.by_sound {
+            self.marker.2 += COIL_SAMPLES as f32;
+        }
         Some(Sampled {
             input,
             heard_for,

@@ -10,6 +10,7 @@ mod marker;
 mod second_code;
 mod sensor;
 mod shifted;
+mod spell;
 mod window;
 
 pub use code::{CodeReceiver, Heard, Reception};

@@ -68,6 +68,7 @@ impl CodeReceiver {
             snr_db: None,
             goes_on: true,
             is_clear: true,
+            spell_s: None,
         })
     }
 

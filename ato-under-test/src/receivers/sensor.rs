@@ -64,6 +64,11 @@ impl SensorInput {
         self.since
     }
 
+    /// Samples since line B was zero last, at the sample at which it became high.
+    pub fn since_b(&self) -> f32 {
+        self.b.zero
+    }
+
     /// Which lines are high.
     pub fn high(&self) -> [bool; 2] {
         [self.a.high, self.b.high]

@@ -15,6 +15,8 @@ const MOST_VARIATION: f32 = 0.2;
 const CLEAR: f32 = 0.02;
 /// Amplitude of the rate over that of a square wave of the whole shift.
 const DEPTH: core::ops::RangeInclusive<f32> = 0.7..=1.3;
+/// Periods that the window holds of a rate that its edges tell.
+const SLOW: f32 = 1.5;
 /// A frequency that varies by less of the shift is a carrier without a code.
 const FLAT: f32 = 0.25;
 
@@ -45,17 +47,51 @@ impl CodeReceiver {
             snr_db,
             goes_on,
             is_clear: noise < CLEAR * square,
+            spell_s: None,
         };
         if libm::sqrtf(power) < FLAT * shift_hz {
             return Some(heard(0.0, 1.0, None, true));
         }
-        let (tone, rate_hz, [is_whole, goes_on]) = self.rate(&on, mean_hz, rates_hz)?;
+        let is_clear = noise < CLEAR * square;
+        let Some((tone, rate_hz, [is_whole, goes_on])) = self.rate(&on, mean_hz, rates_hz) else {
+            let rate_hz = self.slow_rate(values).filter(|_| is_clear)?;
+            return Some(heard(rate_hz, 0.0, snr_db, true));
+        };
         let over_s = TURNS_OVER as f32 / self.downmix.envelope_hz();
         let angle = PI * rate_hz * over_s;
         let depth = tone.amplitude / (4.0 / PI * shift_hz * libm::sinf(angle) / angle);
         let share = tone.power() / power;
         let is_code = is_whole && share >= LEAST_SHARE && DEPTH.contains(&depth);
-        is_code.then(|| heard(rate_hz, share.min(1.0), snr_db, goes_on))
+        if is_code {
+            return Some(heard(rate_hz, share.min(1.0), snr_db, goes_on));
+        }
+        let rate_hz = self.slow_rate(values).filter(|_| is_clear)?;
+        Some(heard(rate_hz, 0.0, snr_db, true))
+    }
+
+    /// A rate that is too slow for the window, which is none of a code: from the times between its edges.
+    fn slow_rate(&self, values: &[f32]) -> Option<f32> {
+        let (low, high) = (values.iter()).fold((f32::MAX, f32::MIN), |(low, high), value| {
+            (low.min(*value), high.max(*value))
+        });
+        let half = (high - low) / 2.0;
+        if !DEPTH.contains(&(half / self.reception.shift_hz)) {
+            return None;
+        }
+        let (mut is_up, mut edges) = (None, [0, 0]);
+        for (place, value) in values.iter().enumerate() {
+            let off = value - low - half;
+            if off.abs() > half / 2.0
+                && is_up
+                    .replace(off > 0.0)
+                    .is_some_and(|was| was != (off > 0.0))
+            {
+                edges = [edges[1], place];
+            }
+        }
+        let [from, to] = edges;
+        let rate_hz = self.downmix.envelope_hz() / 2.0 / (to - from) as f32;
+        (from > 0 && rate_hz < SLOW / self.window_s()).then_some(rate_hz)
     }
 
     /// The frequency of the carrier over the window, Hz from its mean.

@@ -37,6 +37,8 @@ pub struct TestMode {
     moved_m: [f64; 2],
     mode_switch: ModeSwitch,
     code: Code,
+    /// Until when the receiver may still hear a code that was over at arming.
+    heard_until: Option<Instant>,
     other_code: OnDelay,
     unbraked: OnDelay,
 }
@@ -49,6 +51,7 @@ impl TestMode {
             moved_m: [0.0; 2],
             mode_switch: inputs.train.mode_switch,
             code: lookup(inputs.track, config),
+            heard_until: None,
             other_code: OnDelay::default(),
             unbraked: OnDelay::default(),
         }
@@ -65,6 +68,11 @@ impl TestMode {
         guards: Guards,
     ) -> Option<ArmRefusal> {
         let code = lookup(inputs.track, config);
+        let until = now + inputs.track.heard_for;
+        let may_end = now < *self.heard_until.get_or_insert(until);
+        if may_end && code == Code::None {
+            self.code = code;
+        }
         let other_code = self.other_code.update(now, code != self.code, CODE_STEADY);
         let unbraked = self.unbraked.update(now, !braked, UNPROVED);
         let causes = [

@@ -39,8 +39,12 @@ impl CodeWave {
         }
     }
 
-    /// Another carrier, rate and level from now on, without a jump of either phase.
+    /// Another carrier, rate and level from now on, without a jump of either phase; a code that was not there begins with its
+    /// carrier on.
     pub fn set(&mut self, carrier_hz: f64, rate_hz: f64, level_mv: f64, sample_hz: f64) {
+        if self.amplitude_mv == 0.0 {
+            self.keying = Phase::default();
+        }
         self.carrier_step = carrier_hz / sample_hz;
         self.keying_step = rate_hz / sample_hz;
         self.amplitude_mv = level_mv * std::f64::consts::SQRT_2;

@@ -5,7 +5,7 @@ use btu_rig::waveform::{Channel, ChannelConfig, CodeWave, MarkerWave, Noise, Sen
 use fuzzing::draw;
 use protocol::config::UnitConfig;
 use protocol::message::{COIL_PART, COIL_SAMPLES, COIL_STEP_MV, Coil, CoilSamples, IoInput};
-use protocol::{Duration, Random, SCAN};
+use protocol::{Duration, Instant, Random, SCAN};
 
 use super::tests::unit;
 use crate::test_support::scripts;
@@ -89,8 +89,9 @@ pub(super) fn decided(
 ) -> Vec<(usize, f64)> {
     let mut coils = Coils::new(config);
     let detect = Duration::from_ms(u64::from(config.receiver.detect_ms));
-    let (mut candidate, mut steady, mut decided) = (None, Duration::ZERO, Vec::new());
+    let (mut candidate, mut since, mut decided) = (None, Instant::ZERO, Vec::new());
     for scan in 0..scans {
+        let now = Instant::from_ms(10_000 + 10 * scan as u64);
         for part in 0..5 {
             let mut message = CoilSamples {
                 coil: Coil::AtpAntenna,
@@ -108,12 +109,12 @@ pub(super) fn decided(
         let code = (config.codes.iter())
             .map(|code| code.rate_hz)
             .find(|rate| (rate - rate_hz).abs() <= config.receiver.rate_tolerance_hz);
-        match code.is_some() && code == candidate {
-            true => steady += SCAN,
-            false => steady = Duration::ZERO,
+        if code.is_none() || code != candidate {
+            since = now;
         }
+        since = since.min(now.back(sampled.heard_for));
         candidate = code;
-        if let Some(rate) = code.filter(|_| steady + sampled.heard_for >= detect + sampled.lags) {
+        if let Some(rate) = code.filter(|_| now.since(since) >= detect + sampled.lags) {
             decided.push((scan, rate));
         }
     }
@@ -121,7 +122,7 @@ pub(super) fn decided(
 }
 
 /// What is in the antenna, each for so many ms: the rate of a code, 0 of a carrier without one, `None` nothing.
-fn by_turns(
+pub(super) fn by_turns(
     config: &UnitConfig,
     parts: &[(Option<f64>, u64)],
     level_mv: f64,

@@ -5,7 +5,7 @@ use btu_rig::waveform::{CodeWave, Noise};
 use protocol::Random;
 use protocol::config::UnitConfig;
 
-use super::coil_tests::{SCAN_SAMPLES, decided, no_burst_is_heard};
+use super::coil_tests::{SCAN_SAMPLES, by_turns, decided, no_burst_is_heard};
 use super::tests::unit;
 use super::*;
 use crate::test_support::scripts;
@@ -56,6 +56,56 @@ fn bursts_of_slow_codes_and_of_those_that_shift_are_not_heard() {
     let mut random = Random::new(5);
     no_burst_is_heard("zpw2000", [65, 50], (18, 250), &mut random);
     no_burst_is_heard("us_cab", [60, 50], (8, 600), &mut random);
+}
+
+/// Goal: a code with pauses of 0.1 to 0.4 s is decoded when its time is over, though it fills no part of the window whole when
+/// it is heard first; and it is over with its first pause that is too long.
+#[test]
+fn a_slow_code_is_there_from_its_beginning_to_its_end() {
+    let config = of_type("us_cab");
+    let detect = config.receiver.detect_ms as usize / 10;
+    for code in &config.codes {
+        let half_period = (50.0 / code.rate_hz) as usize;
+        let parts = [(None, 1_000), (Some(code.rate_hz), 4_000), (None, 2_000)];
+        let samples = by_turns(&config, &parts, 500.0, 0);
+        let decided = decided(&config, samples.into_iter(), 700);
+        let from = decided.first().expect("decoded").0 - 100;
+        let to = decided.last().expect("decoded").0;
+        let name = &code.name;
+        assert!(
+            (detect..detect + 10).contains(&from),
+            "{name}: {from} scans"
+        );
+        assert!(to < 500 + half_period + 8, "{name}: until scan {to}");
+    }
+}
+
+/// Goal: a rate that is none of the table's is told: one that is too fast or too slow for the window.
+#[test]
+fn a_rate_of_no_code_is_heard_as_what_it_is() {
+    for (name, rate_hz) in [
+        ("us_cab", 24.5),
+        ("us_cab", 6.25),
+        ("zpw2000", 2.0),
+        ("zpw2000", 32.0),
+    ] {
+        let config = of_type(name);
+        let carrier_hz = config.codes[0].carrier_hz;
+        let wave = CodeWave::new(carrier_hz, rate_hz, 500.0, RATE);
+        let wave = wave.shifted(config.receiver.shift_hz, RATE);
+        let mut receiver = CodeReceiver::new(Reception::of(&config, carrier_hz), RATE as f32);
+        wave.take(144_000).for_each(|mv| receiver.take(mv as f32));
+        let rates: Vec<_> = config
+            .codes
+            .iter()
+            .map(|code| code.rate_hz as f32)
+            .collect();
+        let heard = receiver.heard(&rates).map(|heard| f64::from(heard.rate_hz));
+        assert!(
+            heard.is_some_and(|hz| (hz - rate_hz).abs() < 0.1),
+            "{name}, {rate_hz} Hz: {heard:?}"
+        );
+    }
 }
 
 fn are_told_apart(name: &str, pairs: usize) {

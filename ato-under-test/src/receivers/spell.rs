@@ -1,0 +1,79 @@
+//! Since when a slow code is there, and whether it still is: its window holds seconds, in which a code that has begun or
+//! ended is not told by the window as a whole.
+
+use core::f32::consts::{PI, TAU};
+
+use super::code::{CodeReceiver, OnCarrier, Tone};
+
+/// Time about each edge of the keying that is not looked at, s: what the filter takes.
+const EDGE_S: f32 = 0.022;
+/// Square of what a value is off the keying, over that of its amplitude, that is borne: more than a second code adds that
+/// does not count, less than one that does.
+const BORNE: f32 = 0.4;
+/// Values' worth of what is beyond it that end a code.
+const ENDS: f32 = 1.0;
+/// Share of a period, and time, s, for which two codes may look the same where one becomes the other.
+const ALIKE: f32 = 0.5;
+const ALIKE_S: f32 = 0.2;
+/// Mean power of what was there before a code, over the square of its amplitude: less, for so long, s, is silence.
+const SILENT: f32 = 0.1;
+const SILENT_S: f32 = 0.36;
+/// Least time that is explained of a code that is there, s.
+const LEAST_S: f32 = 0.35;
+/// Share of a period, and time, s, since the carrier was on last that is a pause.
+const PAUSE: f32 = 0.4;
+const PAUSE_S: f32 = 0.12;
+/// Turns of a rate in the time about an edge from which on the keying is not seen.
+const MOST_TURNS: f32 = 0.15;
+
+impl CodeReceiver {
+    /// Looks back from the newest value as far as this code, at this rate, explains the window: the time from the first
+    /// value at which it had its carrier on, s, and the time for which it may be over. `None` if it is over.
+    pub(super) fn spell_s(
+        &self,
+        on: &OnCarrier,
+        (tone, rate_hz): (Tone, f32),
+        share_on: f32,
+    ) -> Option<[f32; 2]> {
+        let value_hz = self.downmix.envelope_hz();
+        let turn = rate_hz / value_hz;
+        let amplitude = tone.amplitude * PI / 2.0 / libm::sinf(PI * share_on);
+        let edge = (EDGE_S * rate_hz).min(MOST_TURNS);
+        let (mut beyond, mut begins, mut on_at) = (0.0f32, None, None);
+        // The tone's angle is that of its own rate, and right in the middle of the window.
+        let middle = (self.window / 2) as f32;
+        let at_middle = tone.angle / TAU + tone.rate_hz / value_hz * middle;
+        for place in (0..self.window).rev() {
+            // Turns from the middle of the carrier's time on, and from its edge.
+            let turns = at_middle + turn * (place as f32 - middle);
+            let from_edge = share_on / 2.0 - (turns - libm::roundf(turns)).abs();
+            if from_edge.abs() < edge {
+                continue;
+            }
+            let due = if from_edge > 0.0 { amplitude } else { 0.0 };
+            // Across the carrier's phase, too.
+            let power = self.line[(self.place + place) % self.window].power();
+            let off = (power - 2.0 * due * on.values[place] + due * due) / (amplitude * amplitude);
+            beyond = (beyond + off.min(1.0) - BORNE).max(0.0);
+            if beyond > ENDS {
+                break;
+            }
+            if beyond == 0.0 && from_edge > 0.0 {
+                begins = Some(place as f32 - edge / turn);
+                on_at.get_or_insert(place);
+            }
+        }
+        let begins = begins?.max(0.0);
+        let before = &on.values[..begins as usize];
+        let power = before.iter().map(|value| value * value).sum::<f32>() / begins.max(1.0);
+        let is_silent = begins > SILENT_S * value_hz && power < SILENT * amplitude * amplitude;
+        let alike_s = match is_silent {
+            true => 0.0,
+            false => ALIKE_S.min(ALIKE / rate_hz),
+        };
+        let there_s = (self.window as f32 - begins) / value_hz;
+        let since_on = (self.window - on_at?) as f32 / value_hz;
+        let over_s = (since_on - PAUSE_S.min(PAUSE / rate_hz)).max(0.0);
+        (there_s >= LEAST_S).then_some([(there_s - alike_s).max(0.0), over_s])
+    }
+}
