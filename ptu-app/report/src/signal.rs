@@ -125,6 +125,10 @@ pub fn not_understood(of: &NotUnderstood, words: &Words) -> String {
             fill(said.loud, &[("n", channel), ("level", &level)])
         }
         Why::OneLine => said.one_line.to_owned(),
+        Why::NoSensor(channel) => fill(said.no_sensor, &[("n", channel)]),
+        Why::Clipped { channel, samples } => {
+            fill(said.clipped, &[("n", channel), ("samples", samples)])
+        }
         Why::Channels(n) => {
             let most = Receivers::MOST_CHANNELS;
             fill(said.many_channels, &[("n", n), ("most", &most)])

@@ -1,7 +1,7 @@
 //! `ptu signal`: waveforms in files and at a sound card: make, read, play and record them.
 
 mod calibrate;
-mod sound;
+pub mod sound;
 
 use std::path::{Path, PathBuf};
 
@@ -304,7 +304,11 @@ impl ReadArguments {
         if self.csv {
             let rows = reading.sources.iter().map(|source| {
                 let row = serde_json::to_value(source).unwrap_or_default();
-                SOURCE_COLUMNS.map(|column| (column.to_owned(), row[column].clone()))
+                let of = |column: &str| match &row["tacho"][column] {
+                    Value::Null => row[column].clone(),
+                    of_tacho => of_tacho.clone(),
+                };
+                SOURCE_COLUMNS.map(|column| (column.to_owned(), of(column)))
             });
             let rows: Vec<Value> = rows.map(|row| row.into_iter().collect()).collect();
             return print_csv(&SOURCE_COLUMNS, &rows);
@@ -315,7 +319,7 @@ impl ReadArguments {
 }
 
 /// Columns of what was heard.
-const SOURCE_COLUMNS: [&str; 10] = [
+const SOURCE_COLUMNS: [&str; 15] = [
     "channel",
     "from_s",
     "to_s",
@@ -326,6 +330,11 @@ const SOURCE_COLUMNS: [&str; 10] = [
     "level_mv",
     "snr_db",
     "bad_bytes",
+    "forward",
+    "backward",
+    "mean_kmh",
+    "phase_deg",
+    "missing_teeth",
 ];
 
 fn page(file: &str) -> Result<PathBuf, String> {

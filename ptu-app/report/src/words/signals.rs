@@ -28,6 +28,8 @@ wordings! {
         marker: "marker", "마커";
         tacho: "speed sensor", "속도센서";
         of_tacho: "{forward} pulses forward, {backward} backward; {mean} km/h ({low} to {high}); line B {phase}° behind; high {a}, {b} %; teeth missing: {missing}", "정방향 {forward}, 역방향 {backward} 펄스; {mean} km/h ({low} ~ {high}); B선 {phase}° 뒤; 듀티 {a}, {b} %; 빠진 이: {missing}";
+        no_sensor: "channel {n}: noise, or no speed sensor: its pulses come too unevenly for a wheel", "채널 {n}: 잡음이거나 속도센서가 아닙니다. 펄스 간격이 차륜이라기에는 너무 불규칙합니다";
+        clipped: "channel {n}: clipped, {samples} samples are as great as the file holds; record with less gain", "채널 {n}: 파형이 잘렸습니다. 샘플 {samples}개가 파일의 최댓값입니다. 이득을 낮추어 다시 녹음하십시오";
         one_line: "one channel: a speed sensor has two lines, A and B", "채널이 하나입니다. 속도센서는 A, B 두 선입니다";
         no_code: "carrier without a code", "코드 없는 반송파";
         unknown_code: "no code of this unit configuration", "이 장치 구성에 없는 코드";

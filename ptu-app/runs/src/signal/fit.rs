@@ -36,10 +36,9 @@ pub(super) struct Envelope {
 impl Envelope {
     /// Of a carrier with codes up to this rate, Hz.
     pub(super) fn new(carrier_hz: f64, fastest_hz: f64, sample_hz: f64) -> Self {
-        let slow = (fastest_hz / FAST_HZ).min(1.0) as f32;
-        let (envelope_hz, pass_hz) = (slow * ENVELOPE_HZ, slow * PASS_HZ);
+        let (downmix, pass_hz) = downmix(carrier_hz, fastest_hz, sample_hz);
         Self {
-            downmix: Downmix::new(carrier_hz as f32, sample_hz as f32, envelope_hz, pass_hz),
+            downmix,
             pass_hz,
             values: VecDeque::new(),
             taken: 0,
@@ -108,6 +107,14 @@ impl Envelope {
         let square = mean_square(0.0)? - mean_square(PI)?;
         Some((best.0, square.max(0.0).sqrt() / SQRT_2))
     }
+}
+
+/// To the envelope of a carrier with codes up to this rate, Hz; and its pass band.
+pub(super) fn downmix(carrier_hz: f64, fastest_hz: f64, sample_hz: f64) -> (Downmix, f32) {
+    let slow = (fastest_hz / FAST_HZ).min(1.0) as f32;
+    let (envelope_hz, pass_hz) = (slow * ENVELOPE_HZ, slow * PASS_HZ);
+    let downmix = Downmix::new(carrier_hz as f32, sample_hz as f32, envelope_hz, pass_hz);
+    (downmix, pass_hz)
 }
 
 /// What so many harmonics of a rate, in cycles a value, explain of the values, and the first parameters: mean, cosine, sine.

@@ -4,9 +4,11 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use ato_under_test::receivers::{Demodulator, FskReceiver, Received, Tones};
+use ato_under_test::receivers::{Demodulator, Downmix, FskReceiver, Received, Tones};
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
+
+use super::fit::downmix;
 
 /// Columns of a reduced curve at most; twice as long ones take their place when they are full.
 const MOST_COLUMNS: usize = 1_024;
@@ -21,8 +23,6 @@ const BESIDE: usize = 2;
 const OF_LINES: f64 = 1.5;
 /// Rows of the spectrum over time.
 const ROWS: usize = 512;
-/// Rate of the envelope, Hz.
-const ENVELOPE_HZ: f64 = 600.0;
 /// Least level that is shown, dB over 1 mV.
 const FLOOR_DB: f32 = -40.0;
 /// Bits of a byte, with start, parity and stop bit.
@@ -132,19 +132,21 @@ pub struct Picture {
     sample_hz: f64,
     wave: Columns<Span>,
     spectrum: Spectrum,
-    envelope: Envelope,
+    downmix: Downmix,
+    levels: Columns<Span>,
     eye: Option<Eye>,
 }
 
 impl Picture {
-    /// Of samples at this rate; the envelope is that of this carrier, the eye of these tones.
-    pub fn new(sample_hz: f64, carrier_hz: f64, tones: Tones) -> Self {
+    /// Of samples at this rate; the envelope is that of this carrier, with codes up to this rate, the eye of these tones.
+    pub fn new(sample_hz: f64, (carrier_hz, fastest_hz): (f64, f64), tones: Tones) -> Self {
         let highest = f64::from(tones.middle_hz + tones.apart_hz);
         Self {
             sample_hz,
             wave: Columns::new(MOST_COLUMNS),
             spectrum: Spectrum::new(sample_hz, OVERLAP),
-            envelope: Envelope::new(sample_hz, carrier_hz),
+            downmix: downmix(carrier_hz, fastest_hz, sample_hz).0,
+            levels: Columns::new(MOST_COLUMNS),
             eye: (sample_hz > 2.2 * highest).then(|| Eye::new(sample_hz, tones)),
         }
     }
@@ -153,7 +155,10 @@ impl Picture {
     pub fn take(&mut self, samples: &[f32]) {
         for sample in samples {
             self.wave.push(Span::of(*sample));
-            self.envelope.take(*sample);
+            if let Some(value) = self.downmix.take(*sample) {
+                self.levels
+                    .push(Span::of(value.abs() / std::f32::consts::SQRT_2));
+            }
             self.spectrum.take(*sample);
             if let Some(eye) = &mut self.eye {
                 eye.take(*sample);
@@ -168,9 +173,8 @@ impl Picture {
 
     /// Level of the carrier, mV rms, and seconds of a column.
     pub fn envelope(&self) -> (&[Span], f64) {
-        let Envelope { columns, by, .. } = &self.envelope;
-        let each_s = columns.each() as f64 * *by as f64 / self.sample_hz;
-        (columns.values(), each_s)
+        let each_s = self.levels.each() as f64 / f64::from(self.downmix.envelope_hz());
+        (self.levels.values(), each_s)
     }
 
     /// Spectra over time, dB over 1 mV rms, and seconds of each.
@@ -307,44 +311,6 @@ impl Spectrum {
             self.columns.push(levels.clone());
         }
         self.line.drain(..hops * self.hop);
-    }
-}
-
-/// The amplitude of a carrier over time.
-#[derive(Clone)]
-struct Envelope {
-    at: Complex<f32>,
-    turn: Complex<f32>,
-    /// Samples of each value.
-    by: usize,
-    taken: usize,
-    sum: Complex<f32>,
-    columns: Columns<Span>,
-}
-
-impl Envelope {
-    fn new(sample_hz: f64, carrier_hz: f64) -> Self {
-        let turn = -std::f64::consts::TAU * carrier_hz / sample_hz;
-        Self {
-            at: Complex::new(1.0, 0.0),
-            turn: Complex::from_polar(1.0, turn as f32),
-            by: ((sample_hz / ENVELOPE_HZ) as usize).max(1),
-            taken: 0,
-            sum: Complex::default(),
-            columns: Columns::new(MOST_COLUMNS),
-        }
-    }
-
-    fn take(&mut self, sample_mv: f32) {
-        self.sum += self.at * sample_mv;
-        self.at *= self.turn;
-        self.taken += 1;
-        if self.taken == self.by {
-            let level = self.sum.norm() * std::f32::consts::SQRT_2 / self.by as f32;
-            self.columns.push(Span::of(level));
-            (self.sum, self.taken) = (Complex::default(), 0);
-            self.at /= self.at.norm();
-        }
     }
 }
 

@@ -115,6 +115,15 @@ pub enum Why {
     },
     /// A speed sensor has two lines, and the file has one channel.
     OneLine,
+    /// The lines from this channel on change as those of no speed sensor do.
+    NoSensor(usize),
+    /// So many samples of the channel are as great as the file holds: the signal is clipped.
+    Clipped {
+        /// Number of the channel, from 1.
+        channel: usize,
+        /// How many.
+        samples: u64,
+    },
     /// The file has so many channels, and only the first are read.
     Channels(usize),
     /// The file is cut off or damaged, with the reader's words.
@@ -137,6 +146,14 @@ impl fmt::Display for Why {
                 "channel {channel}: {level_mv:.0} mV rms that are no code of this unit configuration and no TWC"
             ),
             Self::OneLine => write!(out, "one channel: a speed sensor has two lines"),
+            Self::NoSensor(channel) => write!(
+                out,
+                "channel {channel}: noise, or no speed sensor: its pulses come too unevenly for a wheel"
+            ),
+            Self::Clipped { channel, samples } => write!(
+                out,
+                "channel {channel}: clipped, {samples} samples are as great as the file holds; record with less gain"
+            ),
             Self::Channels(of) => write!(
                 out,
                 "{of} channels: only the first {} are read",
@@ -159,6 +176,13 @@ impl Reading {
             to_s: at_s,
             why,
         });
+    }
+
+    /// Tells which channels of a file that was read are clipped.
+    pub(super) fn tell_clipped(&mut self, wav: &Wav) {
+        for (channel, samples) in wav.clipped() {
+            self.tell(0.0, Why::Clipped { channel, samples });
+        }
     }
 }
 
@@ -206,7 +230,9 @@ fn whole(
                     Some(End::Broken(why)) => Some(why),
                     _ => None,
                 };
-                return Ok(receivers.end(broken));
+                let (mut reading, pictures) = receivers.end(broken);
+                reading.tell_clipped(&wav);
+                return Ok((reading, pictures));
             }
         }
     }

@@ -72,9 +72,11 @@ impl<'a> Receivers<'a> {
         let others = (2..=read).map(|number| Channel::new(number, unit, sample_hz).0);
         let channels: Vec<_> = std::iter::once(first).chain(others).collect();
         let carrier_hz = unit.codes.first().map_or(0.0, |code| code.carrier_hz);
+        let rates = unit.codes.iter().map(|code| code.rate_hz);
+        let fastest_hz = rates.fold(0.0, f64::max);
         let pictures = match pictures {
             true => (channels.iter())
-                .map(|_| Picture::new(sample_hz, carrier_hz, Tones::of(&unit.twc)))
+                .map(|_| Picture::new(sample_hz, (carrier_hz, fastest_hz), Tones::of(&unit.twc)))
                 .collect(),
             false => Vec::new(),
         };

@@ -1,5 +1,6 @@
 //! The lines of speed sensors in a recording, two channels each: pulses, direction, speed, and how the wheel wears.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use ato_under_test::receivers::SensorInput;
@@ -14,6 +15,10 @@ use crate::failure::Failure;
 
 /// A period that is so much longer than the one before it lacks a tooth, at a speed that changes gently.
 const GAP: std::ops::RangeInclusive<f64> = 1.6..=2.4;
+/// A period over the one before it, of a wheel that turns; and the share of all that may be another, as at a turn back: of more
+/// the lines are noise.
+const EVEN: std::ops::RangeInclusive<f64> = 0.6..=1.6;
+const MOST_UNEVEN: f64 = 0.2;
 
 /// What the two lines of a speed sensor tell.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -30,7 +35,7 @@ pub struct Tacho {
     pub phase_deg: f64,
     /// Share of the time for which line A and line B are high, %.
     pub duty_percent: [f64; 2],
-    /// Periods that lack a tooth.
+    /// Teeth that the wheel lacks, each counted once, in however many turns.
     pub missing_teeth: u64,
 }
 
@@ -48,7 +53,12 @@ struct Sensor {
     longest: f64,
     /// Since the last pulse: samples for which each line was high, and when B rose.
     high: [u64; 2],
-    b_rose: Option<u64>,
+    b_rose: Option<f64>,
+    /// Periods that lack a tooth, and which tooth of the wheel that is.
+    gaps: u64,
+    missing: BTreeSet<i64>,
+    /// Periods that are much longer or shorter than the one before, and all.
+    uneven: (u64, u64),
     /// Sums over whole periods: their length, what was high of them, and the phase, as a sum of shares and how many.
     length: f64,
     sum_high: [u64; 2],
@@ -57,17 +67,17 @@ struct Sensor {
 }
 
 impl Sensor {
-    fn take(&mut self, [a, b]: [f32; 2]) {
+    fn take(&mut self, [a, b]: [f32; 2], teeth: u32) {
         let before = self.input.count();
         self.input.take(a, b);
         self.samples += 1;
         let high = self.input.high();
         // A line that is high from the beginning on has not risen.
         if self.input.count() != before && self.samples > 1 {
-            self.pulse(self.samples as f64 - f64::from(self.input.since()));
+            self.pulse(self.samples as f64 - f64::from(self.input.since()), teeth);
         }
         if high[1] && !self.was_high[1] {
-            self.b_rose = Some(self.samples);
+            self.b_rose = Some(self.samples as f64 - f64::from(self.input.since_b()));
         }
         for (sum, high) in self.high.iter_mut().zip(high) {
             *sum += u64::from(high);
@@ -75,7 +85,7 @@ impl Sensor {
         self.was_high = high;
     }
 
-    fn pulse(&mut self, at: f64) {
+    fn pulse(&mut self, at: f64, teeth: u32) {
         match self.input.backward() {
             true => self.told.backward += 1,
             false => self.told.forward += 1,
@@ -89,11 +99,23 @@ impl Sensor {
         let period = at - last;
         let is_gap = (self.period).is_some_and(|before| GAP.contains(&(period / before)));
         if is_gap {
-            self.told.missing_teeth += 1;
+            self.gaps += 1;
+            let way = match self.input.backward() {
+                true => -1,
+                false => 1,
+            };
+            let turned = self.told.forward as i64 - self.told.backward as i64;
+            let tooth = turned + way * self.gaps as i64;
+            self.missing
+                .insert(tooth.rem_euclid(i64::from(teeth.max(1))));
             self.period = None;
             return;
         }
-        self.period = Some(period);
+        if let Some(before) = self.period.replace(period) {
+            let is_uneven = !EVEN.contains(&(period / before));
+            self.uneven.0 += u64::from(is_uneven);
+            self.uneven.1 += 1;
+        }
         self.longest = self.longest.max(period);
         self.shortest = match self.shortest {
             0.0 => period,
@@ -104,17 +126,24 @@ impl Sensor {
             *sum += high;
         }
         if let Some(rose) = b_rose {
-            let share = (rose as f64 - last) / period;
+            let share = (rose - last) / period;
             self.phases = (self.phases.0 + share, self.phases.1 + 1);
         }
+    }
+
+    /// Its pulses come as those of no wheel do.
+    fn is_noise(&self) -> bool {
+        let (uneven, all) = self.uneven;
+        uneven as f64 > MOST_UNEVEN * all as f64
     }
 
     /// What it was, if there were two pulses.
     fn told(mut self, sample_hz: f64, unit: &UnitConfig) -> Option<(Tacho, [f64; 2])> {
         let (first, last) = (self.first?, self.last.filter(|_| self.length > 0.0)?);
         let kmh = |samples: f64| 3.6 * unit.metres_per_pulse() * sample_hz / samples;
-        let pulses = self.told.forward + self.told.backward + self.told.missing_teeth - 1;
-        self.told.mean_kmh = kmh((last - first) / pulses as f64);
+        let periods = self.told.forward + self.told.backward + self.gaps - 1;
+        self.told.mean_kmh = kmh((last - first) / periods as f64);
+        self.told.missing_teeth = self.missing.len() as u64;
         self.told.kmh = [kmh(self.longest), kmh(self.shortest)];
         self.told.phase_deg = 360.0 * self.phases.0 / f64::from(self.phases.1.max(1));
         self.told.duty_percent = self.sum_high.map(|high| 100.0 * high as f64 / self.length);
@@ -141,7 +170,7 @@ pub fn read_tacho(path: &Path, unit: &UnitConfig, full_scale_mv: f64) -> Result<
         }
         for (sensor, lines) in sensors.iter_mut().zip(block.chunks_exact(2)) {
             let both = lines[0].iter().zip(&lines[1]);
-            both.for_each(|(a, b)| sensor.take([*a, *b]));
+            both.for_each(|(a, b)| sensor.take([*a, *b], unit.tacho.pulses_per_turn));
         }
         samples += block.first().map_or(0, Vec::len);
         reading.duration_s = samples as f64 / sample_hz;
@@ -156,12 +185,15 @@ pub fn read_tacho(path: &Path, unit: &UnitConfig, full_scale_mv: f64) -> Result<
     reading.levels = numbered
         .map(|(meter, number)| Level::of(meter, number))
         .collect();
+    reading.tell_clipped(&wav);
     if channels < 2 {
         reading.tell(0.0, Why::OneLine);
     }
     for (place, sensor) in sensors.into_iter().enumerate() {
+        if sensor.is_noise() {
+            reading.tell(0.0, Why::NoSensor(2 * place + 1));
+        }
         if let Some((tacho, [from_s, to_s])) = sensor.told(sample_hz, unit) {
-            let pulses = tacho.forward + tacho.backward + tacho.missing_teeth - 1;
             reading.sources.push(Source {
                 kind: "tacho",
                 channel: 2 * place + 1,
@@ -169,7 +201,7 @@ pub fn read_tacho(path: &Path, unit: &UnitConfig, full_scale_mv: f64) -> Result<
                 to_s,
                 what: String::new(),
                 carrier_hz: 0.0,
-                rate_hz: pulses as f64 / (to_s - from_s),
+                rate_hz: tacho.mean_kmh / 3.6 / unit.metres_per_pulse(),
                 level_mv: Some(meters[2 * place].levels_mv().0),
                 snr_db: None,
                 bad_bytes: None,

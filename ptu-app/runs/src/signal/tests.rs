@@ -165,7 +165,7 @@ fn a_byte_with_a_wrong_bit_is_told() {
 /// bytes; then silence after them, until every reduction has taken place many times.
 #[test]
 fn a_picture_shows_what_is_there_and_stays_small() {
-    let mut picture = Picture::new(RATE, 3_000.0, TONES);
+    let mut picture = Picture::new(RATE, (3_000.0, 36.0), TONES);
     let code = CodeWave::new(3_000.0, 10.0, 500.0, RATE).take(96_000);
     let twc = FskWave::new(&[0x5a; 20], (9_650.0, 150.0), 300.0, 200.0, RATE);
     let samples: Vec<f32> = code

@@ -13,6 +13,10 @@ use crate::new_file::{NewFile, kind};
 /// Highest sample rate that is read, Hz.
 const MOST_HZ: u32 = 768_000;
 
+/// A sample from here on, over the full scale, is the greatest of its sign; and so many in a row are a clipped wave.
+const GREATEST: f64 = 0.9999;
+const IN_A_ROW: u64 = 3;
+
 /// Bytes that are read together, more than a frame of any number of channels.
 const PIECE: usize = 1 << 20;
 
@@ -23,6 +27,8 @@ pub struct Wav {
     /// Bytes that are still to come, as far as the file says.
     left: Option<u64>,
     shown: String,
+    /// Of each channel: samples in a row that are as great as the file holds, and all of such rows.
+    clipped: Vec<[u64; 2]>,
 }
 
 /// Why there are no more samples.
@@ -57,7 +63,14 @@ impl Wav {
             head,
             left: head.length,
             shown,
+            clipped: Vec::new(),
         })
+    }
+
+    /// Channels, counted from 1, whose signal was clipped, and how many samples of each.
+    pub fn clipped(&self) -> impl Iterator<Item = (usize, u64)> {
+        let numbered = (1..).zip(&self.clipped);
+        numbered.filter_map(|(channel, [_, all])| (*all > 0).then_some((channel, *all)))
     }
 
     /// Rate of its samples, Hz.
@@ -84,6 +97,7 @@ impl Wav {
         let wanted = frames as u64 * frame as u64;
         let allowed = self.left.map_or(wanted, |left| left.min(wanted));
         let mut block = vec![Vec::new(); channels.min(most)];
+        self.clipped.resize(block.len(), [0; 2]);
         let (mut got, mut read, mut failed) = (0, Vec::new(), None);
         while got < allowed && failed.is_none() {
             read.clear();
@@ -93,8 +107,16 @@ impl Wav {
             got += read.len() as u64;
             // A frame that is cut off in its middle is none.
             for frame in read.chunks_exact(frame) {
-                for (sample, channel) in frame.chunks_exact(bytes).zip(&mut block) {
-                    let mv = self.head.sample(sample) * full_scale_mv;
+                let slots = block.iter_mut().zip(&mut self.clipped);
+                for (sample, (channel, [row, all])) in frame.chunks_exact(bytes).zip(slots) {
+                    let sample = self.head.sample(sample);
+                    *row = if sample.abs() < GREATEST { 0 } else { *row + 1 };
+                    *all += if *row == IN_A_ROW {
+                        *row
+                    } else {
+                        u64::from(*row > IN_A_ROW)
+                    };
+                    let mv = sample * full_scale_mv;
                     channel.push(if mv.is_finite() { mv as f32 } else { 0.0 });
                 }
             }
