@@ -8,7 +8,9 @@ use std::hash::{BuildHasher as _, RandomState};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use ato_under_test::serve::{NO_AUTHENTICATION, Place, Served, Wire, in_real_time};
+use ato_under_test::serve::{
+    Listener, NO_AUTHENTICATION, Place, ServeError, Served, Wire, in_real_time,
+};
 use ato_under_test::{Port, Unit};
 use clap::{ArgGroup, Parser};
 use protocol::frame::SCAN_END;
@@ -65,6 +67,18 @@ pub struct Arguments {
     /// Keep event log and run record in this file from start to start; made if it is not there
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
+    /// Hear codes, TWC and markers at a sound card instead of in the frames: the first channel is the ATP
+    /// antenna, the second that of TWC and markers
+    #[arg(long, value_name = "sound:DEVICE", value_parser = sound_device, conflicts_with_all = ["lock_step", "slower"])]
+    signals: Option<String>,
+    /// What a whole sample of the sound card stands for
+    #[arg(
+        long,
+        value_name = "MV",
+        default_value_t = 4000.0,
+        requires = "signals"
+    )]
+    full_scale_mv: f32,
     /// Directory with units/ and lines/
     #[arg(long, value_name = "DIR", env = "PTU_SCRIPTS")]
     scripts: Option<PathBuf>,
@@ -92,7 +106,10 @@ pub fn serve(arguments: &Arguments) -> Result<(), Failure> {
         "unit {} with configuration {} is up",
         setup.serial, setup.config.name
     ));
+    let listen = |device: &String| Listener::start(device, arguments.full_scale_mv);
     let mut unit = OnHarness {
+        listener: arguments.signals.as_ref().map(listen).transpose()?,
+        deaf: None,
         unit: match flash {
             Some(flash) => Unit::with_flash(setup, flash),
             None => Unit::new(setup),
@@ -105,18 +122,39 @@ pub fn serve(arguments: &Arguments) -> Result<(), Failure> {
     }
     let started = RandomState::new().hash_one(arguments.seed);
     unit.unit.draw_challenges(started);
-    Ok(in_real_time(&mut unit, &mut wire, arguments.slower)?)
+    in_real_time(&mut unit, &mut wire, arguments.slower)?;
+    unit.deaf.map_or(Ok(()), |why| Err(why.into()))
+}
+
+fn sound_device(text: &str) -> Result<String, String> {
+    let device = text
+        .strip_prefix("sound:")
+        .filter(|device| !device.is_empty());
+    device
+        .map(str::to_owned)
+        .ok_or_else(|| "it is sound:DEVICE".to_owned())
 }
 
 /// The unit, served at its harness.
 struct OnHarness {
     unit: Unit,
+    listener: Option<Listener>,
+    /// Why it hears nothing any more.
+    deaf: Option<ServeError>,
     /// Time of the next scan since power-up.
     now: Instant,
 }
 
 impl Served for OnHarness {
     fn scan(&mut self, received: &[u8], to_send: &mut Vec<u8>) -> ControlFlow<()> {
+        match self.listener.as_mut().map(Listener::scan) {
+            Some(Ok(heard)) => self.unit.hear(&heard),
+            Some(Err(why)) => {
+                self.deaf = Some(why);
+                return ControlFlow::Break(());
+            }
+            None => {}
+        }
         self.unit.receive(received);
         self.unit.step(self.now, to_send);
         self.now += SCAN;

@@ -7,6 +7,8 @@ extern crate std;
 
 mod platform;
 mod serial_end;
+mod sound;
+mod steady;
 mod tcp;
 mod wire;
 
@@ -21,6 +23,8 @@ use protocol::{Backlog, Instant, SCAN, ScanDeadlines};
 
 pub use platform::keep_time;
 pub use serial_end::{PORT_WAITS, SerialEnd};
+pub use sound::{DEFAULT, Listener, carrier, is_there};
+pub use steady::{Pair, Steady};
 pub use tcp::{NO_AUTHENTICATION, check_exposed};
 pub use wire::{Place, Wire};
 

@@ -7,7 +7,9 @@ use alloc::vec::Vec;
 
 use protocol::injection::{Effect, Place};
 use protocol::link::Received;
-use protocol::message::{Channel, DoorSide, Message, TcmsToAtc, TrainLines, TwcOrders, TwcWayside};
+use protocol::message::{
+    COIL_SAMPLES, Channel, DoorSide, Message, TcmsToAtc, TrainLines, TwcOrders, TwcWayside,
+};
 use protocol::{Duration, Instant};
 
 use super::{Unit, report};
@@ -82,6 +84,13 @@ impl Unit {
         self.replies.extend(notice);
         self.follow_arming();
         self.send_replies(now, out);
+    }
+
+    /// Takes a scan of what is heard by sound: in the ATP antenna, and in those of TWC and markers together.
+    pub fn hear(&mut self, heard: &[[i16; COIL_SAMPLES]; 2]) {
+        let config = &self.setup.config;
+        let new = || Box::new(Coils::new(config));
+        self.coils.get_or_insert_with(new).hear(heard);
     }
 
     /// What came through the loop as tones is frames again, which are received as any others.

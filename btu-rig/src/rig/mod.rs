@@ -30,7 +30,7 @@ use protocol::config::{SpeedCode, UnitConfig};
 use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::link::{End, Link};
-use protocol::message::{IoInput, Message};
+use protocol::message::{Coil, IoInput, Message};
 use protocol::{Duration, Instant, Random};
 
 use crate::conditions::Conditions;
@@ -212,9 +212,15 @@ impl Rig {
         self.injected.begin(modes, power_at);
     }
 
-    /// Makes codes, TWC, markers and pulses waveforms from now on, for a unit of this configuration.
-    pub fn use_waveforms(&mut self, config: &UnitConfig, channel: &ChannelConfig, seed: u64) {
-        self.coils = Some(Coils::new(config, channel, &mut Random::new(seed)));
+    /// Makes what is in these coils waveforms from now on, for a unit of this configuration.
+    pub fn use_waveforms(
+        &mut self,
+        config: &UnitConfig,
+        channel: &ChannelConfig,
+        seed: u64,
+        made: &[Coil],
+    ) {
+        self.coils = Some(Coils::new(config, channel, &mut Random::new(seed), made));
     }
 
     /// One scan: generators advance, frames that are due are appended to `out`.
@@ -263,23 +269,23 @@ impl Rig {
             self.link.send(now, &entry, out);
         }
         let mut input = self.io_input(now);
-        match &mut self.coils {
-            None => {
-                if let Some(second) = self.antenna.second_due(now) {
-                    self.link.send(now, &second.into(), out);
-                }
-            }
-            Some(coils) => {
-                let in_coils = InCoils {
-                    codes: self.antenna.arriving(),
-                    twc: &self.in_loop,
-                    motion: self.wheel.motion(),
-                    markers: &mut self.markers.along(),
-                    asked_marker: self.markers.asked(),
-                };
-                coils.send(now, &mut input, in_coils, &mut self.link, out);
-                self.in_loop.clear();
-            }
+        let makes = |coil| self.coils.as_ref().is_some_and(|coils| coils.makes(coil));
+        let by_wave = [Coil::AtpAntenna, Coil::TwcAntenna].map(makes);
+        if !by_wave[0]
+            && let Some(second) = self.antenna.second_due(now)
+        {
+            self.link.send(now, &second.into(), out);
+        }
+        if let Some(coils) = &mut self.coils {
+            let in_coils = InCoils {
+                codes: self.antenna.arriving(),
+                twc: &self.in_loop,
+                motion: self.wheel.motion(),
+                markers: &mut self.markers.along(),
+                asked_marker: self.markers.asked(),
+            };
+            coils.send(now, &mut input, in_coils, &mut self.link, out);
+            self.in_loop.clear();
         }
         self.link.send(now, &input.into(), out);
         let seen = TrainSeen {
@@ -290,10 +296,7 @@ impl Rig {
         if let Some(message) = self.tcms_port.step(now, self.tcms.view(), seen) {
             self.link.send(now, &message.into(), out);
         }
-        let in_loop = match self.coils {
-            Some(_) => &mut self.in_loop,
-            None => out,
-        };
+        let in_loop = if by_wave[1] { &mut self.in_loop } else { out };
         self.wayside
             .step(now, self.train_number, &mut self.link, in_loop);
     }

@@ -14,6 +14,7 @@ use clap::Args;
 use fault_db::Store;
 
 use super::reports::ReportOption;
+use super::signal::sound::full_scale;
 use super::signing::SigningOption;
 use super::{Database, ScriptsOption, answered, print_out, run_list};
 use crate::console::Console;
@@ -31,6 +32,7 @@ use ptu_runs::run::{
     check_serial, software_version,
 };
 use ptu_runs::run_diagnosis::{Bench, adaptive, prove_repairs};
+use ptu_runs::sound::Direction;
 use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
 use ptu_runs::symptoms;
@@ -278,6 +280,7 @@ impl RunArguments {
             places: self.bench.clone().unwrap_or_default(),
         }
         .setup(directory)
+        .and_then(calibrated)
     }
 
     /// It drives nothing, and lists what would be run.
@@ -376,4 +379,14 @@ impl RunArguments {
         store.close()?;
         told
     }
+}
+
+/// A sound card of the bench plays as it is calibrated.
+fn calibrated(mut setup: BenchSetup) -> Result<BenchSetup, Failure> {
+    if let Some(places) = &mut setup.places
+        && let Some((_, device)) = places.sound_card()
+    {
+        Arc::make_mut(places).full_scale_mv = full_scale(&device, Direction::Output)?;
+    }
+    Ok(setup)
 }

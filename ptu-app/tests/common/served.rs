@@ -51,6 +51,14 @@ impl Unit {
         Self::serve(&[&["--tcp", "127.0.0.1:0"], arguments].concat(), "tcp:")
     }
 
+    /// On a free TCP port, with these programs before those of the system.
+    pub fn with_programs(programs: &str, arguments: &[&str]) -> Self {
+        let path = format!("PATH={programs}:/usr/bin:/bin");
+        let unit = super::program("ato-under-test").display().to_string();
+        let serve = [&path, unit.as_str(), "--tcp", "127.0.0.1:0"];
+        Self::start(Path::new("env"), &[&serve, arguments].concat(), "tcp:")
+    }
+
     /// Again where another was.
     pub fn at_port(port: &str) -> Self {
         Self::serve(&["--tcp", port], "tcp:")

@@ -40,11 +40,18 @@ pub struct Coils {
     sensors: [SensorWave; 2],
     counts: [u16; 2],
     channels: [Channel; Coil::ALL.len()],
+    /// Coils in which there are waveforms; the others have numbers.
+    made: Vec<Coil>,
 }
 
 impl Coils {
-    /// Silent coils for a unit of this configuration; what disturbs them begins with the seed.
-    pub fn new(config: &UnitConfig, channel: &ChannelConfig, random: &mut Random) -> Self {
+    /// Silent coils, those of `made`, for a unit of this configuration; what disturbs them begins with the seed.
+    pub fn new(
+        config: &UnitConfig,
+        channel: &ChannelConfig,
+        random: &mut Random,
+        made: &[Coil],
+    ) -> Self {
         let (marker, twc) = (&config.marker, &config.twc);
         let silent =
             CodeWave::new(0.0, 0.0, 0.0, SAMPLE_HZ).shifted(config.receiver.shift_hz, SAMPLE_HZ);
@@ -60,7 +67,13 @@ impl Coils {
             counts: [0; 2],
             channels: [(); Coil::ALL.len()]
                 .map(|()| Channel::new(channel, SAMPLE_HZ, random.fork())),
+            made: made.to_vec(),
         }
+    }
+
+    /// Whether this coil has a waveform.
+    pub fn makes(&self, coil: Coil) -> bool {
+        self.made.contains(&coil)
     }
 
     /// Sends the samples of the scan that ends now, and takes what they tell out of its input frame.
@@ -79,8 +92,10 @@ impl Coils {
                 *sample += value;
             }
         }
-        self.finish(now, Coil::AtpAntenna, &mut samples, link, out);
-        (input.carrier_hz, input.code_rate_chz, input.level_mv) = (0, 0, 0);
+        if self.makes(Coil::AtpAntenna) {
+            self.finish(now, Coil::AtpAntenna, &mut samples, link, out);
+            (input.carrier_hz, input.code_rate_chz, input.level_mv) = (0, 0, 0);
+        }
 
         if !coils.twc.is_empty() {
             self.twc.send(coils.twc);
@@ -89,13 +104,19 @@ impl Coils {
         for (sample, value) in samples.iter_mut().zip(&mut self.twc) {
             *sample = value;
         }
-        self.finish(now, Coil::TwcAntenna, &mut samples, link, out);
+        if self.makes(Coil::TwcAntenna) {
+            self.finish(now, Coil::TwcAntenna, &mut samples, link, out);
+        }
 
         samples.fill(0.0);
         self.add_markers(coils, &mut samples);
-        self.finish(now, Coil::MarkerAntenna, &mut samples, link, out);
-        (input.marker, input.marker_edges, input.marker_edge_us) = (0, 0, u16::MAX);
-
+        if self.makes(Coil::MarkerAntenna) {
+            self.finish(now, Coil::MarkerAntenna, &mut samples, link, out);
+            (input.marker, input.marker_edges, input.marker_edge_us) = (0, 0, u16::MAX);
+        }
+        if !self.makes(Coil::Sensor1A) {
+            return;
+        }
         let lines = [
             [Coil::Sensor1A, Coil::Sensor1B],
             [Coil::Sensor2A, Coil::Sensor2B],

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-use protocol::message::{Outputs, TrainLines};
+use protocol::message::{Coil, Outputs, TrainLines};
 use protocol::signal::Signal;
 use serde::Deserialize;
 use thiserror::Error;
@@ -13,6 +13,8 @@ use toml::Spanned;
 use super::model::Model;
 use super::placed::SAFE_WITHIN;
 use super::points::{check_reading, check_stimulus};
+use crate::signal::FULL_SCALE_MV;
+use crate::sound::ON_THE_WAY_MS;
 
 /// Why a bench file or a driver is refused.
 #[derive(Debug, Error)]
@@ -37,13 +39,15 @@ pub enum At {
     Modbus(String, u8),
     /// SCPI over TCP: address.
     Scpi(String),
+    /// A sound card: name of its device.
+    Sound(String),
 }
 
 /// An instrument as the bench file has it.
 #[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InstrumentEntry {
-    /// `modbus:HOST:PORT` or `scpi:HOST:PORT`.
+    /// `modbus:HOST:PORT`, `scpi:HOST:PORT` or `sound:DEVICE`.
     at: String,
     /// Number of the Modbus unit.
     #[serde(default = "first_unit")]
@@ -203,6 +207,8 @@ pub struct Places {
     pub stimuli: BTreeMap<&'static str, Point>,
     /// Readings that are not in the frames.
     pub readings: BTreeMap<Signal, Point>,
+    /// What the sound card makes of a whole sample of each channel, mV.
+    pub full_scale_mv: [f64; 2],
 }
 
 /// Train lines, by their bits, and the other stimuli.
@@ -279,6 +285,15 @@ impl Places {
             );
             return Err(wrong(&read.safe.span(), why));
         }
+        let cards = instruments
+            .values()
+            .filter(|entry: &&InstrumentEntry| matches!(entry.at(), At::Sound(_)));
+        if cards.count() > 1 {
+            return Err(wrong(
+                &read.safe.span(),
+                "there is one sound card at most".into(),
+            ));
+        }
         let of = |name: &str| (instruments.get(name), models.get(name).map(|m| &**m));
         let mut stimuli_at = BTreeMap::new();
         let mut taken = BTreeSet::new();
@@ -325,7 +340,35 @@ impl Places {
             safe: ordered.clone(),
             stimuli: stimuli_at,
             readings: readings_at,
+            full_scale_mv: [FULL_SCALE_MV; 2],
         })
+    }
+
+    /// The sound card, by its name in the file, and its device.
+    pub fn sound_card(&self) -> Option<(&String, String)> {
+        self.instruments
+            .iter()
+            .find_map(|(name, entry)| match entry.at() {
+                At::Sound(device) => Some((name, device)),
+                _ => None,
+            })
+    }
+
+    /// The coils whose waveforms go to the sound card.
+    pub fn coils_by_sound(&self) -> Vec<Coil> {
+        let Some((card, _)) = self.sound_card() else {
+            return Vec::new();
+        };
+        let coils = [
+            ("code", Coil::AtpAntenna),
+            ("twc", Coil::TwcAntenna),
+            ("marker", Coil::MarkerAntenna),
+        ];
+        let there = |name: &str| self.stimuli.get(name).map(Point::place);
+        let by_sound = coils
+            .into_iter()
+            .filter(|(name, _)| there(name) == Some(Place::Instrument(card)));
+        by_sound.map(|(_, coil)| coil).collect()
     }
 
     /// The instrument proves a relay or reads, so that its check times more than that it switches off.
@@ -351,6 +394,7 @@ impl InstrumentEntry {
     pub fn at(&self) -> At {
         match self.at.split_once(':') {
             Some(("modbus", address)) => At::Modbus(address.to_owned(), self.unit),
+            Some(("sound", device)) => At::Sound(device.to_owned()),
             Some((_, address)) => At::Scpi(address.to_owned()),
             None => At::Scpi(String::new()),
         }
@@ -358,12 +402,14 @@ impl InstrumentEntry {
 
     fn check(&self, switches: bool, instruments: usize) -> Result<(), String> {
         let (kind, address) = self.at.split_once(':').unwrap_or_default();
+        let is_sound = kind == "sound" && !address.is_empty();
         let port = address
             .rsplit_once(':')
             .map(|(_, port)| port.parse::<u16>());
-        if !["modbus", "scpi"].contains(&kind) || !matches!(port, Some(Ok(_))) {
+        let is_tcp = ["modbus", "scpi"].contains(&kind) && matches!(port, Some(Ok(_)));
+        if !is_tcp && !is_sound {
             return Err(format!(
-                "at is modbus:HOST:PORT or scpi:HOST:PORT, not \"{}\"",
+                "at is modbus:HOST:PORT, scpi:HOST:PORT or sound:DEVICE, not \"{}\"",
                 self.at
             ));
         }
@@ -384,7 +430,13 @@ impl InstrumentEntry {
         {
             return Err("the watchdog waits longer than poll_ms".into());
         }
-        if switches && self.watchdog.is_none() && self.by_hand.is_none() {
+        if is_sound && self.uncertainty_ms <= ON_THE_WAY_MS {
+            return Err(format!(
+                "sound takes more than {ON_THE_WAY_MS} ms on its way: uncertainty_ms is more"
+            ));
+        }
+        // A card falls silent by itself.
+        if switches && !is_sound && self.watchdog.is_none() && self.by_hand.is_none() {
             return Err("it drives outputs: give its watchdog, or say in by_hand what is to be switched off if the program is killed".into());
         }
         Ok(())

@@ -6,7 +6,10 @@ use std::time::{Duration, Instant as Clock};
 use btu_rig::rig::{InstrumentFault, LinkTrouble};
 use protocol::frame::{Decoder, FLAG, Header, MAX_PENDING, encode};
 use protocol::link::{End, Link};
-use protocol::message::{Channel, IoInput, IoOutput, Message, ModeSwitch, Outputs};
+use protocol::message::{
+    COIL_PART, COIL_SAMPLES, COIL_STEP_MV, Channel, Coil, CoilSamples, IoInput, IoOutput, Message,
+    ModeSwitch, Outputs,
+};
 use protocol::signal::Signal;
 use protocol::{Instant, Speed};
 
@@ -14,7 +17,8 @@ use super::file::{At, Place, Places, Point, READINGS, lines};
 use super::modbus::Module;
 use super::model::code_values;
 use super::scpi::Scpi;
-use super::worker::{Instrument, Timing, Values, Wanted, Worker};
+use super::worker::{Instrument, Timing, Values, Wanted, Worker, span};
+use crate::sound::Stream;
 
 /// All outputs are off after this, on every end.
 pub(super) const SAFE_WITHIN: Duration = Duration::from_secs(1);
@@ -27,6 +31,7 @@ const SAME_HZ: f64 = 0.001;
 pub struct Placed {
     places: Arc<Places>,
     workers: Vec<Worker>,
+    sound: Option<BySound>,
     to_unit: Bodies,
     from_unit: Bodies,
     pulses: [PulseRate; 2],
@@ -56,8 +61,80 @@ fn open(places: &Places, name: &str) -> Result<Box<dyn Instrument>, InstrumentFa
             (&address, unit),
             entry.watchdog,
         )?),
-        At::Scpi(address) => Box::new(Scpi::open(places, name, &address)?),
+        At::Scpi(address) | At::Sound(address) => Box::new(Scpi::open(places, name, &address)?),
     })
+}
+
+fn open_sound(places: &Places, device: &str) -> Result<Stream, InstrumentFault> {
+    Stream::start(device, places.full_scale_mv).map_err(|failure| InstrumentFault::NotThere {
+        at: device.to_owned(),
+        why: failure.to_string(),
+    })
+}
+
+/// The sound card at work.
+struct BySound {
+    name: String,
+    stream: Stream,
+    coils: Vec<Coil>,
+    /// How late it may be heard.
+    uncertainty: Duration,
+    late: Duration,
+    /// This scan's samples: codes; TWC and markers.
+    samples: [[f32; 2]; COIL_SAMPLES],
+    /// Frames that went this way and left no gap in the others' numbers.
+    left_out: u16,
+}
+
+impl BySound {
+    fn open(places: &Places) -> Result<Option<Self>, LinkTrouble> {
+        let Some((name, device)) = places.sound_card() else {
+            return Ok(None);
+        };
+        let stream = open_sound(places, &device).map_err(|fault| trouble(name, fault))?;
+        Ok(Some(Self {
+            name: name.clone(),
+            stream,
+            coils: places.coils_by_sound(),
+            uncertainty: Duration::from_millis(places.instruments[name].uncertainty_ms),
+            late: Duration::ZERO,
+            samples: [[0.0; 2]; COIL_SAMPLES],
+            left_out: 0,
+        }))
+    }
+
+    fn carries(&self, coil: Coil) -> bool {
+        self.coils.contains(&coil)
+    }
+
+    fn take(&mut self, part: &CoilSamples) {
+        let channel = usize::from(part.coil != Coil::AtpAntenna);
+        let from = usize::from(part.part) * COIL_PART;
+        let slots = self.samples.iter_mut().skip(from);
+        for (slot, sample) in slots.zip(part.samples.0) {
+            slot[channel] += f32::from(sample) * COIL_STEP_MV;
+        }
+        self.left_out = self.left_out.wrapping_add(1);
+    }
+
+    /// The end of a scan.
+    fn play(&mut self) {
+        self.stream.feed(&self.samples);
+        self.samples.fill([0.0; 2]);
+        let takes = Duration::from_millis(self.stream.takes_ms());
+        self.late = self.late.max(takes.saturating_sub(self.uncertainty));
+    }
+
+    fn fault(&self) -> Option<InstrumentFault> {
+        match self.stream.clipped() {
+            Ok(0) => None,
+            Ok(_) => Some(InstrumentFault::Refused {
+                command: "samples".into(),
+                error: "louder than the sound card can play".into(),
+            }),
+            Err(why) => Some(InstrumentFault::Disconnected(why)),
+        }
+    }
 }
 
 impl Placed {
@@ -69,6 +146,7 @@ impl Placed {
         let mut placed = Self {
             places: places.clone(),
             workers: Vec::new(),
+            sound: BySound::open(places)?,
             to_unit: Bodies::default(),
             from_unit: Bodies::default(),
             pulses: Default::default(),
@@ -78,6 +156,9 @@ impl Placed {
         };
         for (place, name) in (0..).zip(&places.safe) {
             let entry = &places.instruments[name];
+            if matches!(entry.at(), At::Sound(_)) {
+                continue;
+            }
             let timing = Timing {
                 poll: Duration::from_millis(entry.poll_ms),
                 uncertainty: Duration::from_millis(entry.uncertainty_ms),
@@ -99,6 +180,9 @@ impl Placed {
     /// when it is proved; the slowest round counts, and the time until the next reading with it.
     pub fn check(places: &Places, rounds: u32) -> Vec<Checked> {
         let tried = |name: &String| {
+            if let At::Sound(device) = places.instruments[name].at() {
+                return try_sound(&open_sound(places, &device)?);
+            }
             let mut instrument = open(places, name)?;
             let here = |point: &Point| point.place() == Place::Instrument(name);
             let proved = |point: &Point| here(point) && point.proved_by.is_some();
@@ -131,10 +215,20 @@ impl Placed {
     /// What of the rig's bytes the unit gets as frames; the rest is wanted of the instruments.
     pub fn take(&mut self, now: Instant, bytes: &[u8], out: &mut Vec<u8>) {
         self.to_unit.0.extend_from_slice(bytes);
-        while let Some((header, message)) = self.to_unit.next(out) {
+        while let Some((mut header, message)) = self.to_unit.next(out) {
+            if header.channel == Channel::Io {
+                let left_out = self.sound.as_ref().map_or(0, |sound| sound.left_out);
+                header.seq = header.seq.wrapping_sub(left_out);
+            }
             let placed = |name: &str| self.places.stimuli.contains_key(name);
             match message {
+                Message::CoilSamples(part)
+                    if (self.sound.as_ref()).is_some_and(|sound| sound.carries(part.coil)) =>
+                {
+                    self.sound.iter_mut().for_each(|sound| sound.take(&part));
+                }
                 Message::IoInput(input) => {
+                    self.sound.iter_mut().for_each(BySound::play);
                     let left = self.place(now, input);
                     if !self.places.leaves_no_input() {
                         send(&header, &left.into(), out);
@@ -176,11 +270,15 @@ impl Placed {
             let read = self.read().into();
             self.link.send(now, &read, out);
         }
+        let heard = self
+            .sound
+            .iter()
+            .find_map(|sound| Some(trouble(&sound.name, sound.fault()?)));
         let faulty = self.workers.iter().find_map(|worker| {
             let fault = worker.readings(|_, _| {}).err()?;
             Some(trouble(&worker.name, fault))
         });
-        match faulty {
+        match heard.or(faulty) {
             Some(faulty) => {
                 self.release();
                 Err(faulty)
@@ -191,12 +289,17 @@ impl Placed {
 
     /// How late the latest instrument was since this was last asked.
     pub fn take_late(&mut self) -> protocol::Duration {
+        let sound = self
+            .sound
+            .iter_mut()
+            .map(|sound| span(std::mem::take(&mut sound.late)));
         let late = self.workers.iter().map(Worker::take_late);
-        late.max().unwrap_or(protocol::Duration::ZERO)
+        late.chain(sound).max().unwrap_or(protocol::Duration::ZERO)
     }
 
     /// Switches all outputs off, in the order of the bench file.
     pub fn release(&mut self) {
+        self.sound.iter_mut().for_each(|sound| sound.stream.end());
         // An instrument that does not answer takes no time from the others.
         let each = SAFE_WITHIN / (self.workers.len() as u32).max(1);
         self.workers.iter_mut().for_each(|worker| worker.end(each));
@@ -282,6 +385,18 @@ impl Drop for Placed {
     fn drop(&mut self) {
         self.release();
     }
+}
+
+/// How long sound is on its way, ms: half a second of silence is played, as fast as it comes.
+fn try_sound(stream: &Stream) -> Result<f64, InstrumentFault> {
+    let mut takes_ms = 0;
+    for _ in 0..50 {
+        stream.feed(&[[0.0; 2]; COIL_SAMPLES]);
+        std::thread::sleep(Duration::from_millis(10));
+        takes_ms = takes_ms.max(stream.takes_ms());
+    }
+    let played = stream.clipped().map_err(InstrumentFault::Disconnected);
+    played.map(|_| takes_ms as f64)
 }
 
 /// Bytes between flags.

@@ -49,6 +49,10 @@ pub(super) fn check_stimulus(
                 false => Err(format!("the model of {instrument} has no act {act}")),
             }
         }
+        (Some(At::Sound(_)), _) => match name {
+            "code" | "twc" | "marker" => Ok(()),
+            _ => Err("a sound card carries code, twc and marker".into()),
+        },
         (Some(At::Modbus(..)), None) => {
             let coils = match name {
                 "mode_switch" => ModeSwitch::ALL.len(),
@@ -82,6 +86,7 @@ pub(super) fn check_reading(
     };
     match entry.map(InstrumentEntry::at) {
         None => Err(format!("no instrument {instrument}")),
+        Some(At::Sound(_)) => Err("a sound card reads nothing".into()),
         Some(At::Modbus(..)) if !is_contact => Err("an input is no display".into()),
         Some(At::Scpi(_)) if is_contact => Err("a contact is read by an input".into()),
         Some(At::Modbus(..)) if point.input.is_some() => Ok(()),

@@ -12,7 +12,7 @@ use btu_rig::waveform::ChannelConfig;
 use protocol::config::UnitConfig;
 use protocol::injection::FaultMode;
 use protocol::line::Line;
-use protocol::message::Identity;
+use protocol::message::{Coil, Identity};
 use protocol::{Duration, Instant};
 
 use super::connect_port::ReadyUnit;
@@ -152,8 +152,16 @@ impl BenchSetup {
             rig.set_sensors(&drawn.sensors);
             rig.set_usual_load(drawn.load_kg);
         }
-        if let Some(channel) = &self.waveforms {
-            rig.use_waveforms(&self.config.content, channel, seed ^ WAVEFORM_SEQUENCE);
+        let by_sound = (self.places.as_ref()).map_or(Vec::new(), |places| places.coils_by_sound());
+        let coils = if by_sound.is_empty() {
+            Coil::ALL
+        } else {
+            &by_sound
+        };
+        let nothing = (!by_sound.is_empty()).then(ChannelConfig::default);
+        if let Some(channel) = self.waveforms.as_ref().or(nothing.as_ref()) {
+            let seed = seed ^ WAVEFORM_SEQUENCE;
+            rig.use_waveforms(&self.config.content, channel, seed, coils);
         }
         rig.inject(&self.faults, power_at);
         rig

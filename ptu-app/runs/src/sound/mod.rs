@@ -9,15 +9,18 @@ mod carried;
 mod play;
 mod programs;
 mod record;
+mod stream;
 
 use serde::{Deserialize, Serialize};
 
 pub use crate::signal::SAMPLE_HZ;
 
+pub use ato_under_test::serve::DEFAULT;
 pub use calibration::{Calibration, Calibrations, Direction};
 pub use play::{Lead, Played, play};
-pub use programs::{DEFAULT, DeviceFound, devices};
+pub use programs::{DeviceFound, devices};
 pub use record::{MOST_RECORDED_S, Recorded, Take, record, record_to_file};
+pub use stream::{ON_THE_WAY_MS, Stream};
 
 /// Channels of a card that are used.
 pub const CHANNELS: usize = 2;

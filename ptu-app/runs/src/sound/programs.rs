@@ -1,16 +1,16 @@
 //! Programs of the system that carry sound: those of PulseAudio, which PipeWire has, too, or of ALSA.
 
-use std::path::Path;
 use std::process::Command;
 
+use ato_under_test::serve::is_there;
 use serde::Serialize;
 
-use super::{CHANNELS, Direction, SAMPLE_HZ};
+use super::Direction;
 use crate::failure::{Failure, SoundTrouble, Why};
 use crate::platform::without_window;
 
 /// How long samples wait in the sound server, ms: with the 21 ms of the pipe, less than the 100 ms until silence.
-const LATENCY_MS: u32 = 60;
+pub(super) const LATENCY_MS: u32 = 60;
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct DeviceFound {
@@ -26,41 +26,12 @@ pub struct DeviceFound {
 /// There is no such program here.
 pub(super) fn carrier(direction: Direction, device: &str) -> Result<Command, Failure> {
     let plays = direction == Direction::Output;
-    let (of_server, of_alsa) = match plays {
-        true => ("pacat", "aplay"),
-        false => ("parec", "arecord"),
-    };
-    if is_there(of_server) {
-        let mut command = Command::new(of_server);
-        command.args([
-            if plays { "--playback" } else { "--record" },
-            "--raw",
-            "--format=s16le",
-            "--no-remix",
-            "--volume=65536",
-            "--client-name=ptu",
-            "--verbose",
-        ]);
-        command.arg(format!("--rate={SAMPLE_HZ}"));
-        command.arg(format!("--channels={CHANNELS}"));
-        command.arg(format!("--latency-msec={LATENCY_MS}"));
-        if device != DEFAULT {
-            command.arg(format!("--device={device}"));
-        }
-        return Ok(ready(command));
-    }
-    if is_there(of_alsa) {
-        let mut command = Command::new(of_alsa);
-        command.args(["-t", "raw", "-f", "S16_LE", "-D", device]);
-        command.args(["-r", &SAMPLE_HZ.to_string(), "-c", &CHANNELS.to_string()]);
-        command.arg(format!("--buffer-time={}", LATENCY_MS * 1_000));
-        return Ok(ready(command));
-    }
-    Err(Failure::bench(SoundTrouble::NoProgram(of_server, of_alsa)))
+    let found = ato_under_test::serve::carrier(plays, device, LATENCY_MS);
+    let mut command =
+        found.map_err(|(one, other)| Failure::bench(SoundTrouble::NoProgram(one, other)))?;
+    without_window(&mut command);
+    Ok(command)
 }
-
-/// The device that the system has chosen.
-pub const DEFAULT: &str = "default";
 
 /// The devices there are.
 ///
@@ -103,15 +74,4 @@ fn said(command: &mut Command) -> Result<String, Failure> {
             String::from_utf8_lossy(&output.stderr).trim(),
         ))),
     }
-}
-
-fn ready(mut command: Command) -> Command {
-    without_window(&mut command).env("LC_ALL", "C");
-    command
-}
-
-fn is_there(program: &str) -> bool {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    std::env::split_paths(&path)
-        .any(|folder: std::path::PathBuf| Path::is_file(&folder.join(program)))
 }

@@ -266,7 +266,7 @@ fn said(of: &Calibration) -> String {
 }
 
 /// What a whole sample of each channel stands for; says which channel nobody has calibrated.
-fn full_scale(device: &str, direction: Direction) -> Result<[f64; CHANNELS], Failure> {
+pub fn full_scale(device: &str, direction: Direction) -> Result<[f64; CHANNELS], Failure> {
     let known = Calibrations::load(&sound_file::usual()?)?;
     let without = Side::ALL
         .into_iter()

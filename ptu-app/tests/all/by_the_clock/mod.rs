@@ -3,4 +3,5 @@
 mod acceptance;
 mod bench;
 mod pace;
+mod sound;
 mod standstill;

@@ -1,0 +1,131 @@
+//! A run's waveforms to a sound card, as they are made.
+
+use std::io::Write;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+
+use ato_under_test::serve::{Pair, Steady};
+
+use super::carried::Carried;
+use super::{CHANNELS, Direction, programs};
+use crate::failure::Failure;
+use crate::stop::Stop;
+
+/// Samples that are written together, and those that wait besides: 10 and 20 ms.
+const TOGETHER: usize = 480;
+const WAITING: usize = 960;
+/// Samples of the filter between two clocks, and one more.
+const BESIDES: usize = 40;
+/// What is on its way to the card: in its sound server and in the pipe, ms.
+pub const ON_THE_WAY_MS: u64 = programs::LATENCY_MS as u64 + 21;
+
+struct State {
+    steady: Steady,
+    ends: bool,
+    /// Samples beyond what the device can make, since this was asked last.
+    clipped: u64,
+    ended: Option<String>,
+}
+
+/// Plays what it is fed, until it is dropped; what is not fed is silence.
+pub struct Stream {
+    shared: Arc<(Mutex<State>, Condvar)>,
+    stop: Stop,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Stream {
+    /// To a device that makes so many mV of a whole sample of each channel.
+    ///
+    /// # Errors
+    /// Nothing here carries sound.
+    pub fn start(device: &str, full_scale_mv: [f64; CHANNELS]) -> Result<Self, Failure> {
+        let stop = Stop::default();
+        let mut command = programs::carrier(Direction::Output, device)?;
+        let mut carried = Carried::start(&mut command, true, &stop)?;
+        let state = State {
+            steady: Steady::new(WAITING),
+            ends: false,
+            clipped: 0,
+            ended: None,
+        };
+        let shared = Arc::new((Mutex::new(state), Condvar::new()));
+        let (played, device) = (shared.clone(), device.to_owned());
+        let thread = std::thread::spawn(move || {
+            while let Some(samples) = next(&played) {
+                let mut bytes = Vec::with_capacity(TOGETHER * CHANNELS * 2);
+                let mut clipped = 0;
+                for pair in samples {
+                    for (mv, full) in pair.iter().zip(full_scale_mv) {
+                        let sample = (f64::from(*mv) / full * 32_768.0).round();
+                        let kept = sample.clamp(-32_768.0, 32_767.0);
+                        clipped += u64::from(sample != kept);
+                        bytes.extend((kept as i16).to_le_bytes());
+                    }
+                }
+                lock(&played.0).clipped += clipped;
+                let written = carried.input.as_mut().map(|input| input.write_all(&bytes));
+                if !matches!(written, Some(Ok(()))) {
+                    let why = carried.failed("play on", &device).to_string();
+                    lock(&played.0).ended = Some(why);
+                    return;
+                }
+            }
+        });
+        Ok(Self {
+            shared,
+            stop,
+            thread: Some(thread),
+        })
+    }
+
+    /// Takes the samples of a scan, mV.
+    pub fn feed(&self, samples: &[Pair]) {
+        lock(&self.shared.0).steady.push(samples.iter().copied());
+        self.shared.1.notify_all();
+    }
+
+    /// How long what is fed now takes until it is heard, ms.
+    pub fn takes_ms(&self) -> u64 {
+        ON_THE_WAY_MS + lock(&self.shared.0).steady.waiting() as u64 / 48
+    }
+
+    /// Samples that were cut off since this was asked last; else why nothing is played any more.
+    pub fn clipped(&self) -> Result<u64, String> {
+        let mut state = lock(&self.shared.0);
+        match &state.ended {
+            Some(why) => Err(why.clone()),
+            None => Ok(std::mem::take(&mut state.clipped)),
+        }
+    }
+
+    /// Ends at once: nothing that waits is heard.
+    pub fn end(&mut self) {
+        lock(&self.shared.0).ends = true;
+        self.stop.press_once();
+        self.shared.1.notify_all();
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Drop for Stream {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+/// The samples to be played next; `None` at the end.
+fn next((shared, changed): &(Mutex<State>, Condvar)) -> Option<[Pair; TOGETHER]> {
+    let waits = |state: &mut State| !state.ends && state.steady.waiting() < TOGETHER + BESIDES;
+    let waited = changed.wait_while(lock(shared), waits);
+    let mut state = waited.unwrap_or_else(PoisonError::into_inner);
+    let mut samples = [Pair::default(); TOGETHER];
+    state.steady.take(&mut samples);
+    (!state.ends).then_some(samples)
+}
+
+fn lock(state: &Mutex<State>) -> MutexGuard<'_, State> {
+    state.lock().unwrap_or_else(PoisonError::into_inner)
+}
