@@ -20,6 +20,9 @@ pub enum Code {
     Known(u8),
 }
 
+/// How exactly a receiver of waveforms knows at most when a code began that comes back.
+const KNOWN_TO: Duration = Duration::from_ms(500);
+
 /// A code that comes more often than this within the hold time flickers: twice it comes at a border that is crossed.
 const SELDOM: usize = 2;
 
@@ -104,7 +107,7 @@ impl CodeDecoder {
         let patience = match stricter(match_, self.code) {
             true => detect,
             // Its beginning is known only so exactly.
-            false if self.comes_back => hold + Duration::from_us(signal.heard_for.as_us() / 8),
+            false if self.comes_back => hold + signal.heard_for.min(KNOWN_TO),
             false => detect + signal.lags,
         };
         let steady = match_ != Code::None && now.since(self.since) >= patience;
