@@ -270,7 +270,7 @@ fn what_is_no_such_signal_is_said() {
     assert_eq!(noise.sources, [], "20 s of noise");
     let direct = write(&mut std::iter::repeat_n(2_000.0, 96_000));
     assert_eq!(direct.sources, []);
-    let square = write(&mut (0..96_000).map(|n| if n / 50 % 2 == 0 { 4_000.0 } else { -4_000.0 }));
+    let square = write(&mut (0..96_000).map(|n| if n / 50 % 2 == 0 { 3_900.0 } else { -3_900.0 }));
     assert_eq!(square.sources, []);
     for reading in [direct, square] {
         let [unknown] = &reading.not_understood[..] else {
