@@ -158,6 +158,13 @@ pub enum LinkTrouble {
     MemoryExchanged,
 }
 
+impl LinkTrouble {
+    /// An instrument of the bench failed: it tells nothing of the unit and of the line to it.
+    pub const fn is_of_the_bench(&self) -> bool {
+        matches!(self, Self::Instrument { .. })
+    }
+}
+
 /// What an instrument of the bench does wrong: never a fault of the unit. Texts are the instrument's or the system's own.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

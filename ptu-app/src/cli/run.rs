@@ -343,6 +343,9 @@ impl RunArguments {
         let (console, streamed) = console.finish(outcome);
         console.finish();
         let (store, outcome) = result?;
+        if let Some(why) = &outcome.prevented {
+            tell(&Failure::bench(why.clone()));
+        }
         if let Some(lost) = &outcome.lost {
             tell(&Failure::bench(lost.clone()));
         }

@@ -23,7 +23,8 @@ impl RunArguments {
         directory: &ScriptsDirectory,
         outcome: &Outcome,
     ) -> Option<Result<Answer, Failure>> {
-        let is_wanted = self.adaptive || outcome.exit == Exit::Failed;
+        let is_begun = outcome.prevented.is_none();
+        let is_wanted = self.adaptive && is_begun || outcome.exit == Exit::Failed;
         is_wanted.then(|| diagnose_run(store, directory, outcome.id))
     }
 
