@@ -199,6 +199,20 @@ pub enum InstrumentFault {
         /// Part of the answer to `*IDN?` that its driver names.
         expected: String,
     },
+    /// The right model with another serial number.
+    #[error("another instrument: serial number {found} answers where {expected} is expected")]
+    OtherSerial {
+        /// In its answer to `*IDN?`.
+        found: String,
+        /// `serial` of the bench file.
+        expected: String,
+    },
+    /// Its line is locked.
+    #[error("another program of this computer uses it")]
+    Taken,
+    /// A carrier without a code was ordered.
+    #[error("its driver has no commands for a carrier that is not modulated")]
+    NoUnmodulated,
     /// It reports an error after a command.
     #[error("it refused {command}: {error}")]
     Refused {
