@@ -120,8 +120,8 @@ pub struct Teller<'a> {
     pub note: &'a dyn Fn(BenchNote) -> String,
     /// What a signal is called.
     pub signal: &'a dyn Fn(Signal) -> String,
-    /// What a person is to do.
-    pub stimulus: &'a dyn Fn(&Stimulus) -> String,
+    /// What a person is to do, and the key of an input.
+    pub text: &'a dyn Fn(&str) -> String,
     /// What a person is to see.
     pub condition: &'a dyn Fn(&Condition) -> String,
 }
@@ -208,7 +208,7 @@ impl Places {
                 let missing = needs
                     .find(|name| self.is_none(**name) && (!of_all || **name == U::DoorsClosed));
                 missing
-                    .map(|name| BenchNote::NoPlace(self.name.clone(), *name))
+                    .map(|name| BenchNote::NoPlace(self.name.clone(), (tell.text)(name.name())))
                     .or_else(|| self.beyond(stimulus))
             }
             Action::Until { condition, .. } => {
@@ -333,7 +333,7 @@ impl Places {
             };
             let prompt = within.map(|(what, within_s)| {
                 let prompt = Action::Prompt {
-                    text: (tell.note)(BenchNote::Do((tell.stimulus)(&what))),
+                    text: (tell.note)(BenchNote::Do((tell.text)(&what.to_string()))),
                     within: Duration::from_ms(within_s * 1000),
                 };
                 match &action {

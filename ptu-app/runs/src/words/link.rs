@@ -5,9 +5,6 @@ use btu_rig::procedure::link_trouble::{
     channel_name,
 };
 
-use super::nouns::input;
-use crate::places::UnitInput;
-
 /// The trouble as a sentence.
 #[rustfmt::skip]
 pub fn korean(trouble: &LinkTrouble) -> String {
@@ -102,8 +99,7 @@ fn of_instrument(fault: &InstrumentFault) -> String {
         } => format!("{what} 값 {value}이(가) 범위 {low}~{high}를 벗어남"),
         F::NoAnswer { asked, found } => format!("{asked}의 응답 {found}을(를) 해석할 수 없음"),
         F::Stuck { contact, ordered } => format!(
-            "{} 릴레이 고착: 명령 {ordered}, 확인 접점 {}",
-            UnitInput::from_name(contact).map_or(contact.as_str(), |known| input(known)),
+            "{contact} 릴레이 고착: 명령 {ordered}, 확인 접점 {}",
             1 - ordered
         ),
     }

@@ -13,7 +13,7 @@ mod warned;
 
 pub use asked::{Asked, DriveTrouble, KeepTrouble, SoundTrouble};
 pub use link::korean as link_korean;
-pub use nouns::{event_kind, fault_state, input, noun};
+pub use nouns::{event_kind, fault_state, noun};
 pub use refused::{
     BrokenOff, DiagnosisTrouble, EndpointError, FieldTrouble, FileTrouble, KeyTrouble, NoUnit,
     RecordTrouble, RunTrouble, Sought, Unheard, Unknown, Why, WrongCell,
@@ -80,12 +80,6 @@ as_it_is!(
 impl Say for &'static str {
     fn say(&self, how: Manner) -> String {
         how.choose([self, noun(self)]).to_owned()
-    }
-}
-
-impl Say for crate::places::UnitInput {
-    fn say(&self, how: Manner) -> String {
-        how.choose([self.name(), input(*self)]).to_owned()
     }
 }
 

@@ -2,8 +2,6 @@
 
 use fault_db::FaultState;
 
-use crate::places::UnitInput;
-
 /// A thing by its name, in Korean; what has none stays, as a table or an option.
 pub fn noun(english: &str) -> &str {
     match english {
@@ -33,37 +31,6 @@ pub fn noun(english: &str) -> &str {
         "play on" => "재생",
         "record from" => "녹음",
         other => other,
-    }
-}
-
-/// An input of the unit that a bench file places, in Korean.
-pub const fn input(input: UnitInput) -> &'static str {
-    use UnitInput as U;
-    match input {
-        U::DoorsClosed => "전체 출입문 닫힘",
-        U::Hcr => "HCR",
-        U::MaintenanceKey => "정비 키",
-        U::Acknowledge => "확인 버튼",
-        U::Start => "ATO 출발 버튼",
-        U::EbLoop => "비상제동 루프",
-        U::Forward => "역전기 전진",
-        U::Backward => "역전기 후진",
-        U::EbLoopFed => "비상제동 루프 급전",
-        U::DoorsBySide => "출입문 측별 표시",
-        U::LeftClosed => "왼쪽 출입문 닫힘",
-        U::LeftLocked => "왼쪽 출입문 잠김",
-        U::RightClosed => "오른쪽 출입문 닫힘",
-        U::RightLocked => "오른쪽 출입문 잠김",
-        U::Code => "속도 코드",
-        U::Crosstalk => "인접 궤도 코드",
-        U::Tacho1 => "속도센서 1",
-        U::Tacho2 => "속도센서 2",
-        U::Marker => "마커",
-        U::ModeSwitch => "모드 스위치",
-        U::Controller => "주간제어기",
-        U::Entries => "운전실 입력값",
-        U::Twc => "TWC",
-        U::Supply => "장치 전원",
     }
 }
 

@@ -1,6 +1,5 @@
 //! Sentences that are made of data, one match for each kind: what is added to the data does not compile without its words.
 
-mod by_hand;
 mod conclusion;
 pub(super) mod condition;
 mod damage;

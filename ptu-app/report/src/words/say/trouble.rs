@@ -9,7 +9,7 @@ use ptu_runs::stdio;
 use ptu_runs::words::{Manner, Say};
 
 use super::super::{Language, Words};
-use super::{by_hand, condition};
+use super::condition;
 
 impl Words {
     /// Why something could not be done, and the next move.
@@ -28,10 +28,7 @@ impl Words {
         let teller = Teller {
             note: &|note| self.told(&note),
             signal: &|signal| self.signal(signal.name()).into_owned(),
-            stimulus: &|stimulus| match korean {
-                true => by_hand::korean(stimulus),
-                false => stimulus.to_string(),
-            },
+            text: &|text| self.content(text).into_owned(),
             condition: &|seen| match korean {
                 true => condition::korean(seen),
                 false => seen.to_string(),

@@ -193,7 +193,7 @@ alarm = { at = "operator", within_s = 30 }
 const ENGLISH: Teller<'_> = Teller {
     note: &|note| note.to_string(),
     signal: &|signal| signal.name().to_owned(),
-    stimulus: &|stimulus| stimulus.to_string(),
+    text: &|text| text.to_owned(),
     condition: &|seen| seen.to_string(),
 };
 
