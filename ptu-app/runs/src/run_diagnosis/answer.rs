@@ -20,6 +20,7 @@ use crate::data::ScriptsDirectory;
 use crate::failure::{DiagnosisTrouble, Failure, Trouble, Unknown, did_you_mean};
 use crate::replay::add_residuals;
 use crate::run::{Adaptive, of_run};
+use crate::stored::DEPARTURE;
 use crate::structure::Structure;
 use crate::symptoms::{self, Symptom};
 use crate::words::Warning;
@@ -333,6 +334,12 @@ fn comparable(
         warnings.push(Warning::OtherScripts(scripts));
         seen.steps
             .retain(|step| !others.contains(&step.check.procedure));
+    }
+    let (departure, others): (Vec<_>, Vec<_>) = (std::mem::take(&mut seen.steps).into_iter())
+        .partition(|step| step.check.procedure.starts_with(DEPARTURE));
+    seen.steps = others;
+    if !departure.is_empty() {
+        warnings.push(Warning::Departure);
     }
     let before = seen.steps.len();
     seen.steps
