@@ -323,8 +323,7 @@ fn a_dropped_file_is_laid_behind_the_trace() {
     let part = ["--window", "-1..1"];
     for (name, part) in [
         ("other.csv", &[][..]),
-        ("whole.parquet", &[]),
-        ("part.parquet", &part),
+        ("whole.mcap", &[]),
         ("part.mcap", &part),
     ] {
         let file = window.place.path(name);
@@ -341,8 +340,8 @@ fn a_dropped_file_is_laid_behind_the_trace() {
     drop(&mut window, &file);
     window.wait_for_part("signals deviate, first ");
     for (name, told) in [
-        ("other.parquet", "damaged, or no Parquet file"),
-        ("other.docx", "Only .csv, .parquet and .mcap files"),
+        ("other.mcap", "damaged, or no MCAP file"),
+        ("other.docx", "Only .csv and .mcap files"),
     ] {
         window.place.write(name, "this is no trace");
         let other = window.place.path(name);
