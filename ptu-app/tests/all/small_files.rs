@@ -2,8 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::io::Read as _;
+use std::sync::Arc;
 
 use fault_db::{Channel, ChannelKind};
+use parquet::basic::{Compression, ZstdLevel};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::parser::parse_message_type;
 
 use crate::common::{Place, Said};
 use crate::trace_files::{kept, trace};
@@ -19,6 +25,37 @@ fn beside(place: &Place, file: &str, bytes: &[u8]) -> Said {
     std::fs::write(place.path(file), bytes).expect("written");
     let limits = format!("ulimit -d {MOST_KIB}; ulimit -t {MOST_S};");
     place.shell(&format!("{limits} exec ptu trace diff latest {file}"))
+}
+
+/// Seconds and a text each row, in pages of about so many bytes.
+fn texts(rows: usize, text: &[u8], page: usize) -> Vec<u8> {
+    let schema = "message m { required double time_s; required binary mode (UTF8); }";
+    let schema = Arc::new(parse_message_type(schema).expect("a schema"));
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::ZSTD(ZstdLevel::try_new(3).expect("a level")))
+        .set_dictionary_enabled(false)
+        .set_data_page_size_limit(page)
+        .build();
+    let mut file = Vec::new();
+    let writer = SerializedFileWriter::new(&mut file, schema, Arc::new(properties));
+    let mut writer = writer.expect("begun");
+    let mut group = writer.next_row_group().expect("a group");
+    let times: Vec<_> = (0..rows).map(|row| row as f64).collect();
+    let mut column = group.next_column().expect("a column").expect("of times");
+    let written = column.typed::<DoubleType>().write_batch(&times, None, None);
+    written.expect("written");
+    column.close().expect("closed");
+    let mut column = group.next_column().expect("a column").expect("of texts");
+    let text = ByteArray::from(text.to_vec());
+    for _ in 0..rows {
+        let one = std::slice::from_ref(&text);
+        let written = column.typed::<ByteArrayType>().write_batch(one, None, None);
+        written.expect("written");
+    }
+    column.close().expect("closed");
+    group.close().expect("closed");
+    writer.close().expect("finished");
+    file
 }
 
 /// A chunk that says it has so many bytes, and has as many zeros.
@@ -84,16 +121,31 @@ fn recordings_are_read_or_named_by_their_encoding() {
         .explains(&["ros2msg: only json is read"]);
 }
 
-/// Goal: what a file unpacks to is bounded, whatever it says. Method: a chunk of zeros, in a process with limits on memory
-/// and time.
+/// Goal: what a file unpacks to is bounded, whatever it says. Method: long texts, a page that is longer than any, and a chunk
+/// of zeros, each in a process with limits on memory and time.
 #[test]
 #[cfg(unix)]
 fn a_small_file_that_unpacks_to_very_much_is_refused() {
     let place = Place::new();
     kept(&place, &trace(600));
-    beside(&place, "zeros.mcap", &zeros(1 << 30))
-        .exits(2)
-        .explains(&["zeros.mcap", "it unpacks to more than"]);
+    let megabyte = vec![0; 1 << 20];
+    for (file, bytes, told) in [
+        (
+            "texts.parquet",
+            texts(100, &megabyte, 1 << 20),
+            "is no sample",
+        ),
+        (
+            "page.parquet",
+            texts(100, &megabyte, 1 << 30),
+            "a page unpacks to",
+        ),
+        ("zeros.mcap", zeros(1 << 30), "it unpacks to more than"),
+    ] {
+        beside(&place, file, &bytes)
+            .exits(2)
+            .explains(&[file, told]);
+    }
 }
 
 /// Goal: texts cost no search through all signals. Method: many texts beside a trace of very many signals.

@@ -218,9 +218,6 @@ fn a_part_has_its_signals_and_its_span() {
         let samples = list(&found["columns"]["speed"]);
         assert_eq!(samples[1].as_f64(), Some(trace.columns[0][191]));
         assert_eq!(found["columns"].as_object().map(|c| c.len()), Some(2));
-        if file.ends_with("parquet") {
-            continue;
-        }
         // Laid at the trace again it is the same.
         let said = place.ptu(&["trace", "diff", "latest", file]).exits(0);
         assert!(said.out.contains("no signal differs"), "{}", said.out);

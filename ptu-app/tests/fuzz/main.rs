@@ -340,6 +340,8 @@ fn tables_and_messages_of_other_programs() {
         let is_written = |sample: &f64| [0.5, 1.0, 1.5, 2.5, 3.5].contains(sample);
         assert!(found.iter().all(is_written), "{found:?}");
     });
+    let parquet = file("t.parquet");
+    fuzz("parquet", [parquet_file()]).run(20_000, |bytes| drop(read(&parquet, bytes)));
 }
 
 /// What is read of a file; what is refused names it.
@@ -347,6 +349,18 @@ fn refused_by_name<T>(file: &Path, read: Result<T, Failure>) -> Option<T> {
     let name = file.display().to_string();
     read.inspect_err(|error| assert!(error.to_string().contains(&name), "{error}"))
         .ok()
+}
+
+/// A trace of a run, as the program itself exports it.
+fn parquet_file() -> Vec<u8> {
+    let place = Place::new();
+    place
+        .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
+        .exits(1);
+    let export = ["trace", "export", "latest", "--out", "t.parquet"];
+    let part = ["--signal", "speed,eb,mode", "--window", "-0.2..0.2"];
+    place.ptu(&[&export[..], &part].concat()).exits(0);
+    std::fs::read(place.path("t.parquet")).expect("written")
 }
 
 fn mcap_file(compression: Option<mcap::Compression>) -> Vec<u8> {

@@ -4,7 +4,7 @@
 //!   hour of all signals takes no more memory than a second of one;
 //! * [`RunMcap`]: a whole run while it goes on, every row of every signal and every event;
 //! * [`TraceInfo`]: what a trace is, kept in every format: whose, when, and each signal's unit, kind and words;
-//! * [`import`]: signals of a CSV or MCAP file, ours or another program's;
+//! * [`import`]: signals of a CSV, Parquet or MCAP file, ours or another program's;
 //! * [`align()`]: these signals at the times of a stored trace's rows, to be compared with it.
 
 mod about;
@@ -18,6 +18,9 @@ mod known;
 mod mcap_read;
 mod mcap_write;
 mod parquet;
+mod parquet_pages;
+mod parquet_read;
+mod parquet_values;
 mod part;
 mod run_mcap;
 mod series;

@@ -7,7 +7,7 @@ use fault_db::{Channel, ChannelKind};
 
 use super::about::TraceInfo;
 use super::times::Columns;
-use super::{csv_read, mcap_read};
+use super::{csv_read, mcap_read, parquet_read};
 use ptu_runs::failure::{Failure, FileTrouble};
 
 /// A file has at most this many signals; a trace of ours has a few hundred.
@@ -35,7 +35,7 @@ pub struct Import {
 
 /// Whether a file of this name can be read.
 pub fn is_importable(file: &Path) -> bool {
-    matches!(&*ending(file), "csv" | "mcap")
+    matches!(&*ending(file), "csv" | "parquet" | "mcap")
 }
 
 fn ending(file: &Path) -> String {
@@ -45,7 +45,7 @@ fn ending(file: &Path) -> String {
     ending.unwrap_or_default()
 }
 
-/// Reads a CSV or MCAP file; signals that are among `known` are of their kind. What was `asked` of a table's columns
+/// Reads a CSV, Parquet or MCAP file; signals that are among `known` are of their kind. What was `asked` of a table's columns
 /// stands before their headings.
 ///
 /// # Errors
@@ -53,6 +53,7 @@ fn ending(file: &Path) -> String {
 pub fn import(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import, Failure> {
     let import = match &*ending(file) {
         "mcap" => mcap_read::read(file, known, asked)?,
+        "parquet" => parquet_read::read(file, known, asked)?,
         _ => csv_read::read(file, known, asked)?,
     };
     if import.tables.iter().all(|table| table.times_us.is_empty()) {

@@ -90,7 +90,7 @@ wordings! {
         making_twin: "running the same stimuli on a sound unit …", "같은 시험 입력을 정상 장치에 다시 주는 중 …";
         drop_here: "Drop the file: it is laid behind this trace", "놓으면 이 신호 기록 뒤에 파일이 겹쳐집니다";
         open_first: "Open a trace first: a file is laid behind it", "먼저 신호 기록을 여십시오. 파일은 그 뒤에 겹쳐집니다";
-        not_importable: "Only .csv and .mcap files can be laid behind a trace", ".csv, .mcap 파일만 신호 기록과 비교할 수 있습니다";
+        not_importable: "Only .csv, .parquet and .mcap files can be laid behind a trace", ".csv, .parquet, .mcap 파일만 신호 기록과 비교할 수 있습니다";
         cannot_overlay: "There is nothing to compare with", "비교할 수 없습니다";
         cannot_compare: "Where they differ cannot be told", "차이를 판단할 수 없습니다";
         offset: "offset", "이동";

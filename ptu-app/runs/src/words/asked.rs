@@ -68,7 +68,7 @@ sentences! {
         DueBefore(due: String, on: String): "it is due on {due}, before it was calibrated on {on}", "교정 기한 {due}이(가) 교정일 {on}보다 빠릅니다";
         // Traces.
         NoTraceFormat: "the file to export to must end in .csv, .parquet or .mcap", "내보낼 파일의 확장자는 .csv, .parquet 또는 .mcap이어야 합니다";
-        NoComparable(file: String): "cannot compare with {file}: a file to compare with must end in .csv or .mcap", "{file}과(와) 비교할 수 없습니다. 비교할 파일의 확장자는 .csv 또는 .mcap이어야 합니다";
+        NoComparable(file: String): "cannot compare with {file}: a file to compare with must end in .csv, .parquet or .mcap", "{file}과(와) 비교할 수 없습니다. 비교할 파일의 확장자는 .csv, .parquet 또는 .mcap이어야 합니다";
         ShiftOfFile: "--shift lays a file elsewhere; traces are laid at their triggers", "--shift: 파일에만 씁니다. 신호 기록은 트리거에 맞춥니다";
         ColumnsOfFile: "--map, --time and --time-unit say what the columns of a file are; B is none", "--map, --time, --time-unit: 파일의 열을 지정합니다. B는 파일이 아닙니다";
         OutsideTrace(from: String, to: String): "the trace has no row in that span; it goes from {from} to {to} s of its trigger", "그 구간에는 신호 기록이 없습니다. 신호 기록은 트리거 기준 {from} ~ {to} s입니다";

@@ -23,7 +23,7 @@ use ptu_runs::stdio;
 /// tolerance for each unit of measure). The number of log entries (`events`) is not compared; on a port neither are
 /// efforts, accelerations and counts of frames.
 ///
-/// B may be a .csv or .mcap file: an export, or another program's table with a column of times or messages in
+/// B may be a .csv, .parquet or .mcap file: an export, or another program's table with a column of times or messages in
 /// JSON. Seconds count from the trigger, dates and messages are of the calendar (UTC); a file of another time is laid
 /// with its beginning at that of the trace. Each row of the trace is compared with the last sample before it.
 ///
@@ -40,7 +40,7 @@ pub struct DiffArguments {
     /// A trace
     #[arg(value_name = "A")]
     came: String,
-    /// Another; `twin`: the same stimuli on a sound unit; or a .csv or .mcap file
+    /// Another; `twin`: the same stimuli on a sound unit; or a .csv, .parquet or .mcap file
     #[arg(value_name = "B")]
     expected: String,
     /// Only these signals

@@ -323,7 +323,8 @@ fn a_dropped_file_is_laid_behind_the_trace() {
     let part = ["--window", "-1..1"];
     for (name, part) in [
         ("other.csv", &[][..]),
-        ("whole.mcap", &[]),
+        ("whole.parquet", &[]),
+        ("part.parquet", &part),
         ("part.mcap", &part),
     ] {
         let file = window.place.path(name);
@@ -340,8 +341,8 @@ fn a_dropped_file_is_laid_behind_the_trace() {
     drop(&mut window, &file);
     window.wait_for_part("signals deviate, first ");
     for (name, told) in [
-        ("other.mcap", "damaged, or no MCAP file"),
-        ("other.docx", "Only .csv and .mcap files"),
+        ("other.parquet", "damaged, or no Parquet file"),
+        ("other.docx", "Only .csv, .parquet and .mcap files"),
     ] {
         window.place.write(name, "this is no trace");
         let other = window.place.path(name);
