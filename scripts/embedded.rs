@@ -46,6 +46,7 @@ pub static FILES: &[(&str, &[u8])] = files![
     "fleet.toml",
     "instruments/generator.toml",
     "instruments/meter.toml",
+    "instruments/supply.toml",
     "instruments/pulses.toml",
     "korean.toml",
     "lines/line6.toml",

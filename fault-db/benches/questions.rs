@@ -13,8 +13,6 @@
 use std::path::Path;
 use std::time::Instant;
 
-use Span::{Month, Whole, Year};
-use StatKey::{Code, Line, Lru, Unit};
 use fault_db::{
     FaultFilter, FaultState, FaultSummary, StatKey, StatQuery, Store, StoreError, TrendQuery,
 };
@@ -34,56 +32,35 @@ struct Asked {
     now_us: i64,
 }
 
-/// How much of the history is counted.
-#[derive(Clone, Copy)]
-enum Span {
-    Month,
-    Year,
-    Whole,
-}
-
 /// Changes the filter that selects what is counted.
 type Select = fn(&mut FaultFilter, &Asked);
 
 const UNIT: Select = |filter, asked| filter.unit = Some(asked.unit.clone());
 const ALL: Select = |_, _| {};
 const CRITICAL: Select = |filter, _| filter.severity = Some("critical".into());
-const MINOR: Select = |filter, _| filter.severity = Some("minor".into());
 const OPEN: Select = |filter, _| filter.states = vec![FaultState::Open];
-const CLOSED: Select = |filter, _| filter.states = vec![FaultState::Closed];
-const OVERSPEED: Select = |filter, _| filter.procedure = Some("atp/overspeed".into());
-const RELAY: Select = |filter, _| filter.lru = Some("eb_relay".into());
 const REPLACED: Select = |filter, _| filter.note = Some("교체".into());
-const CLOSED_MINOR_ON_A_LINE: Select = |filter, asked| {
-    CLOSED(filter, asked);
-    MINOR(filter, asked);
+const CLOSED_MINOR_ON_A_LINE: Select = |filter, _| {
+    filter.states = vec![FaultState::Closed];
+    filter.severity = Some("minor".into());
     filter.line = Some("line5".into());
 };
 
-/// Questions for counts: name, span, key and filter.
-const COUNTS: [(&str, Span, StatKey, Select); 19] = [
-    ("unit: a year by code", Year, Code, UNIT),
-    ("unit: a year by part", Year, Lru, UNIT),
-    ("fleet: a year by code", Year, Code, ALL),
-    ("fleet: a year by part", Year, Lru, ALL),
-    ("fleet: a year by unit", Year, Unit, ALL),
-    ("fleet: a year by line", Year, Line, ALL),
-    ("fleet: a month by code", Month, Code, ALL),
-    ("fleet: a year, critical, by part", Year, Lru, CRITICAL),
-    ("fleet: a year, critical, by unit", Year, Unit, CRITICAL),
-    ("fleet: a year, open, by code", Year, Code, OPEN),
-    ("fleet: a year, closed, by line", Year, Line, CLOSED),
-    ("fleet: critical by part", Whole, Lru, CRITICAL),
-    ("fleet: minor by unit", Whole, Unit, MINOR),
-    ("fleet: open by code", Whole, Code, OPEN),
-    ("fleet: closed by line", Whole, Line, CLOSED),
-    ("fleet: atp/overspeed by code", Whole, Code, OVERSPEED),
-    ("fleet: eb_relay by unit", Whole, Unit, RELAY),
-    ("fleet: 교체 in a note, by part", Whole, Lru, REPLACED),
+/// Questions for counts: name, whether of a year or of all, key and filter.
+const COUNTS: [(&str, bool, StatKey, Select); 5] = [
+    ("unit: a year by code", true, StatKey::Code, UNIT),
+    ("fleet: a year by code", true, StatKey::Code, ALL),
+    ("fleet: critical by part", false, StatKey::Lru, CRITICAL),
+    (
+        "fleet: 교체 in a note, by part",
+        false,
+        StatKey::Lru,
+        REPLACED,
+    ),
     (
         "fleet: closed, minor, on a line, by part",
-        Whole,
-        Lru,
+        false,
+        StatKey::Lru,
         CLOSED_MINOR_ON_A_LINE,
     ),
 ];
@@ -128,8 +105,8 @@ fn questions() -> Vec<(&'static str, Ask)> {
             Box::new(|store, asked| Ok(store.trend_by_unit(&in_year(asked))?.len())),
         ),
     ];
-    let counts = COUNTS.map(|(name, span, by, select)| {
-        let ask: Ask = Box::new(move |store, asked| count(store, asked, span, by, select));
+    let counts = COUNTS.map(|(name, is_year, by, select)| {
+        let ask: Ask = Box::new(move |store, asked| count(store, asked, is_year, by, select));
         (name, ask)
     });
     lists.into_iter().chain(others).chain(counts).collect()
@@ -152,15 +129,11 @@ fn list(
 fn count(
     store: &Store,
     asked: &Asked,
-    span: Span,
+    is_year: bool,
     by: StatKey,
     select: Select,
 ) -> Result<usize, StoreError> {
-    let until_us = match span {
-        Month => Some(asked.since_us + 30 * DAY_US),
-        Year => Some((asked.since_us + YEAR_US).min(asked.now_us)),
-        Whole => None,
-    };
+    let until_us = is_year.then(|| (asked.since_us + YEAR_US).min(asked.now_us));
     let mut filter = FaultFilter {
         since_us: until_us.map(|_| asked.since_us),
         until_us,

@@ -2,11 +2,9 @@
 //!
 //! Goal: encoding and decoding one 64-byte frame takes at most 1 µs, both ends' checks included.
 
-use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
-use protocol::frame::{self, Decoder, Header};
 use protocol::link::{End, Link};
-use protocol::message::{Address, Channel, Identity, IoInput, Message, SelfTest};
+use protocol::message::{Identity, Message, SelfTest};
 use protocol::{Duration, Instant, SCAN};
 
 fn main() {
@@ -59,82 +57,4 @@ impl Line {
 fn frame_of_64_bytes_end_to_end(bencher: Bencher) {
     let (mut line, message) = (Line::new(End::Unit, End::Bench), identity());
     bencher.bench_local(|| line.carry(black_box(&message)));
-}
-
-#[divan::bench]
-fn io_input_end_to_end(bencher: Bencher) {
-    let mut line = Line::new(End::Bench, End::Unit);
-    let message = IoInput {
-        carrier_hz: 3000,
-        level_mv: 500,
-        ..IoInput::default()
-    }
-    .into();
-    bencher.bench_local(|| line.carry(black_box(&message)));
-}
-
-const HEADER: Header = Header {
-    channel: Channel::Ptu,
-    source: Address::Tester,
-    destination: Address::Unit,
-    seq: 0x1234,
-    stamp_ms: 0x0123_4567,
-};
-
-/// 48 bytes of payload make 62 of body and 64 with the flags.
-const PAYLOAD: [u8; 48] = [0x55; 48];
-
-#[divan::bench]
-fn encode_64_bytes(bencher: Bencher) {
-    let mut out = Vec::with_capacity(256);
-    bencher.bench_local(|| {
-        out.clear();
-        frame::encode(black_box(&HEADER), black_box(&PAYLOAD), &mut out);
-        out.len()
-    });
-}
-
-#[divan::bench]
-fn decode_64_bytes(bencher: Bencher) {
-    let mut bytes = Vec::new();
-    frame::encode(&HEADER, &PAYLOAD, &mut bytes);
-    assert_eq!(bytes.len(), 64);
-    let mut decoder = Decoder::new();
-    bencher.bench_local(|| {
-        decoder.push(black_box(&bytes));
-        decoder.next_frame().is_some_and(|next| next.is_ok())
-    });
-}
-
-/// The worst that stuffing can do: every payload byte is escaped.
-#[divan::bench]
-fn encode_and_decode_all_escaped(bencher: Bencher) {
-    let (mut bytes, mut decoder) = (Vec::new(), Decoder::new());
-    bencher.bench_local(|| {
-        bytes.clear();
-        frame::encode(&HEADER, black_box(&[0x7E; 48]), &mut bytes);
-        decoder.push(&bytes);
-        decoder.next_frame().is_some_and(|next| next.is_ok())
-    });
-}
-
-/// How fast a receiver finds its way through garbage, with and without flags in it.
-#[divan::bench(args = [false, true])]
-fn resynchronise_over_64_kib(bencher: Bencher, flags: bool) {
-    let mut state = 1_u32;
-    let noise: Vec<u8> = std::iter::repeat_with(|| {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (state >> 24) as u8
-    })
-    .filter(|&byte| flags || byte != 0x7E)
-    .take(64 * 1024)
-    .collect();
-    let mut decoder = Decoder::new();
-    bencher
-        .counter(BytesCount::of_slice(&noise))
-        .bench_local(|| {
-            decoder.push(&noise);
-            while decoder.next_frame().is_some() {}
-            decoder.garbage()
-        });
 }

@@ -40,9 +40,3 @@ fn eight_cars(bencher: Bencher<'_, '_>, controller: ControllerKind) {
 fn eight_cars_tester_silent(bencher: Bencher<'_, '_>, controller: ControllerKind) {
     run(bencher, controller, TrainData::line6(), false);
 }
-
-/// The ideal train: what unit, frames and rig take without cars.
-#[divan::bench(sample_count = 30)]
-fn ideal_tester_silent(bencher: Bencher<'_, '_>) {
-    run(bencher, ControllerKind::Servo, TrainData::ideal(), false);
-}

@@ -71,8 +71,8 @@ fn faults(scripts: &ScriptFiles, names: &[String]) -> Result<Vec<FaultMode>, Fai
         let fault = catalogue.fault(name).cloned().ok_or_else(|| {
             UsageError(format!("no fault {name}; `ptu catalog faults` lists them"))
         })?;
-        if fault.place.on_train() {
-            let text = "is on the train around the unit: the bench injects it, `ptu run --inject`";
+        if !fault.place.in_unit() {
+            let text = "is around the unit: the bench injects it, `ptu run --inject`";
             return Err(UsageError(format!("fault {name} {text}")).into());
         }
         Ok(fault)

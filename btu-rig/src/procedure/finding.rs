@@ -151,7 +151,7 @@ pub enum Finding {
         limit: Duration,
         waiting: Option<WaitedFor>,
     },
-    /// The link to the unit cannot be used.
+    /// The link to the unit cannot be used, or an instrument of the bench.
     LinkLost {
         why: LinkTrouble,
     },
@@ -216,6 +216,9 @@ pub enum Finding {
         of: u32,
         /// Steps that were not run.
         left: u32,
+        /// The instrument of the bench that failed; none = the link to the unit.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        instrument: Option<String>,
     },
     /// A search for a fault found none and accepts nothing.
     NotAcceptance {
@@ -336,7 +339,7 @@ impl Finding {
     /// An instrument of the bench failed, or the tester stood still: it tells nothing of the unit.
     pub fn is_of_the_bench(&self) -> bool {
         match self {
-            Self::LinkLost { why } => matches!(why, LinkTrouble::Instrument { .. }),
+            Self::LinkLost { why } => why.is_of_the_bench(),
             Self::StoodStill { .. } | Self::BeforeStandstill(_) => true,
             Self::NotRun(why) | Self::InSetUp(why) | Self::InCleanUp(why) => why.is_of_the_bench(),
             _ => false,

@@ -158,6 +158,13 @@ pub enum LinkTrouble {
     MemoryExchanged,
 }
 
+impl LinkTrouble {
+    /// An instrument of the bench failed: it tells nothing of the unit and of the line to it.
+    pub const fn is_of_the_bench(&self) -> bool {
+        matches!(self, Self::Instrument { .. })
+    }
+}
+
 /// What an instrument of the bench does wrong: never a fault of the unit. Texts are the instrument's or the system's own.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -192,6 +199,20 @@ pub enum InstrumentFault {
         /// Part of the answer to `*IDN?` that its driver names.
         expected: String,
     },
+    /// The right model with another serial number.
+    #[error("another instrument: serial number {found} answers where {expected} is expected")]
+    OtherSerial {
+        /// In its answer to `*IDN?`.
+        found: String,
+        /// `serial` of the bench file.
+        expected: String,
+    },
+    /// Its line is locked.
+    #[error("another program of this computer uses it")]
+    Taken,
+    /// A carrier without a code was ordered.
+    #[error("its driver has no commands for a carrier that is not modulated")]
+    NoUnmodulated,
     /// It reports an error after a command.
     #[error("it refused {command}: {error}")]
     Refused {

@@ -30,7 +30,7 @@ use protocol::config::{SpeedCode, UnitConfig};
 use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::link::{End, Link};
-use protocol::message::{Coil, IoInput, Message};
+use protocol::message::{Coil, IoInput, IoOutput, Message};
 use protocol::{Duration, Instant, Random};
 
 use crate::conditions::Conditions;
@@ -53,7 +53,7 @@ use session::{IdentityCheck, Subscription, Tester};
 use tcms::{PairCars, pair_cars};
 use train_side::{
     CabDesk, Coils, DoorGear, InCoils, Injected, SpeedHistory, Tacho, TcmsPort, TrainFaults,
-    TrainSeen, Wheel,
+    TrainSeen, Wheel, Wires,
 };
 use wayside::{Antenna, Markers, Track, Wayside};
 
@@ -107,6 +107,8 @@ pub struct Rig {
     faults: TrainFaults,
     /// What a procedure makes wrong with the train's equipment.
     made: EquipmentFaults,
+    /// Outputs of the bench on their way to the unit.
+    wires: Wires,
     desk: CabDesk,
     door_gear: DoorGear,
     tester: Tester,
@@ -169,6 +171,7 @@ impl Rig {
             injected: Injected::new(seed),
             faults: TrainFaults::default(),
             made: EquipmentFaults::default(),
+            wires: Wires::default(),
             train_data,
             train_state: TrainState::default(),
             speeds: SpeedHistory::default(),
@@ -206,8 +209,8 @@ impl Rig {
         self.identity = IdentityCheck::new(expected);
     }
 
-    /// Faults of the train and its wiring, each from its time after `power_at`; faults of
-    /// the unit are injected in the unit.
+    /// Faults of the train, of its wiring and of the bench, each from its time after `power_at`; faults of the unit are
+    /// injected in the unit.
     pub fn inject(&mut self, modes: &[FaultMode], power_at: Instant) {
         self.injected.begin(modes, power_at);
     }
@@ -269,11 +272,13 @@ impl Rig {
             self.link.send(now, &entry, out);
         }
         let mut input = self.io_input(now);
+        self.wires.carry(&self.faults.bench, &mut input);
         let makes = |coil| self.coils.as_ref().is_some_and(|coils| coils.makes(coil));
         let by_wave = [Coil::AtpAntenna, Coil::TwcAntenna].map(makes);
         if !by_wave[0]
             && let Some(second) = self.antenna.second_due(now)
         {
+            let second = self.faults.bench.second(second);
             self.link.send(now, &second.into(), out);
         }
         if let Some(coils) = &mut self.coils {
@@ -297,8 +302,12 @@ impl Rig {
             self.link.send(now, &message.into(), out);
         }
         let in_loop = if by_wave[1] { &mut self.in_loop } else { out };
+        let before = in_loop.len();
         self.wayside
             .step(now, self.train_number, &mut self.link, in_loop);
+        if self.faults.bench.twc_dead {
+            in_loop.truncate(before);
+        }
     }
 
     /// Takes bytes from the unit.
@@ -321,7 +330,10 @@ impl Rig {
                 | Message::TwcTrain(_)
                 | Message::TwcReport(_)
                     if !harness => {}
-                Message::IoOutput(io) => self.latest.on_io(now, io),
+                Message::IoOutput(io) => {
+                    let outputs = self.faults.bench.read(io.outputs);
+                    self.latest.on_io(now, &IoOutput { outputs, ..*io });
+                }
                 Message::AtcToTcms(command) => {
                     if !self.tcms_port.silent() {
                         self.tcms.receive(now, command);

@@ -33,6 +33,8 @@ pub struct Belief<'m, 'd> {
     /// The same on a healthy unit, with their signs.
     healthy: f64,
     signs: SignsSeen,
+    /// What deviated first in each trace.
+    residuals: Vec<String>,
     suspicion: Suspicion,
     /// What each check showed last.
     shown: BTreeMap<usize, StepOutcome>,
@@ -60,6 +62,7 @@ impl<'m, 'd> Belief<'m, 'd> {
             like_effects: vec![0.0; model.effects().len()],
             healthy: 0.0,
             signs: SignsSeen::default(),
+            residuals: Vec::new(),
             suspicion: Suspicion::default(),
             shown: BTreeMap::new(),
             steps: Vec::new(),
@@ -73,6 +76,7 @@ impl<'m, 'd> Belief<'m, 'd> {
             belief.see(place, step);
         }
         belief.signs.in_log.clone_from(&seen.signs);
+        belief.residuals.clone_from(&seen.residuals);
         belief
     }
 
@@ -145,9 +149,24 @@ impl<'m, 'd> Belief<'m, 'd> {
                     ln_sum(self.like_effects(part)) + model.settings.suspect * suspicion[part]
                 }
             };
-            model.ln_priors[i] + steps + self.signs.ln(model, *hypothesis)
+            let residuals = match *hypothesis {
+                Hypothesis::NoFault => model.residuals.ln_healthy(&self.residuals),
+                Hypothesis::Mode { .. } => self.ln_residuals(&[i - FIRST_EFFECT]),
+                Hypothesis::Unseen { part } => model.residuals.ln_unseen(part, &self.residuals),
+            };
+            model.ln_priors[i] + steps + residuals + self.signs.ln(model, *hypothesis)
         });
         of.collect()
+    }
+
+    /// The signals that deviated first.
+    pub(super) fn residuals(&self) -> &[String] {
+        &self.residuals
+    }
+
+    /// Logarithm of the likelihood of what deviated first, each caused by one of these effects.
+    pub(super) fn ln_residuals(&self, effects: &[usize]) -> f64 {
+        self.model.residuals.ln_under(effects, &self.residuals)
     }
 
     /// The same as far as it tells what the checks to come will show: a mode that was not seen yet is no twin of

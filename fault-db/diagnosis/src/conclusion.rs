@@ -15,6 +15,12 @@ pub enum Conclusion {
         /// How likely that is.
         probability: f64,
     },
+    /// A part of the bench has failed: the unit is not at fault.
+    OfBench {
+        part: LruId,
+        /// How likely that is.
+        probability: f64,
+    },
     /// Two parts have failed.
     TwoFound {
         parts: [LruId; 2],
@@ -79,6 +85,7 @@ impl Conclusion {
     pub fn finding(&self) -> Finding {
         match self {
             Self::Found { .. } => Finding::Found,
+            Self::OfBench { .. } => Finding::OfBench,
             Self::TwoFound { .. } => Finding::TwoFound,
             Self::OneOf { .. } | Self::Common { .. } | Self::OneOrCommon { .. } => Finding::OneOf,
             Self::NoFault { .. } => Finding::NoFault,

@@ -76,6 +76,9 @@ pub struct Column {
     pub cells: BTreeMap<usize, Cell>,
     /// In how many runs each sign showed anywhere.
     pub signs: Vec<(Sign, u32)>,
+    /// In how many traces each signal was the first to deviate.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub residuals: BTreeMap<String, u32>,
 }
 
 /// A fault mode with its levels.
@@ -205,7 +208,11 @@ impl Dictionary {
     fn count(&self, level: String, runs: &[Observation]) -> Column {
         let mut cells: BTreeMap<usize, Cell> = BTreeMap::new();
         let mut signs: BTreeMap<Sign, u32> = BTreeMap::new();
+        let mut residuals: BTreeMap<String, u32> = BTreeMap::new();
         for run in runs {
+            for signal in &run.residuals {
+                *residuals.entry(signal.clone()).or_default() += 1;
+            }
             let mut shown: BTreeSet<&Sign> = run.signs.iter().collect();
             for step in &run.steps {
                 if let Some(place) = self.place(&step.check) {
@@ -222,6 +229,7 @@ impl Dictionary {
             runs: runs.len() as u32,
             cells,
             signs: signs.into_iter().collect(),
+            residuals,
         }
     }
 

@@ -79,7 +79,10 @@ pub fn named_beside(belief: &Belief<'_, '_>, weights: &Weights, part: &LruId) ->
         let other = sign.lru.as_ref()?;
         (other != part).then(|| other.clone())
     });
-    others.collect()
+    let deviated = belief.residuals().iter();
+    let elsewhere = deviated.filter(|signal| !model.deviates_with(part, signal));
+    let of_signals = elsewhere.filter_map(|signal| model.likeliest_of(signal).cloned());
+    others.chain(of_signals).collect()
 }
 
 /// The parts that were found, without what they explain.

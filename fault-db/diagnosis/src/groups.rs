@@ -5,9 +5,9 @@
 //! of the part, or the log holds a sign that faults of this part show and faults of the others do not. Else the answer is
 //! the group.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use protocol::LruId;
+use protocol::{LruId, Verdict};
 use serde::Serialize;
 
 use super::belief::Belief;
@@ -47,12 +47,21 @@ pub struct Relations {
     /// Parts that checks do not always tell apart.
     pub groups: Vec<Group>,
     pub shared: Vec<Shared>,
+    /// Parts that belong to the bench, not to the unit or its train.
+    pub of_bench: BTreeSet<LruId>,
+    /// Procedures in which the bench has no part.
+    pub without_bench: Vec<String>,
+    /// Of each signal the parts that make it of others.
+    pub makers: BTreeMap<String, BTreeSet<LruId>>,
 }
 
 /// Parts that do not depend on each other, as far as is known.
 pub static NO_RELATIONS: Relations = Relations {
     groups: Vec::new(),
     shared: Vec::new(),
+    of_bench: BTreeSet::new(),
+    without_bench: Vec::new(),
+    makers: BTreeMap::new(),
 };
 
 impl Relations {
@@ -90,25 +99,33 @@ fn not_alone(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Conclusion> {
         return None;
     };
     let others = named_beside(belief, weights, one);
-    let other = others.first()?;
-    let sharing = others.iter().find_map(|other| {
-        let shared = model.relations.shared_by([one, other])?;
+    (!others.is_empty()).then(|| beside(model, (one, probability), others.iter()))
+}
+
+/// A part beside which something of others shows: what both share, if they share anything, may be the cause.
+fn beside<'a>(
+    model: &Model<'_>,
+    (part, probability): (&LruId, f64),
+    others: impl Iterator<Item = &'a LruId> + Clone,
+) -> Conclusion {
+    let sharing = others.clone().find_map(|other| {
+        let shared = model.relations.shared_by([part, other])?;
         Some((other, shared))
     });
-    let part = one.clone();
-    Some(match sharing {
-        Some((other, cause)) => Conclusion::OneOrCommon {
+    let part = part.clone();
+    match (sharing, { others }.next()) {
+        (Some((other, cause)), _) => Conclusion::OneOrCommon {
             cause: cause.clone(),
             part,
             probability,
             other: other.clone(),
         },
-        None => Conclusion::NotAlone {
+        (None, other) => Conclusion::NotAlone {
+            other: other.unwrap_or(&part).clone(),
             part,
             probability,
-            other: other.clone(),
         },
-    })
+    }
 }
 
 /// Two parts that are found to have failed and share something: one cause of both is likelier than two faults, and nothing
@@ -140,22 +157,54 @@ fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Conclusion> {
     let likeliest = || weights.lrus.first().map(|part| &part.lru);
     let first = found.first().copied().or_else(likeliest)?;
     let of_all = model.relations.groups.iter();
-    let of_all =
-        of_all.filter(|group| group.has(first) && found.iter().all(|part| group.has(part)));
+    let of_all = of_all.filter(|group| {
+        let is_known = |part: &LruId| model.parts().contains(&part);
+        let has_all = found.iter().all(|part| group.has(part));
+        group.has(first) && has_all && group.parts.iter().all(is_known)
+    });
     let with = of_all.map(|group| (group, weights.any_failed(&group.parts)));
-    let (group, probability) = with.reduce(|best, next| match next.1 > best.1 {
-        true => next,
-        false => best,
-    })?;
-    let is_one = found.len() == 1 && tells_apart(belief, first, group);
-    (probability >= found_at && !is_one).then(|| Conclusion::OneOf {
-        group: group.clone(),
-        probability,
-    })
+    let open = with.filter(|(group, probability)| {
+        let is_one = found.len() == 1 && tells_apart(belief, first, group);
+        *probability >= found_at && !is_one
+    });
+    let mut open: Vec<_> = open.collect();
+    // The fewest parts first; the likeliest of those.
+    open.sort_by(|(one, p), (other, q)| {
+        let fewer = one.parts.len().cmp(&other.parts.len());
+        fewer.then(q.total_cmp(p))
+    });
+    let (smallest, _) = open.first()?;
+    // A part that is certain, and not told from the others of several groups, is one of all of them.
+    let as_few = open
+        .iter()
+        .filter(|(group, _)| found.len() == 1 && group.parts.len() == smallest.parts.len());
+    let all: BTreeSet<&LruId> = as_few.flat_map(|(group, _)| &group.parts).collect();
+    let holds_all = |(group, _): &&(&Group, f64)| all.iter().all(|part| group.has(part));
+    let (group, probability) = open.iter().find(holds_all).or(open.first())?;
+    let elsewhere = belief.residuals().iter().find(|signal| {
+        let mut parts = group.parts.iter();
+        !parts.any(|part| model.deviates_with(part, signal))
+    });
+    match elsewhere.and_then(|signal| model.likeliest_of(signal)) {
+        Some(other) => Some(beside(model, (first, *probability), [other].into_iter())),
+        None => Some(Conclusion::OneOf {
+            group: (*group).clone(),
+            probability: *probability,
+        }),
+    }
 }
 
 /// Whether what was seen tells a part from the others of a group.
 fn tells_apart(belief: &Belief<'_, '_>, part: &LruId, group: &Group) -> bool {
+    let relations = belief.model.relations;
+    if group
+        .parts
+        .iter()
+        .any(|part| relations.of_bench.contains(part))
+    {
+        // What comes from the bench cannot tell the bench from the part that it comes to.
+        return !relations.of_bench.contains(part) && fails_without_bench(belief, part);
+    }
     let signs = belief.signs();
     let mut shown = signs.in_steps.union(&signs.in_log);
     is_as_counted(belief, part)
@@ -165,6 +214,19 @@ fn tells_apart(belief: &Belief<'_, '_>, part: &LruId, group: &Group) -> bool {
                 && modes(part) >= belief.model.settings.conclusion.modes_with_sign
                 && group.others(part).all(|other| modes(other) == 0)
         })
+}
+
+/// Whether a step failed that judges the part and that the bench has no part in.
+fn fails_without_bench(belief: &Belief<'_, '_>, part: &LruId) -> bool {
+    let dictionary = belief.model.dictionary;
+    let procedures = &belief.model.relations.without_bench;
+    belief.steps().iter().any(|step| {
+        let is_judged = dictionary.suspects.get(step.place) == Some(&Some(part.clone()));
+        let shown = belief.shown(step.place);
+        is_judged
+            && procedures.contains(&dictionary.checks[step.place].procedure)
+            && shown.is_some_and(|shown| shown.result != Verdict::Passed)
+    })
 }
 
 /// Whether a part, if it has failed, has more likely than not failed in a way that acts as it was counted. What comes and

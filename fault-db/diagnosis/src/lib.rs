@@ -28,6 +28,7 @@ mod pairs;
 pub mod process;
 mod proof;
 mod reasons;
+mod residuals;
 mod settings;
 mod signs;
 mod spells;

@@ -18,6 +18,7 @@ use super::likelihood::{
 };
 use super::observation::{ObservedStep, Sign};
 use super::outlook::{Outlook, outlooks};
+use super::residuals::Residuals;
 use super::settings::Settings;
 use super::signs::{ShownSign, shown_signs};
 use super::spells::{self, AS_COUNTED, RATES};
@@ -78,6 +79,8 @@ pub struct Model<'a> {
     signs: Vec<Vec<ShownSign<'a>>>,
     /// Whom failed checks suspect under an unseen mode of each part.
     pub suspects: Suspects,
+    /// What deviates first under each fault.
+    pub residuals: Residuals,
     scales: BTreeMap<usize, BTreeMap<String, Scale>>,
     /// Share of checks that a healthy unit does not pass.
     false_alarms: f64,
@@ -134,6 +137,7 @@ impl<'a> Model<'a> {
             outlooks: outlooks(dictionary, columns.clone()),
             signs: columns.map(shown_signs).collect(),
             suspects: Suspects::new(dictionary, &parts),
+            residuals: Residuals::new(dictionary, &parts, &NO_RELATIONS, settings),
             resemblance: resemblance(dictionary, &parts, settings.other_part),
             hypotheses,
             relations: &NO_RELATIONS,
@@ -147,7 +151,12 @@ impl<'a> Model<'a> {
 
     /// With how parts depend on each other.
     pub fn with_relations(self, relations: &'a Relations) -> Self {
-        Self { relations, ..self }
+        let residuals = Residuals::new(self.dictionary, &self.parts, relations, self.settings);
+        Self {
+            relations,
+            residuals,
+            ..self
+        }
     }
 
     /// Part that has failed under a hypothesis; `None` if the unit is healthy.
@@ -195,6 +204,37 @@ impl<'a> Model<'a> {
     pub fn share_of_sign(&self, effect: usize, sign: &Sign) -> f64 {
         let shown = self.signs[effect].iter().find(|shown| shown.sign == sign);
         shown.map_or(0.0, |shown| shown.share)
+    }
+
+    /// Shares of the traces in which a signal is the first to deviate, under a fault and under any.
+    pub fn share_of_residual(&self, hypothesis: Hypothesis, signal: &str) -> Option<[f64; 2]> {
+        let table = &self.residuals;
+        let place = table.place(signal)?;
+        let own = match hypothesis {
+            Hypothesis::NoFault => return None,
+            Hypothesis::Mode { .. } => table.of_effect(self.effect(hypothesis)?, place),
+            Hypothesis::Unseen { part } => table.of_part(part, place),
+        };
+        Some([own, table.of_any(place)])
+    }
+
+    /// Whether a signal is the first to deviate under a fault of a part: it makes the signal, or a fault of it was counted so.
+    pub fn deviates_with(&self, part: &LruId, signal: &str) -> bool {
+        let makers = self.relations.makers.get(signal);
+        let modes = self.dictionary.modes.iter();
+        let own = modes.filter(|mode| mode.name.lru == *part);
+        makers.is_none_or(|makers| makers.contains(part))
+            || own
+                .flat_map(|mode| &mode.columns)
+                .any(|column| column.residuals.contains_key(signal))
+    }
+
+    /// The part whose faults show most at a signal.
+    pub fn likeliest_of(&self, signal: &str) -> Option<&'a LruId> {
+        let place = self.residuals.place(signal)?;
+        let share = |part: &usize| self.residuals.of_part(*part, place);
+        let likeliest = (0..self.parts.len()).max_by(|a, b| share(a).total_cmp(&share(b)))?;
+        Some(self.parts[likeliest])
     }
 
     /// Counts of a mode's level; a healthy unit's under the other hypotheses.

@@ -121,6 +121,9 @@ pub struct Observation {
     pub steps: Vec<ObservedStep>,
     /// Signs from the unit's own log, which belong to no step.
     pub signs: BTreeSet<Sign>,
+    /// Of the first trace of each procedure the signal that was the first to leave that of a sound unit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub residuals: Vec<String>,
 }
 
 impl Observation {

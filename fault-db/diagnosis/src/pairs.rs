@@ -52,7 +52,9 @@ pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, Vec<f64
             let prior = model.ln_priors[FIRST_EFFECT + first]
                 + model.ln_priors[FIRST_EFFECT + second]
                 + beside.ln();
-            let ln = prior + counted.ln_of_both(*first, *second);
+            let ln = prior
+                + counted.ln_of_both(*first, *second)
+                + belief.ln_residuals(&[*first, *second]);
             // Signs make nothing likelier.
             if ln > worth_a_look {
                 found.push((both, ln + belief.signs().ln_under(model, &both)));

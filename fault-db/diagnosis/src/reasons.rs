@@ -24,6 +24,12 @@ pub enum Reason {
     Step(StepReason),
     /// A sign in the unit's log.
     Logged(Sign),
+    /// The signal by which a trace first leaves a sound unit's.
+    Deviated {
+        signal: String,
+        /// Share of the traces in which that signal is the first: under the fault, and under any.
+        shares: [f64; 2],
+    },
     /// What is known of a part from elsewhere.
     Known(Known),
 }
@@ -94,7 +100,7 @@ impl Reason {
     pub fn step(&self) -> Option<&CheckName> {
         match self {
             Self::Step(step) => Some(&step.check),
-            Self::Logged(_) | Self::Known(_) => None,
+            Self::Logged(_) | Self::Deviated { .. } | Self::Known(_) => None,
         }
     }
 }
@@ -155,6 +161,7 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observati
         against: strongest(against),
     };
     reasons.add_signs(belief.signs(), model, hypothesis);
+    reasons.add_deviations(belief, hypothesis);
     reasons
 }
 
@@ -172,6 +179,26 @@ impl Reasons {
                 self.for_it.push(Reason::Logged(sign.clone()));
             } else if gain < -SPEAKS_AT {
                 self.against.push(Reason::Logged(sign.clone()));
+            }
+        }
+    }
+}
+
+impl Reasons {
+    /// Signals that deviated first which speak for a hypothesis, or against it.
+    fn add_deviations(&mut self, belief: &Belief<'_, '_>, hypothesis: Hypothesis) {
+        let model = belief.model;
+        let signals: BTreeSet<&String> = belief.residuals().iter().collect();
+        for signal in signals {
+            let Some(shares) = model.share_of_residual(hypothesis, signal) else {
+                continue;
+            };
+            let signal = signal.clone();
+            let gain = (shares[0] / shares[1]).ln();
+            if gain > SPEAKS_AT {
+                self.for_it.push(Reason::Deviated { signal, shares });
+            } else if gain < -SPEAKS_AT {
+                self.against.push(Reason::Deviated { signal, shares });
             }
         }
     }

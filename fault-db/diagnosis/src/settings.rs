@@ -43,6 +43,8 @@ pub struct Settings {
     pub suspect: f64,
     /// Weight of a step's evidence, below 1 because steps of one run are not independent.
     pub weight_of_step: f64,
+    /// Weight of a trace's first deviation from a sound unit.
+    pub weight_of_residual: f64,
     /// Set-up time before a procedure, s, as part of the cost of a check.
     pub bring_up_s: f64,
     /// Factor on a part's prior for each earlier run in which a fault named it.
@@ -235,6 +237,7 @@ impl Default for Settings {
             foresight: 0.15,
             suspect: 2.0,
             weight_of_step: 0.6,
+            weight_of_residual: 0.3,
             bring_up_s: 3.0,
             recurrence_factor: 1.5,
             replaced_in_vain_factor: 0.5,

@@ -52,6 +52,8 @@ pub struct TwoFaults {
 #[serde(rename_all = "snake_case")]
 pub enum Finding {
     Found,
+    /// A part of the bench is found, none of the unit.
+    OfBench,
     /// Two parts are found.
     TwoFound,
     /// One of the parts of a group, which a measurement tells apart.
@@ -67,6 +69,7 @@ impl Finding {
     pub fn label(self) -> &'static str {
         match self {
             Self::Found => "found",
+            Self::OfBench => "of the bench",
             Self::TwoFound => "two found",
             Self::OneOf => "one of a group",
             Self::NoFault => "no fault",
@@ -258,7 +261,10 @@ impl Weights {
             [] => {}
             [(part, probability)] => {
                 let part = part.clone();
-                return Conclusion::Found { part, probability };
+                return match model.relations.of_bench.contains(&part) {
+                    true => Conclusion::OfBench { part, probability },
+                    false => Conclusion::Found { part, probability },
+                };
             }
             [(one, _), (other, _), ..] => {
                 return Conclusion::TwoFound {

@@ -15,7 +15,6 @@ use crate::values::fault_state::TransitionError;
 use crate::values::withdrawal_error::WithdrawalError;
 pub use misplaced::Misplaced;
 pub use query_limit::{MOST_RESULT_BYTES, QueryLimit};
-pub(crate) use server::NO_TLS;
 pub use server::ServerReason;
 
 /// An error of the store. Nothing committed before it is lost.

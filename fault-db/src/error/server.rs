@@ -8,9 +8,6 @@ use rustls::CertificateError;
 
 use super::StoreError;
 
-/// The error if the server has no TLS and the address demands it.
-pub(crate) const NO_TLS: &str = "server does not support TLS";
-
 /// Why there is no connection with a server, and what to do about it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ServerReason {
@@ -123,7 +120,7 @@ fn without_message(
         // The client's own errors have fixed texts: no TLS here, no password given.
         let reason = cause.to_string();
         return match reason.as_str() {
-            NO_TLS => StoreError::ServerRefuses {
+            "server does not support TLS" => StoreError::ServerRefuses {
                 path,
                 reason: ServerReason::NoTls,
             },

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::Duration;
 
-use postgres::config::{SslMode, SslNegotiation};
+use postgres::config::SslMode;
 use postgres::{Client, Config};
 
-use super::address::Address;
-use super::bounded::BoundedConnector;
+use super::address::{Address, Guard};
 use super::password::{self, Password};
 use super::{schema, tls};
 use crate::backend::{Backend, Server};
@@ -91,12 +90,12 @@ fn config(address: &Address, user: &str, database: &str) -> Config {
         // A folder is one of a socket.
         .host(&address.host)
         .port(address.port)
-        // Whoever may put a socket into that folder is trusted. Any other stream is ours, which negotiates TLS.
-        .ssl_mode(match address.is_socket() {
-            true => SslMode::Disable,
-            false => SslMode::Require,
+        // Whoever may put a socket into that folder is trusted.
+        .ssl_mode(match address.guard() {
+            Guard::Disable => SslMode::Disable,
+            Guard::Prefer => SslMode::Prefer,
+            Guard::Verify => SslMode::Require,
         })
-        .ssl_negotiation(SslNegotiation::Direct)
         .application_name("ptu")
         .connect_timeout(address.connect_timeout)
         .tcp_user_timeout(NETWORK_PATIENCE)
@@ -118,16 +117,12 @@ fn reach(
         path: path.to_path_buf(),
         reason: ServerReason::Said(reason),
     };
-    let bounded = BoundedConnector {
-        tls: tls::connector(address).map_err(not_trusted)?,
-        guard: address.guard(),
-        host: address.host.clone(),
-    };
+    let tls = tls::connector(address).map_err(not_trusted)?;
     let (done, waiting) = mpsc::channel();
     let connecting = std::thread::Builder::new()
         .name("connecting".into())
         .spawn(move || {
-            let connected = config.connect(bounded).and_then(|mut client| {
+            let connected = config.connect(tls).and_then(|mut client| {
                 client.batch_execute(MANNERS)?;
                 let encoding = client.query_one("SHOW server_encoding", &[])?;
                 Ok((client, encoding.try_get(0)?))

@@ -2,7 +2,6 @@
 
 mod address;
 mod address_in_text;
-mod bounded;
 mod connect;
 mod password;
 pub(crate) mod schema;

@@ -61,23 +61,6 @@ fn check_finds_a_flipped_bit_in_a_trace_and_a_lost_row() {
     ));
 }
 
-#[test]
-fn a_backup_is_complete_and_overwrites_no_file() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
-    let (_, _, trace) = one_run(&store, "ATC-7", 1);
-    let to = dir.path().join("it's a copy.db");
-    store.backup(&to).expect("copied");
-    let copy = Store::open_read_only(&to).expect("one of ours");
-    assert_eq!(copy.check().expect("checked").problems, []);
-    assert_eq!(
-        copy.trace(trace).expect("there"),
-        store.trace(trace).expect("there")
-    );
-    let error = store.backup(&to).expect_err("exists");
-    assert!(matches!(error, StoreError::TargetExists { .. }), "{error}");
-}
-
 /// Goal: of programs that copy to one place at once one does, and the others are told; none spoils its copy.
 #[test]
 fn of_two_backups_to_one_path_one_is_made() {
@@ -281,23 +264,6 @@ fn later_copies_complete_earlier_ones() {
         assert_eq!(detail.fault.state, FaultState::Acknowledged);
         assert_eq!(detail.fault.trace_id, Some(trace));
         assert_eq!(detail.events.len(), 3);
-    }
-}
-
-#[test]
-fn two_laptops_that_saw_one_fault_have_one_fault() {
-    let dir = tempdir().expect("a directory");
-    let ours = open(&dir.path().join("a.db"));
-    let theirs = Store::open(&dir.path().join("b.db"), OpenOptions::new(ids(2))).expect("opens");
-    let (_, stored, _) = one_run(&ours, "ATC-7", 1);
-    one_run(&theirs, "ATC-7", 1);
-    for expected in [1, 0] {
-        let counts = ours.merge_from(&theirs).expect("merged");
-        assert_eq!((counts.faults, counts.occurrences), (0, expected));
-        assert_eq!(
-            ours.fault(stored.fault).expect("there").fault.occurrences,
-            2
-        );
     }
 }
 

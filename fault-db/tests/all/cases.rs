@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::{Deeds, T0_US, end, fault, ids, open, rows, run_record, step};
+use crate::common::{Deeds, T0_US, end, fault, ids, open, repair_of, rows, run_record, step};
 use fault_db::{
     CauseRecord, FaultFilter, FaultRecord, FaultStat, FaultState, Id, OpenOptions, RepairRecord,
     RunWriter, StatKey, StatQuery, Store, Verdict,
@@ -52,11 +52,7 @@ fn from(part: &str) -> CauseRecord {
 }
 
 fn repair(part: &str) -> RepairRecord {
-    RepairRecord {
-        part: part.to_owned(),
-        serial_new: Some("SN-77".to_owned()),
-        ..RepairRecord::default()
-    }
+    repair_of(part, "", "SN-77", "")
 }
 
 fn states(store: &Store, faults: &[Id]) -> Vec<&'static str> {

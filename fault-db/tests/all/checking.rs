@@ -4,9 +4,9 @@
 use std::path::Path;
 
 use crate::common::{
-    Deeds, T0_US, Traces, change, end, fault, measurement, open, rows, run_record, step,
+    Deeds, T0_US, Traces, change, end, fault, measurement, open, repair_of, rows, run_record, step,
 };
-use fault_db::{Id, Problem, PruneRule, RepairRecord, RunWriter, Store, StoreError, Verdict};
+use fault_db::{Id, Problem, PruneRule, RunWriter, Store, StoreError, Verdict};
 use rusqlite::Connection;
 use tempfile::tempdir;
 
@@ -21,12 +21,7 @@ pub fn three_runs(store: &Store) -> Vec<Id> {
         let stored = writer.fault(&fault(n, T0_US)).expect("stored");
         writer.finish(&end(Verdict::Failed)).expect("finished");
         if n == 0 {
-            let repair = RepairRecord {
-                part: "eb_relay".to_owned(),
-                serial_old: Some("SN-1".to_owned()),
-                serial_new: Some("SN-2".to_owned()),
-                note: "replaced".to_owned(),
-            };
+            let repair = repair_of("eb_relay", "SN-1", "SN-2", "replaced");
             let at_us = T0_US + 60;
             store.put_repair(stored.fault, &repair, "kim", at_us);
         }

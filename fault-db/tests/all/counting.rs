@@ -1,10 +1,9 @@
 //! Counts and lists that `counting_filters` does not hold against the rows.
 
-use crate::common::{Deeds, Random, T0_US, end, fault, open, run_record};
+use crate::common::{Deeds, Random, T0_US, end, fault, open, repair_of, run_record};
 use crate::counting_filters::{DAY_US, history};
 use fault_db::{
-    FaultFilter, RepairRecord, RunFilter, RunRecord, RunWriter, StatKey, StatQuery, TrendQuery,
-    Verdict,
+    FaultFilter, RunFilter, RunRecord, RunWriter, StatKey, StatQuery, TrendQuery, Verdict,
 };
 use tempfile::tempdir;
 
@@ -58,10 +57,7 @@ fn a_repair_dated_before_its_fault_took_no_time() {
     let store = open(&dir.path().join("a.db"));
     let mut writer = RunWriter::begin(&store, &run_record("ATC-1")).expect("begun");
     let id = writer.fault(&fault(1, T0_US)).expect("stored").fault;
-    let repair = RepairRecord {
-        part: "eb_relay".into(),
-        ..RepairRecord::default()
-    };
+    let repair = repair_of("eb_relay", "", "", "");
     store.put_repair(id, &repair, "kim", T0_US - 30 * DAY_US);
     let query = StatQuery {
         by: StatKey::All,

@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::common::{
-    Random, STAT_KEYS, T0_US, end, fault, ids, measurement, open, run_record, step,
+    Random, STAT_KEYS, T0_US, end, fault, ids, measurement, open, repair_of, run_record, step,
 };
 use fault_db::{
-    FaultFilter, FaultStat, FaultState, OpenOptions, RepairRecord, RunRecord, RunWriter, StatKey,
-    StatQuery, Store, Verdict,
+    FaultFilter, FaultStat, FaultState, OpenOptions, RunRecord, RunWriter, StatKey, StatQuery,
+    Store, Verdict,
 };
 use rusqlite::Connection;
 use tempfile::tempdir;
@@ -58,11 +58,7 @@ fn handle(store: &Store, id: fault_db::Id, at_us: i64, random: &mut Random) {
     let state = store.fault(id).expect("known").fault.state;
     let done = match (random.next() % 5, state) {
         (0 | 1, FaultState::Open) => {
-            let repair = RepairRecord {
-                part: "eb_relay".into(),
-                serial_new: Some(format!("SN-{}", random.next() % 9)),
-                ..RepairRecord::default()
-            };
+            let repair = repair_of("eb_relay", "", &format!("SN-{}", random.next() % 9), "");
             store.record_repair(id, &repair, "kim", later_us)
         }
         (2, FaultState::Open) => store.set_state(id, FaultState::Closed, "kim", "", later_us),

@@ -4,12 +4,11 @@
 use std::path::Path;
 
 use crate::common::{
-    Deeds, T0_US, Traces, change, end, fault, ids, measurement, realistic_trace, rows, run_record,
-    step,
+    Deeds, T0_US, Traces, change, end, fault, ids, measurement, realistic_trace, repair_of, rows,
+    run_record, step,
 };
 use fault_db::{
-    Id, MergeCounts, OpenOptions, RecordingRecord, RepairRecord, RunWriter, Store, Synchronous,
-    Verdict,
+    Id, MergeCounts, OpenOptions, RecordingRecord, RunWriter, Store, Synchronous, Verdict,
 };
 use tempfile::tempdir;
 
@@ -35,10 +34,7 @@ fn whole_run(store: &Store, serial: &str) -> Id {
     };
     writer.recording(&recording, &[trace]).expect("a recording");
     writer.finish(&end(Verdict::Failed)).expect("finished");
-    let repair = RepairRecord {
-        part: "relay".to_owned(),
-        ..RepairRecord::default()
-    };
+    let repair = repair_of("relay", "", "", "");
     store.put_repair(stored.fault, &repair, "kim", T0_US + 1);
     let run = store.resolve_run("latest").expect("the run");
     store.put_run_note(run, "kim", "noted", T0_US + 2);

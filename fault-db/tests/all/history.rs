@@ -1,11 +1,11 @@
 //! A unit's own history: what counts for a part, and what does not.
 
-use crate::common::{self, Deeds, T0_US, end, fault, open};
+use crate::common::{self, Deeds, T0_US, end, fault, open, repair_of};
 use std::collections::BTreeMap;
 
 use fault_db::{
     CauseRecord, ConfirmedCase, ConfirmedRepairs, FaultRecord, FaultState, Id, LOG_SOURCE,
-    PartHistory, RepairRecord, RepairsOf, RunEnd, RunRecord, RunWriter, Store, Verdict,
+    PartHistory, RepairsOf, RunEnd, RunRecord, RunWriter, Store, Verdict,
 };
 
 const DAY_US: i64 = 86_400_000_000;
@@ -51,11 +51,7 @@ impl History {
     }
 
     fn repair(&self, fault: Id, part: &str, day: i64) {
-        let repair = RepairRecord {
-            part: part.into(),
-            serial_new: Some("N-2".into()),
-            ..RepairRecord::default()
-        };
+        let repair = repair_of(part, "", "N-2", "");
         let at_us = T0_US + day * DAY_US + DAY_US / 2;
         self.store.put_repair(fault, &repair, "kim", at_us);
     }

@@ -1,11 +1,11 @@
 //! Lives by serial number: of a unit, of a train, of a part that went from unit to unit.
 
 use fault_db::{
-    FaultState, Id, Life, LifeOf, LifeWhat, RepairRecord, RunEnd, RunRecord, RunWriter, Store,
-    ToWithdraw, Verdict,
+    FaultState, Id, Life, LifeOf, LifeWhat, RunEnd, RunRecord, RunWriter, Store, ToWithdraw,
+    Verdict,
 };
 
-use crate::common::{self, Deeds, T0_US, end, fault, open};
+use crate::common::{self, Deeds, T0_US, end, fault, open, repair_of};
 
 const DAY_US: i64 = 86_400_000_000;
 
@@ -36,12 +36,7 @@ fn run(store: &Store, (unit, train): (&str, &str), day: i64, codes: &[i64]) -> V
 }
 
 fn repair(store: &Store, fault: Id, [old, new]: [&str; 2], day: i64) {
-    let repair = RepairRecord {
-        part: "EB_Relay".to_owned(),
-        serial_old: (!old.is_empty()).then(|| old.to_owned()),
-        serial_new: (!new.is_empty()).then(|| new.to_owned()),
-        note: String::new(),
-    };
+    let repair = repair_of("EB_Relay", old, new, "");
     store.put_case_repair(fault, &repair, "kim", at(day));
 }
 

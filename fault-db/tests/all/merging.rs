@@ -4,11 +4,12 @@
 use std::path::{Path, PathBuf};
 
 use crate::common::{
-    Deeds, Random, STAT_KEYS, T0_US, change, end, fault, ids, measurement, rows, run_record, step,
+    Deeds, Random, STAT_KEYS, T0_US, change, end, fault, ids, measurement, repair_of, rows,
+    run_record, step,
 };
 use fault_db::{
-    CauseRecord, FaultFilter, FaultState, Id, MergeCounts, OpenOptions, RepairRecord, RunWriter,
-    StatQuery, Store, StoreError, Synchronous, Verdict,
+    CauseRecord, FaultFilter, FaultState, Id, MergeCounts, OpenOptions, RunWriter, StatQuery,
+    Store, StoreError, Synchronous, Verdict,
 };
 use rusqlite::Connection;
 use tempfile::{TempDir, tempdir};
@@ -110,12 +111,7 @@ fn live(store: &Store, random: &mut Random, clock_us: i64) {
 }
 
 fn act(store: &Store, fault: Id, act: u64, at_us: i64) -> Result<(), StoreError> {
-    let repair = RepairRecord {
-        part: "EB_relay".to_owned(),
-        serial_old: None,
-        serial_new: Some("SN-7".to_owned()),
-        note: "교체함".to_owned(),
-    };
+    let repair = repair_of("EB_relay", "", "SN-7", "교체함");
     match act {
         0 => store.acknowledge(fault, "kim", "", at_us).map(drop),
         1 => store.repair_case(fault, &repair, "lee", at_us).map(drop),

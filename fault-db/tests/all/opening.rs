@@ -1,108 +1,15 @@
-//! Files that are not what they should be: named, with the next move, and left as they were.
+//! Files that are not what they should be: named, with the next move, and left as they were. `bad_databases` among the
+//! program's sessions has what is no history at all.
 
 use std::path::Path;
 
 use crate::common::{T0_US, end, fault, ids, open, run_record};
-use fault_db::{
-    APPLICATION_ID, FaultFilter, OpenOptions, RunFilter, RunWriter, SCHEMA_VERSION, Store,
-    StoreError, Verdict,
-};
+use fault_db::{FaultFilter, OpenOptions, RunFilter, RunWriter, Store, StoreError, Verdict};
 use rusqlite::Connection;
 use tempfile::tempdir;
 
 fn refusal(path: &Path) -> StoreError {
     Store::open(path, OpenOptions::new(ids(1))).expect_err("not ours to write")
-}
-
-#[test]
-fn a_text_file_is_not_a_database_and_stays_as_it_is() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("notes.txt");
-    for text in ["x", "speed codes\n", &"a long text ".repeat(1_000)] {
-        std::fs::write(&path, text).expect("written");
-        for error in [
-            refusal(&path),
-            Store::open_read_only(&path).expect_err("nor to read"),
-        ] {
-            assert!(matches!(error, StoreError::NotADatabase { .. }), "{error}");
-            assert!(
-                error
-                    .to_string()
-                    .ends_with("notes.txt is not a database; choose another file")
-            );
-        }
-        assert_eq!(std::fs::read_to_string(&path).expect("still there"), text);
-    }
-}
-
-#[test]
-fn another_programs_database_is_refused_untouched() {
-    let dir = tempdir().expect("a directory");
-    for (name, sql) in [
-        (
-            "id.db",
-            "PRAGMA application_id = 77; CREATE TABLE theirs(x)",
-        ),
-        ("none.db", "CREATE TABLE theirs(x)"),
-        ("version.db", "PRAGMA user_version = 1"),
-    ] {
-        let path = dir.path().join(name);
-        Connection::open(&path)
-            .and_then(|conn| conn.execute_batch(sql))
-            .expect("made");
-        let before = std::fs::read(&path).expect("there");
-        let error = refusal(&path);
-        assert!(
-            matches!(error, StoreError::ForeignDatabase { .. }),
-            "{name}: {error}"
-        );
-        assert_eq!(std::fs::read(&path).expect("there"), before, "{name}");
-    }
-}
-
-#[test]
-fn a_newer_schema_is_refused_and_an_older_one_not_migrated_by_reading() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    open(&path).close().expect("closed");
-    let set = |version: i32| {
-        let conn = Connection::open(&path).expect("opens");
-        conn.pragma_update(None, "user_version", version)
-            .expect("set");
-    };
-    set(SCHEMA_VERSION + 1);
-    for error in [
-        refusal(&path),
-        Store::open_read_only(&path).expect_err("nor to read"),
-    ] {
-        let expected = format!(
-            "schema {}, this one knows {SCHEMA_VERSION}",
-            SCHEMA_VERSION + 1
-        );
-        assert!(matches!(error, StoreError::NewerSchema { .. }), "{error}");
-        assert!(error.to_string().contains(&expected), "{error}");
-    }
-}
-
-#[test]
-fn a_missing_file_is_created_by_writing_only() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let error = Store::open_read_only(&path).expect_err("nothing there");
-    assert!(matches!(error, StoreError::Missing { .. }), "{error}");
-    assert!(!path.exists());
-    let nowhere = dir.path().join("no/such/directory.db");
-    assert!(matches!(refusal(&nowhere), StoreError::CannotOpen { .. }));
-    assert!(matches!(refusal(dir.path()), StoreError::CannotOpen { .. }));
-    open(&path);
-    let conn = Connection::open(&path).expect("opens");
-    let pragma = |name: &str| -> i64 {
-        conn.pragma_query_value(None, name, |row| row.get(0))
-            .expect("readable")
-    };
-    assert_eq!(pragma("application_id"), i64::from(APPLICATION_ID));
-    assert_eq!(pragma("user_version"), i64::from(SCHEMA_VERSION));
-    assert_eq!(pragma("auto_vacuum"), 2, "incremental");
 }
 
 #[test]
@@ -174,30 +81,6 @@ fn reading_never_writes() {
     };
     assert!(matches!(error, StoreError::ReadOnly { .. }), "{error}");
     assert_eq!(std::fs::read(&path).expect("there"), before);
-}
-
-#[test]
-fn a_truncated_file_is_damaged_not_a_panic() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
-    let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
-    for code in 0..50 {
-        writer.fault(&fault(code, T0_US)).expect("stored");
-    }
-    drop(writer);
-    store.close().expect("closed");
-    let bytes = std::fs::read(&path).expect("there");
-    for part in [10, 3, 2] {
-        std::fs::write(&path, &bytes[..bytes.len() / part]).expect("cut");
-        let found = Store::open_read_only(&path)
-            .and_then(|store| store.check())
-            .map(|report| report.problems.len());
-        assert!(
-            !matches!(found, Ok(0)),
-            "a part of 1/{part} passed for whole"
-        );
-    }
 }
 
 /// A file with enough in it to be cut and scratched.

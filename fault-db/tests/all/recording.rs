@@ -3,12 +3,13 @@
 
 use crate::checking::three_runs;
 use crate::common::{
-    Deeds, T0_US, Traces, end, fault, ids, measurement, open, realistic_trace, run_record, step,
+    Deeds, T0_US, Traces, end, fault, ids, measurement, open, realistic_trace, repair_of,
+    run_record, step,
 };
 use fault_db::limits::{MOST_NAME, MOST_TEXT};
 use fault_db::{
-    FaultFilter, FaultState, OpenOptions, RepairRecord, RunFilter, RunRecord, RunState, RunWriter,
-    StepRecord, Store, StoreError, Synchronous, Verdict,
+    FaultFilter, FaultState, OpenOptions, RunFilter, RunRecord, RunState, RunWriter, StepRecord,
+    Store, StoreError, Synchronous, Verdict,
 };
 use tempfile::tempdir;
 
@@ -259,12 +260,7 @@ fn occurrences_join_reopen_or_begin_a_fault() {
     );
 
     let id = first.fault;
-    let repair = RepairRecord {
-        part: "ATP-RX".to_owned(),
-        serial_old: Some("1".to_owned()),
-        serial_new: Some("2".to_owned()),
-        note: "swapped".to_owned(),
-    };
+    let repair = repair_of("ATP-RX", "1", "2", "swapped");
     assert_eq!(
         store.acknowledge(id, "kim", "", T0_US + 10).ok(),
         Some(FaultState::Acknowledged)
@@ -403,11 +399,7 @@ fn texts_longer_than_are_kept_are_refused_and_messages_are_cut() {
         "who says it",
     );
     refused(store.acknowledge(fault, "kim", &note, 1).map(drop), "note");
-    let repair = RepairRecord {
-        part: "relay".into(),
-        serial_old: Some(name),
-        ..RepairRecord::default()
-    };
+    let repair = repair_of("relay", &name, "", "");
     let repaired = store.record_repair(fault, &repair, "kim", 1);
     refused(repaired.map(drop), "serial number");
     let detail = store.fault(fault).expect("there");

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fault_db::{
-    FaultState, Id, OpenOptions, RecordingRecord, RepairRecord, RunRecord, RunWriter, Signed,
-    Signer, Statement, Store, Verdict,
+    FaultState, Id, OpenOptions, RecordingRecord, RunRecord, RunWriter, Signed, Signer, Statement,
+    Store, Verdict,
 };
 use fuzzing::draw;
 use rusqlite::Connection;
@@ -13,7 +13,8 @@ use rusqlite::types::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::common::{
-    T0_US, change, end, fault, ids, measurement, open, realistic_trace, rows, run_record, step,
+    T0_US, change, end, fault, ids, measurement, open, realistic_trace, repair_of, rows,
+    run_record, step,
 };
 
 fn signer(seed: u8) -> Arc<Signer> {
@@ -54,12 +55,7 @@ fn signed_run(store: &Store) -> Id {
     run.recording(&recording, &[trace]).expect("stored");
     let id = run.id();
     run.finish(&end(Verdict::Failed)).expect("finished");
-    let repair = RepairRecord {
-        part: "eb_relay".to_owned(),
-        serial_old: Some("SN-1".to_owned()),
-        serial_new: Some("SN-2".to_owned()),
-        note: "replaced".to_owned(),
-    };
+    let repair = repair_of("eb_relay", "SN-1", "SN-2", "replaced");
     (store.add_run_note(id, "kim", "brakes looked at", T0_US + 30)).expect("noted");
     (store.record_repair(seen.fault, &repair, "kim", T0_US + 60)).expect("repaired");
     (store.add_note(seen.fault, "kim", "relay was old", T0_US + 70)).expect("noted");

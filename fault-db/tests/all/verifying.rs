@@ -1,9 +1,9 @@
 //! The life of a fault: a repair is verified by a run that passed what saw the fault, by no other.
 
-use crate::common::{T0_US, end, fault, ids, open, run_record, step};
+use crate::common::{T0_US, end, fault, ids, open, repair_of, run_record, step};
 use fault_db::{
-    FaultState, Id, OpenOptions, RepairRecord, RunEnd, RunFilter, RunRecord, RunWriter, StepRecord,
-    Store, Verdict,
+    FaultState, Id, OpenOptions, RunEnd, RunFilter, RunRecord, RunWriter, StepRecord, Store,
+    Verdict,
 };
 use tempfile::TempDir;
 
@@ -38,12 +38,7 @@ impl Depot {
     }
 
     fn repair(&self, at_us: i64) {
-        let repair = RepairRecord {
-            part: "eb_relay".into(),
-            serial_old: Some("A-1".into()),
-            serial_new: Some("A-2".into()),
-            note: String::new(),
-        };
+        let repair = repair_of("eb_relay", "A-1", "A-2", "");
         let state = self.store.record_repair(self.fault, &repair, "kim", at_us);
         assert_eq!(state.expect("repaired"), FaultState::Repaired);
     }

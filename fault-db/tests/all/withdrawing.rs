@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::common::{Deeds, Random, T0_US, change, end, fault, ids, open, run_record, step};
+use crate::common::{
+    Deeds, Random, T0_US, change, end, fault, ids, open, repair_of, run_record, step,
+};
 use fault_db::{
     CauseRecord, FaultFilter, FaultRecord, FaultState, Id, OpenOptions, RepairRecord, RepairsOf,
     RunWriter, StatKey, StatQuery, Store, ToWithdraw, Verdict, Withdrawn,
@@ -50,12 +52,7 @@ fn run(store: &Store, at_us: i64, faults: &[(i64, &str)]) -> Vec<Id> {
 }
 
 fn repair(part: &str, serial: &str) -> RepairRecord {
-    RepairRecord {
-        part: part.to_owned(),
-        serial_old: None,
-        serial_new: Some(serial.to_owned()),
-        note: "교체".to_owned(),
-    }
+    repair_of(part, "", serial, "교체")
 }
 
 fn undo(store: &Store, fault: Id, at_us: i64) -> Withdrawn {

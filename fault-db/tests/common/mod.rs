@@ -1,6 +1,7 @@
 //! Records and realistic signals for tests and benches.
 #![allow(dead_code)] // each test file uses its part
 
+use std::borrow::Borrow;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -66,27 +67,10 @@ pub fn open(path: &Path) -> Store {
 }
 
 /// What people do in a test, which they may.
-pub trait Deeds {
-    fn put_state(&self, fault: Id, to: FaultState, who: &str, note: &str, at_us: i64);
-    fn put_acknowledged(&self, fault: Id, who: &str, note: &str, at_us: i64);
-    fn put_repair(&self, fault: Id, repair: &RepairRecord, who: &str, at_us: i64);
-    /// Of all faults of the case: the one that was named, and the rest.
-    fn put_case_repair(
-        &self,
-        fault: Id,
-        repair: &RepairRecord,
-        who: &str,
-        at_us: i64,
-    ) -> (ChangedFault, Vec<ChangedFault>);
-    fn put_diagnosed(&self, faults: &[Id], cause: &CauseRecord, at_us: i64) -> Vec<Id>;
-    fn put_note(&self, fault: Id, who: &str, note: &str, at_us: i64);
-    fn put_run_note(&self, run: Id, who: &str, text: &str, at_us: i64);
-}
-
-impl Deeds for Store {
+pub trait Deeds: Borrow<Store> {
     #[track_caller]
     fn put_state(&self, fault: Id, to: FaultState, who: &str, note: &str, at_us: i64) {
-        let done = self.set_state(fault, to, who, note, at_us);
+        let done = self.borrow().set_state(fault, to, who, note, at_us);
         done.expect("a state");
     }
 
@@ -97,10 +81,11 @@ impl Deeds for Store {
 
     #[track_caller]
     fn put_repair(&self, fault: Id, repair: &RepairRecord, who: &str, at_us: i64) {
-        let done = self.record_repair(fault, repair, who, at_us);
+        let done = self.borrow().record_repair(fault, repair, who, at_us);
         done.expect("a repair");
     }
 
+    /// Of all faults of the case: the one that was named, and the rest.
     #[track_caller]
     fn put_case_repair(
         &self,
@@ -109,28 +94,30 @@ impl Deeds for Store {
         who: &str,
         at_us: i64,
     ) -> (ChangedFault, Vec<ChangedFault>) {
-        let done = self.repair_case(fault, repair, who, at_us);
+        let done = self.borrow().repair_case(fault, repair, who, at_us);
         done.expect("a repair")
     }
 
     #[track_caller]
     fn put_diagnosed(&self, faults: &[Id], cause: &CauseRecord, at_us: i64) -> Vec<Id> {
-        let done = self.attribute_diagnosed(faults, cause, at_us);
+        let done = self.borrow().attribute_diagnosed(faults, cause, at_us);
         done.expect("attributed")
     }
 
     #[track_caller]
     fn put_note(&self, fault: Id, who: &str, note: &str, at_us: i64) {
-        let done = self.add_note(fault, who, note, at_us);
+        let done = self.borrow().add_note(fault, who, note, at_us);
         done.expect("a note");
     }
 
     #[track_caller]
     fn put_run_note(&self, run: Id, who: &str, text: &str, at_us: i64) {
-        let done = self.add_run_note(run, who, text, at_us);
+        let done = self.borrow().add_run_note(run, who, text, at_us);
         done.expect("a note");
     }
 }
+
+impl Deeds for Store {}
 
 /// A run that stores a trace.
 pub trait Traces {
@@ -231,6 +218,17 @@ pub fn fault(code: i64, at_us: i64) -> FaultRecord {
                 label: None,
             },
         ],
+    }
+}
+
+/// A repair of a part: its serial numbers before and after, and a note; what is empty is not said.
+pub fn repair_of(part: &str, old: &str, new: &str, note: &str) -> RepairRecord {
+    let serial = |text: &str| (!text.is_empty()).then(|| text.to_owned());
+    RepairRecord {
+        part: part.to_owned(),
+        serial_old: serial(old),
+        serial_new: serial(new),
+        note: note.to_owned(),
     }
 }
 

@@ -1,11 +1,11 @@
 //! Every question gets the same answer from a file and from the server it was synced with.
 
-use crate::common::Deeds;
+use crate::common::{Deeds, repair_of};
 use std::fmt::Debug;
 
 use fault_db::{
-    CauseRecord, FaultFilter, FaultState, QueryBounds, QueryLimit, RecordingRecord, RepairRecord,
-    RepairsOf, RunFilter, RunWriter, StatQuery, Store, StoreError, TrendQuery, Verdict,
+    CauseRecord, FaultFilter, FaultState, QueryBounds, QueryLimit, RecordingRecord, RepairsOf,
+    RunFilter, RunWriter, StatQuery, Store, StoreError, TrendQuery, Verdict,
 };
 
 use crate::common;
@@ -94,12 +94,7 @@ fn people(store: &Store, at_us: i64) {
         };
         let done = match (n % 3, fault.state) {
             (0, FaultState::Open) => {
-                let repair = RepairRecord {
-                    part: " EB_Relay ".to_owned(),
-                    serial_old: None,
-                    serial_new: Some(format!("SN-{n}")),
-                    note: "부품 교체함".to_owned(),
-                };
+                let repair = repair_of(" EB_Relay ", "", &format!("SN-{n}"), "부품 교체함");
                 store
                     .record_repair(fault.id, &repair, "lee", at_us + n)
                     .map(drop)

@@ -17,9 +17,9 @@ use std::sync::{Mutex, MutexGuard};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fault_db::{FaultState, OpenOptions, RepairRecord, Store, StoreError, SyncOptions};
+use fault_db::{FaultState, OpenOptions, Store, StoreError, SyncOptions};
 
-use crate::common::{self, Random};
+use crate::common::{self, Random, repair_of};
 use crate::laptop::{Laptop, connect, day, open_faults, record, system_now_us};
 use crate::private::{Cluster, NO_HURRY, name_of, shared};
 use compare::Same;
@@ -310,11 +310,7 @@ fn laptops_with_work(number: u64) -> Vec<Laptop> {
         (store.add_run_note(run, "kim", "brakes looked at", at_us)).expect("a note");
         let faults = open_faults(&store);
         (store.add_note(faults[1], "kim", "seen before", at_us)).expect("a note");
-        let repair = RepairRecord {
-            part: "eb_relay".to_owned(),
-            serial_new: Some(format!("SN-{n}")),
-            ..RepairRecord::default()
-        };
+        let repair = repair_of("eb_relay", "", &format!("SN-{n}"), "");
         let state = match n % 3 {
             0 => store.record_repair(faults[0], &repair, "lee", at_us),
             1 => store.acknowledge(faults[0], "kim", "on it", at_us),

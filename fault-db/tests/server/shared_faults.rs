@@ -1,7 +1,7 @@
 //! Faults that several laptops saw: what each of them and the server make of all that was done about them.
 
-use crate::common::Deeds;
-use fault_db::{CauseRecord, FaultFilter, FaultState, RepairRecord, Store, ToWithdraw};
+use crate::common::{Deeds, repair_of};
+use fault_db::{CauseRecord, FaultFilter, FaultState, Store, ToWithdraw};
 
 use crate::laptop::{Laptop, connect, day, only_fault, open_faults, read_only};
 use crate::private::shared;
@@ -20,12 +20,7 @@ fn two_laptops_that_saw_one_fault_share_what_was_done_about_it() {
     assert_eq!(shared_fault.fault.occurrences, 2);
     assert_eq!(shared_fault.fault.first_at_us, day(0) + 1_000_000);
 
-    let repair = RepairRecord {
-        part: "EB_relay".to_owned(),
-        serial_old: Some("SN-1".to_owned()),
-        serial_new: Some("SN-2".to_owned()),
-        note: "교체함".to_owned(),
-    };
+    let repair = repair_of("EB_relay", "SN-1", "SN-2", "교체함");
     let store = two.open();
     let local = only_fault(&store).fault.id;
     store.put_repair(local, &repair, "lee", day(2));
@@ -69,11 +64,7 @@ fn a_withdrawal_reaches_server_and_laptops() {
     let (one, two) = (Laptop::new("one"), Laptop::new("two"));
     one.run("U-1", day(0), &[101], false);
     two.run("U-1", day(1), &[101], false);
-    let repair = RepairRecord {
-        part: "EB_relay".to_owned(),
-        serial_new: Some("SN-2".to_owned()),
-        ..RepairRecord::default()
-    };
+    let repair = repair_of("EB_relay", "", "SN-2", "");
     one.sync(&address);
     two.sync(&address);
     one.sync(&address);
@@ -154,10 +145,7 @@ fn a_case_is_one_on_laptops_and_server() {
     let alone = fault_of(&desk, 103).id;
     desk.set_cause(alone, &from(""), "park", day(2))
         .expect("said");
-    let repair = RepairRecord {
-        part: "eb_relay".to_owned(),
-        ..RepairRecord::default()
-    };
+    let repair = repair_of("eb_relay", "", "", "");
     let settled = desk.repair_case(fault_of(&desk, 101).id, &repair, "lee", day(3));
     assert_eq!(settled.expect("repaired").1.len(), 1);
     for laptop in [&one, &two] {
@@ -398,48 +386,6 @@ fn a_received_closing_event_knows_no_more_occurrences_than_its_new_file() {
     told.open().merge_from(&away.open()).expect("merged");
     assert_eq!(only_fault(&told.open()).fault.state, FaultState::Open);
     told.is_whole();
-}
-
-/// Who did more does not win over who knew nothing of it: both are kept, and shown everywhere.
-#[test]
-fn the_number_of_events_does_not_decide_a_conflict() {
-    let address = shared().database();
-    let (one, two) = (Laptop::new("one"), Laptop::new("two"));
-    for laptop in [&one, &two, &one] {
-        if open_faults(&laptop.open()).is_empty() {
-            laptop.run("U-1", day(0), &[101], false);
-        }
-        laptop.sync(&address);
-    }
-    for (laptop, states) in [
-        (&one, &[FaultState::Acknowledged, FaultState::Closed][..]),
-        (&two, &[FaultState::Repaired]),
-    ] {
-        let store = laptop.open();
-        let fault = only_fault(&store).fault.id;
-        for state in states {
-            let set = store.set_state(fault, *state, "", "", day(1));
-            set.expect("a state");
-        }
-    }
-    for laptop in [&one, &two, &one] {
-        laptop.sync(&address);
-    }
-    for store in [
-        read_only(&address).expect("a server"),
-        one.open(),
-        two.open(),
-    ] {
-        assert_eq!(only_fault(&store).fault.state, FaultState::Repaired);
-        let conflicts = store.conflicts().expect("looked");
-        assert_eq!(conflicts.len(), 1);
-        let rivals: Vec<_> = conflicts[0]
-            .rivals
-            .iter()
-            .map(|rival| rival.state)
-            .collect();
-        assert!(rivals.contains(&FaultState::Closed), "{rivals:?}");
-    }
 }
 
 /// Goal: a laptop hears all that was ever said about its fault, also if that becomes one with an older one

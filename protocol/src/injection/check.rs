@@ -142,6 +142,14 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::HeadControlRelay
         | Place::MainReservoir => &[STUCK_ON, STUCK_OFF],
         Place::Tcms => &[DEAD, STUCK_ON],
+        Place::BenchLevel => &[DEAD, ("gain", 0.0, 10.0)],
+        // Hz.
+        Place::BenchCarrier => &[("offset", -1000.0, 1000.0)],
+        Place::BenchRate => &[("offset", -100.0, 100.0)],
+        Place::BenchSpeed => &[GAIN],
+        Place::WireSpeed1 | Place::BenchMarker | Place::BenchTwc => &[DEAD],
+        Place::WireDoors | Place::WireHcr | Place::BenchDoors => &[STUCK_OFF],
+        Place::BenchEb | Place::BenchFsb => &[STUCK_ON, STUCK_OFF],
     }
 }
 

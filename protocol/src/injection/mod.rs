@@ -206,10 +206,34 @@ pub enum Place {
     TcmsCabs,
     /// Pressure switch of the main reservoir.
     MainReservoir,
+    /// Level of the bench's code generator.
+    BenchLevel,
+    /// Carrier of the bench's code generator.
+    BenchCarrier,
+    /// Code rate of the bench's code generator.
+    BenchRate,
+    /// Pulses of the bench's speed generator, for both speed sensors.
+    BenchSpeed,
+    /// Wire from the bench's speed generator to the input of speed sensor 1.
+    WireSpeed1,
+    /// Pulses of the bench's marker generator.
+    BenchMarker,
+    /// The bench's TWC loop, sending side.
+    BenchTwc,
+    /// Wires from the bench to the unit's door inputs.
+    WireDoors,
+    /// Wire from the bench to the unit's input of the head control relay.
+    WireHcr,
+    /// The bench's input that reads the EB relay's contact.
+    BenchEb,
+    /// The bench's input that reads the full service brake output.
+    BenchFsb,
+    /// The bench's inputs that read the door enables.
+    BenchDoors,
 }
 
 impl Place {
-    /// On the train around the unit, where the bench applies it; else in the unit.
+    /// On the train around the unit.
     pub const fn on_train(self) -> bool {
         matches!(
             self,
@@ -226,6 +250,30 @@ impl Place {
                 | Self::TcmsCabs
                 | Self::MainReservoir
         )
+    }
+
+    /// In the bench or its wires to the unit: the unit is not at fault.
+    pub const fn on_bench(self) -> bool {
+        matches!(
+            self,
+            Self::BenchLevel
+                | Self::BenchCarrier
+                | Self::BenchRate
+                | Self::BenchSpeed
+                | Self::WireSpeed1
+                | Self::BenchMarker
+                | Self::BenchTwc
+                | Self::WireDoors
+                | Self::WireHcr
+                | Self::BenchEb
+                | Self::BenchFsb
+                | Self::BenchDoors
+        )
+    }
+
+    /// In the unit, which applies the fault mode itself; the bench applies all others.
+    pub const fn in_unit(self) -> bool {
+        !self.on_train() && !self.on_bench()
     }
 
     /// Data the unit has stored: wrong from power-up on, or not at all.

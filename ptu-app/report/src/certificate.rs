@@ -5,6 +5,7 @@ use fault_db::{RunDetail, Signed, Signer, canonical_json};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::departure::Departure;
 use ptu_runs::data::sha256;
 
 /// What stands before the certificate in a page, and after it.
@@ -37,6 +38,9 @@ pub struct SheetStatement {
     pub kind: String,
     #[serde(default)]
     pub key: String,
+    /// What the run is worth as a departure test, if it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub departure: Option<Departure>,
 }
 
 /// The certificate of a sheet as it stands in the page.
@@ -105,6 +109,7 @@ pub(crate) fn attach(
                 .as_ref()
                 .map_or_else(String::new, |seal| seal.digest.clone()),
             at_us,
+            departure: Departure::of(run),
             ..SheetStatement::default()
         };
         serde_json::to_value(Signed::new(signer, &statement)).unwrap_or_default()

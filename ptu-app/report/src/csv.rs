@@ -6,11 +6,13 @@ use std::fmt::Write;
 use fault_db::{MeasurementRecord, RunDetail, StepRecord};
 use protocol::display_text;
 
+use crate::departure::Departure;
+use crate::words::Language;
 use ptu_runs::clock::rfc3339;
 use ptu_runs::stored::kind_of;
 
 /// Names of the columns.
-const COLUMNS: [&str; 19] = [
+const COLUMNS: [&str; 21] = [
     "run",
     "unit_serial",
     "started_at",
@@ -30,6 +32,8 @@ const COLUMNS: [&str; 19] = [
     "limit_source",
     "turn",
     "turns",
+    "departure_valid_until",
+    "departure_not_valid",
 ];
 
 /// What a file of a table begins with: without it, spreadsheets read its UTF-8 in the code page of the system.
@@ -44,10 +48,11 @@ pub enum Cell {
 
 pub fn csv(run: &RunDetail) -> String {
     let mut text = format!("{MARK}{}\n", COLUMNS.join(","));
+    let departure = Departure::of(run);
     for step in &run.steps {
         let none = step.measurements.is_empty().then_some(None);
         for measured in step.measurements.iter().map(Some).chain(none) {
-            let cells = cells(run, step, measured);
+            let cells = cells(run, departure.as_ref(), step, measured);
             // Writing to a text cannot fail.
             let _ = writeln!(text, "{}", cells.map(Cell::written).join(","));
         }
@@ -55,11 +60,19 @@ pub fn csv(run: &RunDetail) -> String {
     text
 }
 
-fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord>) -> [Cell; 19] {
+fn cells(
+    run: &RunDetail,
+    departure: Option<&Departure>,
+    step: &StepRecord,
+    measured: Option<&MeasurementRecord>,
+) -> [Cell; 21] {
     let text = |text: &str| Cell::Text(text.to_owned());
     let number = |value: Option<f64>| {
         Cell::Number(value.map_or_else(String::new, |value| value.to_string()))
     };
+    let until = departure.filter(|departure| departure.why_not.is_empty());
+    let why_not = departure.map(|departure| departure.why_not(Language::English.words()));
+    let why_not = why_not.unwrap_or_default();
     let word = |word: fn(&MeasurementRecord) -> &str| text(measured.map(word).unwrap_or_default());
     [
         Cell::Text(run.run.id.to_string()),
@@ -86,6 +99,8 @@ fn cells(run: &RunDetail, step: &StepRecord, measured: Option<&MeasurementRecord
         ),
         Cell::Number(step.turn.to_string()),
         Cell::Number(step.turns.to_string()),
+        Cell::Text(until.map_or_else(String::new, |good| rfc3339(good.until_us))),
+        Cell::Text(why_not.join("; ")),
     ]
 }
 

@@ -10,6 +10,7 @@ use protocol::display_text;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use crate::departure::Departure;
 use crate::trace_notes::note_json;
 use ptu_runs::clock::rfc3339;
 use ptu_runs::coverage::{Coverage, counts_of};
@@ -33,6 +34,7 @@ pub fn run_json(run: &RunDetail) -> Value {
             "repair": fault.repair,
         })).collect::<Vec<_>>(),
         "notes": run.notes.iter().map(note_json).collect::<Vec<_>>(),
+        "departure": Departure::of(run).map(|departure| departure.json()),
         "seal": run.seal,
         "signature": run.signature.as_ref().map(signature_json),
         "evidence": evidence.as_ref().map(evidence_json),

@@ -9,7 +9,9 @@ use protocol::display_text;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestRerun, TestSuite};
 
 use crate::coverage::{count_text, coverage_text};
+use crate::departure::Departure;
 use crate::words::Language;
+use ptu_runs::clock::rfc3339;
 use ptu_runs::coverage::Coverage;
 use ptu_runs::failure::{Failure, FileTrouble, Why};
 use ptu_runs::stored::{WHOLE_RUN, by_procedure, kind_of};
@@ -25,11 +27,21 @@ pub fn junit(run: &RunDetail) -> Result<String, Failure> {
     let mut report = Report::new(format!("ptu run {}: {counted}", run.run.id));
     let began_us = run.run.started_at_us;
     report.set_timestamp(utc(began_us));
+    let departure = Departure::of(run);
     for (procedure, steps) in by_procedure(&run.steps) {
         let mut suite = TestSuite::new(&*display_text::line(procedure));
         suite.set_timestamp(utc(began_us + steps[0].started_bench_us));
         let all_us = steps.iter().map(|step| step.bench_time_us.max(0) as u64);
         suite.set_time(Duration::from_micros(all_us.sum()));
+        if let Some(departure) = &departure {
+            let until = rfc3339(departure.until_us);
+            let why_not = departure.why_not(words).join("; ");
+            let said = match why_not.is_empty() {
+                true => ("departure_valid_until", &*until),
+                false => ("departure_not_valid", &*why_not),
+            };
+            suite.add_property(said);
+        }
         for results in by_step(steps) {
             suite.add_test_case(case(&results, began_us));
         }

@@ -14,6 +14,7 @@ pub mod care;
 mod certificate;
 mod coverage;
 pub mod csv;
+mod departure;
 pub mod diagnosis;
 pub mod distances;
 pub mod drive;
@@ -45,6 +46,7 @@ pub mod words;
 
 pub use certificate::{SheetCertificate, SheetStatement, has_certificate, read_certificate};
 pub use coverage::{count_short, count_text, coverage_text};
+pub use departure::Departure;
 pub use json::{
     FAULT_KEYS, fault_json, json_safe, json_text, run_json, run_summary_json, signature_json,
 };

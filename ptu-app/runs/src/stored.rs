@@ -4,33 +4,13 @@
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Findings, Outside, OutsideStep, Procedure, ResultKind, Verdict};
-use fault_db::{FaultRecord, RunDetail, StepKind, StepRecord};
+use fault_db::{FaultRecord, StepKind, StepRecord};
 use protocol::lru;
 
-use crate::coverage::counts_of;
-use crate::run::{Evidence, FaultSeen};
+use crate::run::FaultSeen;
 
-/// Folder of the departure tests, and how long a unit that passed one is good for service, µs: 24 hours, as the operating
-/// rules of a railway have it (CSS 551).
-const DEPARTURE: &str = "departure/";
-const VALID_US: i64 = 86_400_000_000;
-
-/// Until when a run holds as a departure test, µs: one of these procedures alone, whole, on a unit without injected faults,
-/// that passed.
-pub fn valid_until_us(run: &RunDetail) -> Option<i64> {
-    let injected = run.run.injected.as_deref().unwrap_or_default();
-    let is_departure = !run.steps.is_empty()
-        && (run.steps.iter()).all(|step| step.procedure.starts_with(DEPARTURE));
-    let has_passed = run.run.verdict == Some(fault_db::Verdict::Passed);
-    let counts = counts_of(&run.run);
-    let evidence = run.run.evidence.as_deref().and_then(Evidence::of);
-    let is_whole = counts.passed == counts.planned
-        && counts.outside == 0
-        && run.run.continues.is_none()
-        && evidence.is_some_and(|evidence| !evidence.is_part);
-    let is_good = is_departure && has_passed && is_whole && injected.is_empty();
-    (run.run.finished_at_us.filter(|_| is_good)).map(|at_us| at_us + VALID_US)
-}
+/// Folder of the departure tests.
+pub const DEPARTURE: &str = "departure/";
 
 /// A verdict as the database stores it.
 pub fn stored(verdict: Verdict) -> fault_db::Verdict {

@@ -35,6 +35,8 @@ const FAILS: f64 = 0.5;
 pub(crate) struct Written {
     /// Parts on the way of every signal that has a way.
     everywhere: Vec<LruId>,
+    /// Procedures in which the bench has no part.
+    without_bench: Vec<String>,
     /// Parts beside them in procedures that a laptop runs.
     on_the_train: Vec<LruId>,
     ways: Vec<WrittenWay>,
@@ -124,8 +126,11 @@ impl Structure {
     /// The file is missing or wrong.
     pub fn load(directory: &ScriptsDirectory, catalogue: &FaultCatalogue) -> Result<Self, Failure> {
         let parts: Vec<_> = catalogue.lrus.iter().map(|part| &part.id).collect();
-        Self::from_toml(&directory.text(FILE)?, &parts)
-            .map_err(|error| Failure::usage(FileTrouble::wrong(directory.shown(FILE), error)))
+        let mut structure = Self::from_toml(&directory.text(FILE)?, &parts)
+            .map_err(|error| Failure::usage(FileTrouble::wrong(directory.shown(FILE), error)))?;
+        let of_bench = catalogue.lrus.iter().filter(|part| part.of_bench);
+        structure.relations.of_bench = of_bench.map(|part| part.id.clone()).collect();
+        Ok(structure)
     }
 
     /// Reads and checks the file; `parts` are those that can be replaced.
@@ -163,6 +168,11 @@ impl Structure {
         if let Some(signal) = of_unit.find(|signal| !steps.contains_key(signal)) {
             return Err(format!("the unit's signal {} has no way", signal.name()));
         }
+        let makers = steps.iter().map(|(signal, step)| {
+            let parts = step.parts.iter().cloned().collect();
+            (signal.name().to_owned(), parts)
+        });
+        let makers = makers.collect();
         let of_signals = steps
             .iter()
             .map(|(signal, step)| (*signal, upstream(step, &steps, &written.everywhere)));
@@ -179,6 +189,9 @@ impl Structure {
             relations: Relations {
                 groups: written.groups.into_iter().map(Group::from).collect(),
                 shared: written.shared.into_iter().map(Shared::from).collect(),
+                of_bench: BTreeSet::new(),
+                without_bench: written.without_bench,
+                makers,
             },
             known_off_way: written.off_way,
         })

@@ -100,7 +100,7 @@ impl CatalogArguments {
             json!({
                 "id": fault.id, "part": fault.lru, "mode": fault.mode,
                 "severity": fault.severity, "weight": fault.weight, "unsafe": fault.unsafe_,
-                "on": if fault.place.on_train() { "train" } else { "unit" }, "car": fault.car,
+                "on": on(fault.place), "car": fault.car,
                 "kind": fault.kind().word(), "out_of_reach": fault.out_of_reach.map(OutOfReach::word),
             })
         };
@@ -319,4 +319,13 @@ fn clauses_text(matrix: &clauses::Matrix) -> String {
         matrix.steps
     );
     text
+}
+
+/// Where a fault mode sits.
+fn on(place: protocol::injection::Place) -> &'static str {
+    match () {
+        () if place.on_train() => "train",
+        () if place.on_bench() => "bench",
+        () => "unit",
+    }
 }

@@ -212,11 +212,13 @@ impl RunArguments {
             resume::tell_changes(earlier, &procedures, &setup);
         }
         if self.check {
-            return check::show(&procedures, directory.check_data()?);
+            let fitted = setup.places.as_ref();
+            let fitted = fitted.map(|places| (&**places, words.fitted(places, procedures.clone())));
+            return check::show(&procedures, directory.check_data()?, fitted);
         }
         let mut procedures = self.asked_for(procedures)?;
         if let Some(places) = &setup.places {
-            procedures = places.fit(procedures, &|note| words.told(&note));
+            procedures = words.fitted(places, procedures);
             places
                 .by_hand()
                 .for_each(|note| stdio::note(&words.told(&note)));
@@ -260,7 +262,9 @@ impl RunArguments {
         if let Some(serial) = &self.serial_no {
             check_serial(serial)?;
         }
-        BenchChoice {
+        let drives = !self.check && !self.list;
+        let bench = self.bench.as_ref().filter(|_| drives);
+        let mut setup = BenchChoice {
             endpoint: unit.to_string(),
             harness: self.harness,
             line: self.line().to_owned(),
@@ -277,10 +281,15 @@ impl RunArguments {
             signals: self.signals.clone(),
             realtime: self.realtime,
             slower: self.slower,
-            places: self.bench.clone().unwrap_or_default(),
+            places: bench.cloned().unwrap_or_default(),
         }
         .setup(directory)
-        .and_then(calibrated)
+        .and_then(calibrated)?;
+        // It is only looked at: any unit will do.
+        if let Some(bench) = self.bench.as_ref().filter(|_| !drives) {
+            setup.places = Some(Arc::new(directory.bench_places(bench)?));
+        }
+        Ok(setup)
     }
 
     /// It drives nothing, and lists what would be run.
@@ -346,6 +355,9 @@ impl RunArguments {
         let (console, streamed) = console.finish(outcome);
         console.finish();
         let (store, outcome) = result?;
+        if let Some(why) = &outcome.prevented {
+            tell(&Failure::bench(why.clone()));
+        }
         if let Some(lost) = &outcome.lost {
             tell(&Failure::bench(lost.clone()));
         }

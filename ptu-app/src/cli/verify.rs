@@ -12,12 +12,11 @@ use serde_json::json;
 use super::key::KeysOption;
 use super::{Database, Json, answered};
 use findings::{Findings, dated_ahead};
-use ptu_report::has_certificate;
 use ptu_report::words::{Words, fill};
+use ptu_report::{Departure, has_certificate};
 use ptu_runs::clock::{self, rfc3339};
 use ptu_runs::failure::{Asked, Exit, Failure, FileTrouble, Why};
 use ptu_runs::keys::KeyList;
-use ptu_runs::stored::valid_until_us;
 
 /// Longest sheet or certificate that is read, bytes.
 const LONGEST: u64 = 64 << 20;
@@ -33,8 +32,8 @@ const DATABASE: &[u8] = b"SQLite format 3\0";
 ///   ptu verify ptu:01a2…/220d…             what a scanner reads of a printed sheet
 ///   ptu verify history.db                  all of a file
 ///
-/// Exit codes: 0 signed by a key that is trusted, and unchanged, 1 changed, not signed, or signed by a key that is not
-/// trusted, 2 no such run or file, 3 it cannot be read.
+/// Exit codes: 0 signed by a key that is trusted, and unchanged, 1 changed, not signed, signed by a key that is not
+/// trusted, or a departure test that is not valid, 2 no such run or file, 3 it cannot be read.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct VerifyArguments {
@@ -42,6 +41,9 @@ pub struct VerifyArguments {
     /// a .ptucert file
     #[arg(value_name = "RUN|FILE")]
     what: String,
+    /// Unit whose departure test it should be, by its serial number
+    #[arg(long, value_name = "SERIAL")]
+    unit: Option<String>,
     #[command(flatten)]
     keys: KeysOption,
     #[command(flatten)]
@@ -56,14 +58,38 @@ impl VerifyArguments {
         let words = self.json.words();
         let keys = self.keys.read()?;
         let path = Path::new(&self.what);
-        let found = match path.is_file() {
+        let mut found = match path.is_file() {
             true => self.file(path, &keys, words)?,
             false => self.of_run(&keys, words)?,
         };
+        if let Some(departure) = found.departure.take() {
+            self.judge(departure, &mut found)?;
+        }
         let good = found.changes.is_empty() && found.doubts.is_empty();
         let told = self.json.answer(|| found.json(), || found.text());
         let exit = if good { Exit::Passed } else { Exit::Failed };
         answered(told, exit)
+    }
+
+    /// Whether a departure test holds now, for the unit that is asked for, by all that is known here.
+    fn judge(&self, departure: Departure, found: &mut Findings) -> Result<(), Failure> {
+        let mut departure = departure.now();
+        if let Some(asked) = self.unit.as_ref().filter(|asked| **asked != departure.unit) {
+            let unit = departure.unit.clone();
+            let of = [("unit", &unit as _), ("asked", asked as _)];
+            let said = |words: &Words| fill(words.verify.other_unit, &of);
+            departure.add(said);
+        }
+        if let Ok(store) = self.database.open_read_only() {
+            departure.held_against(&store)?;
+        }
+        if found.signatures.is_empty() {
+            departure.add(|words| words.verify.departure_unsigned.into());
+        } else if !(found.changes.is_empty() && found.doubts.is_empty()) {
+            departure.add(|words| words.verify.departure_unverified.into());
+        }
+        found.say_departure(departure);
+        Ok(())
     }
 
     fn of_run(&self, keys: &KeyList, words: &'static Words) -> Result<Findings, Failure> {
@@ -87,13 +113,7 @@ impl VerifyArguments {
             ..Findings::of("run", words)
         };
         found.take_run(seen, keys);
-        if let Some(at_us) = valid_until_us(&store.run(id)?) {
-            let at: [(&str, &dyn std::fmt::Display); 1] = [("at", &clock::local_zoned(at_us))];
-            match clock::now_us() <= at_us {
-                true => (found.remarks).push(fill(words.verify.valid_until, &at)),
-                false => (found.doubts).push(fill(words.verify.was_valid_until, &at)),
-            }
-        }
+        found.departure = Departure::of(&store.run(id)?);
         match is_same {
             Some(true) => (found.remarks).push(words.verify.of_sheet.into()),
             Some(false) => (found.changes).push(words.verify.not_of_sheet.into()),

@@ -1,5 +1,6 @@
 """The wiring of a bench: what relays and generators do becomes the unit's inputs, and its outputs become contacts and
-voltages. `bridge.py UNIT_PORT GENERATOR PULSES METER MODULE`: prints the port at which the tester finds the unit.
+voltages. `bridge.py UNIT_PORT GENERATOR PULSES METER MODULE [SUPPLY]`: prints the port at which the tester finds the unit,
+which with a supply says nothing below 70 V.
 
 Written from protocol/WIRE.md, without this project's code. What the tester's frames say of a wired input is not passed on, and
 counted, as is what the unit's frames say of a wired output."""
@@ -11,7 +12,7 @@ import threading
 import time
 import zlib
 
-UNIT, GENERATOR, PULSES, METER, MODULE = map(int, sys.argv[1:6])
+UNIT, GENERATOR, PULSES, METER, MODULE, *SUPPLY = map(int, sys.argv[1:])
 IO = 2  # channel
 INPUT, OUTPUT = 0x01, 0x81
 INPUTS = ">HHHHHHHBBBHHBb"
@@ -29,6 +30,7 @@ class Wires:
     hz = backward = (0.0, 0.0)
     turned = [0.0, 0.0]
     outputs = limit = speed = 0
+    supplied = not SUPPLY
 
 
 def connect(port):
@@ -64,6 +66,7 @@ def exactly(stream, count):
 def wire():
     (generator, _), (pulses, _), (_, show) = map(instrument, (GENERATOR, PULSES, METER))
     module = connect(MODULE)
+    supply = [instrument(port)[0] for port in SUPPLY]
 
     def modbus(*question):
         module.sendall(bytes([0, 1, 0, 0, 0, len(question) + 1, 1, *question]))
@@ -78,6 +81,7 @@ def wire():
         Wires.hz = pulses("PULS1:FREQ?"), pulses("PULS2:FREQ?")
         Wires.backward = pulses("PULS1:DIR?"), pulses("PULS2:DIR?")
         modbus(15, 0, CONTACTS, 0, 7, 1, Wires.outputs & WIRED_OUTPUTS)
+        Wires.supplied = all(ask("OUTP?") * ask("VOLT?") > 70 for ask in supply)
         # 10 km/h a volt.
         show("SHOW1 %.4f" % (Wires.limit * 0.0036))
         show("SHOW2 %.4f" % (Wires.speed * 0.0036))
@@ -119,7 +123,7 @@ def carry(source, sink, code, change):
         if not read:
             break
         *frames, pending = (pending + read).split(b"\x7e")
-        for frame in filter(None, frames):
+        for frame in filter(None, frames if Wires.supplied else []):
             body = frame.replace(b"\x7d\x5e", b"\x7e").replace(b"\x7d\x5d", b"\x7d")
             if len(body) > 14 and (body[1], body[10]) == (IO, code):
                 body = body[:10] + change(body[10:-4])

@@ -1,4 +1,5 @@
-"""Instruments that pyvisa-sim plays, each at a TCP port that sinstruments serves: `instruments.py FILE NAME=PORT ...`."""
+"""Instruments that pyvisa-sim plays, each at a TCP port that sinstruments serves: or at a serial line of
+its own: `instruments.py FILE NAME=PORT|LINK ...`."""
 import sys
 
 from pyvisa_sim.parser import get_devices
@@ -25,9 +26,17 @@ class Instrument(BaseDevice):
 FILE, *PLACES = sys.argv[1:]
 DEVICES = get_devices(FILE, False)
 places = [place.split("=") for place in PLACES]
+
+
+def transport(place):
+    if place.isdigit():
+        return {"type": "tcp", "url": ["127.0.0.1", int(place)]}
+    return {"type": "serial", "url": place}
+
+
 Server(
     devices=[
-        {"class": "Instrument", "package": "__main__", "name": name, "transports": [{"type": "tcp", "url": ["127.0.0.1", int(port)]}]}
-        for name, port in places
+        {"class": "Instrument", "package": "__main__", "name": name, "transports": [transport(one) for named, one in places if named == name]}
+        for name in dict(places)
     ]
 ).serve_forever()

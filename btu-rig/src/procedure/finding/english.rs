@@ -194,6 +194,7 @@ impl Display for Finding {
                     }
                 }
             }
+            Self::LinkLost { why } if why.is_of_the_bench() => write!(f, "{why}"),
             Self::LinkLost { why } => write!(f, "link to the unit: {why}"),
             Self::StoodStill { by, attempt } => {
                 write!(
@@ -242,8 +243,17 @@ impl Display for Finding {
             Self::NoStepToRun => f.write_str("no step to run"),
             Self::NoStepRun => f.write_str("no step was run"),
             Self::ProgramFailed => f.write_str("the program failed in this run"),
-            Self::LinkLostAt { run, of, left } => {
-                write!(f, "link lost at step {run} of {of}; {left} not run")
+            Self::LinkLostAt {
+                run,
+                of,
+                left,
+                instrument,
+            } => {
+                match instrument {
+                    Some(name) => write!(f, "instrument {name} of the bench failed")?,
+                    None => f.write_str("link lost")?,
+                }
+                write!(f, " at step {run} of {of}; {left} not run")
             }
             Self::NotAcceptance { run, of } => {
                 write!(f, "not an acceptance: {run} of {of} steps run, all passed")

@@ -1,14 +1,14 @@
 //! Faults of the train act at their place from their onset on, and nothing on the bench removes them.
 
 use protocol::injection::{FaultCatalogue, FaultMode, Occurrence};
-use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch};
+use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch, Outputs};
 use protocol::signal::Signal;
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, Speed};
 
 use super::{FakeUnit, bench};
 use crate::rig::train_side::TrainFaults;
 use crate::rig::{Bench, Misplaced, check_places};
-use crate::stimulus::{Stimulus, TrainSwitch};
+use crate::stimulus::{Stimulus, TrainSwitch, WaysideCondition};
 use crate::tcms::EbSources;
 use crate::train::{CarSet, Equipment, TrainData};
 
@@ -294,4 +294,70 @@ fn a_train_without_the_place_is_refused() {
         Misplaced::PointMass { fault }
     );
     assert_eq!(check_places(&[mode("door_contact.open")], &ideal), Ok(()));
+}
+
+/// What a bench sent, what it read of the unit's contacts, and what it recorded of what was asked for.
+fn played(fault: Option<FaultMode>) -> (Vec<u8>, Vec<Option<f64>>, Vec<Option<f64>>) {
+    let mut bench = bench(FakeUnit::default());
+    bench.apply(Stimulus::Wayside(WaysideCondition::Good));
+    bench.apply(Stimulus::Hcr { on: true });
+    bench.apply(Stimulus::Code {
+        carrier_hz: 3_000.0,
+        rate_hz: 15.0,
+        level_mv: 500.0,
+    });
+    bench.apply(Stimulus::Speed {
+        to: Speed::from_kmh(30.0),
+        accel_mps2: 2.0,
+    });
+    let modes: Vec<_> = fault.into_iter().collect();
+    bench.rig_mut().inject(&modes, Instant::ZERO);
+    let all = [Outputs::EB_RELAY, Outputs::FSB, Outputs::DOOR_ENABLE_LEFT];
+    let (mut read, mut asked) = (Vec::new(), Vec::new());
+    for outputs in [Outputs::empty(), all.into_iter().collect()] {
+        bench.link_mut().outputs = outputs;
+        bench.apply(Stimulus::Marker { psm: 1 });
+        bench.run_ms(1_000);
+        let sample = bench.rig().sample();
+        let values = |signals: &[Signal]| {
+            signals
+                .iter()
+                .map(|signal| sample.get(*signal))
+                .collect::<Vec<_>>()
+        };
+        read.extend(values(&[Signal::Eb, Signal::Fsb, Signal::DoorEnableLeft]));
+        asked.extend(values(&[
+            Signal::CarrierHz,
+            Signal::CodeRateHz,
+            Signal::LevelMv,
+            Signal::TrainSpeed,
+            Signal::MarkerCoil,
+            Signal::Wayside,
+            Signal::Doors,
+            Signal::Hcr,
+        ]));
+    }
+    (std::mem::take(&mut bench.link_mut().all_bytes), read, asked)
+}
+
+/// Goal: a fault of the bench acts, and the bench does not know of it. Method: each mode of the catalogue at each of its
+/// levels against a sound bench: what is sent or what is read differs, what was asked for is recorded alike.
+#[test]
+fn a_fault_of_the_bench_changes_what_is_sent_or_read_and_not_what_is_recorded_of_it() {
+    let sound = played(None);
+    assert_eq!(sound, played(None));
+    let catalogue = catalogue();
+    let of_bench = catalogue.faults.iter().filter(|mode| mode.place.on_bench());
+    let levels = of_bench.flat_map(|mode| (0..).map_while(|level| mode.at_level(level)));
+    let levels: Vec<_> = levels.collect();
+    assert!(levels.len() >= 20);
+    for mode in levels {
+        let (id, effect) = (mode.id.clone(), mode.effect);
+        let faulty = played(Some(mode));
+        assert!(
+            (&faulty.0, &faulty.1) != (&sound.0, &sound.1),
+            "{id} {effect:?}"
+        );
+        assert_eq!(faulty.2, sound.2, "{id} {effect:?}");
+    }
 }

@@ -1,6 +1,7 @@
 //! The train around the unit: wheels and tachometers, cab desk and doors, TCMS's end of its link, and what is
-//! broken in it.
+//! broken in it or in the bench.
 
+mod bench_faults;
 mod cab_desk;
 mod coils;
 mod door_gear;
@@ -11,6 +12,7 @@ mod train_faults;
 mod true_motion;
 mod wheel;
 
+pub use bench_faults::Wires;
 pub use cab_desk::CabDesk;
 pub use coils::{Coils, InCoils};
 pub use door_gear::DoorGear;

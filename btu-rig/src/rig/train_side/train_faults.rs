@@ -1,5 +1,4 @@
-//! Faults of the train and its wiring, each at its place: equipment of cars, the cab's contacts, what
-//! TCMS sends.
+//! Faults around the unit, each at its place: equipment of cars, the cab's contacts, what TCMS sends, the bench itself.
 
 use protocol::injection::{Effect, FaultMode, OccurrenceState, Place};
 use protocol::{Duration, Instant, Random, Speed};
@@ -7,6 +6,8 @@ use thiserror::Error;
 
 use crate::stimulus::TcmsCondition;
 use crate::train::{CarSet, EquipmentFaults, Role, TrainData};
+
+use super::bench_faults::BenchFaults;
 
 /// What is wrong with desk and train lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,7 +31,7 @@ const FAULTS: u64 = 0xFA01_75ED;
 /// Voltage of a broken potentiometer, V: its supply or nothing.
 const SUPPLY_V: f64 = 10.0;
 
-/// All faults of the train that act.
+/// All faults around the unit that act.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrainFaults {
     /// Equipment of cars.
@@ -41,9 +42,11 @@ pub struct TrainFaults {
     pub tcms: Option<TcmsCondition>,
     /// TCMS does not change the cabs.
     pub cabs_stay: bool,
+    /// The bench and its wires to the unit.
+    pub bench: BenchFaults,
 }
 
-/// Fault modes that are on the train, and how much of each acts.
+/// Fault modes around the unit, and how much of each acts.
 ///
 /// Each has a generator of its own: whatever is injected, the bench draws as without it.
 #[derive(Debug)]
@@ -70,12 +73,12 @@ impl Injected {
         }
     }
 
-    /// Those of `modes` that are on the train; their times count from `from`.
+    /// Those of `modes` that are not in the unit; their times count from `from`.
     pub fn begin(&mut self, modes: &[FaultMode], from: Instant) {
         self.from = from;
         let random = &mut self.random;
-        let on_train = modes.iter().filter(|mode| mode.place.on_train());
-        self.modes = on_train
+        let around = modes.iter().filter(|mode| !mode.place.in_unit());
+        self.modes = around
             .map(|mode| ActiveFault {
                 mode: mode.clone(),
                 occurs: OccurrenceState::new(
@@ -181,6 +184,7 @@ fn add(mode: &FaultMode, effect: Effect, faults: &mut TrainFaults) {
         desk,
         tcms,
         cabs_stay,
+        bench,
     } = faults;
     match (mode.place, effect) {
         (Place::Inverter, Effect::Dead) => on(&mut equipment.inverters_dead),
@@ -213,6 +217,6 @@ fn add(mode: &FaultMode, effect: Effect, faults: &mut TrainFaults) {
         (Place::Tcms, Effect::StuckOn) => *tcms = Some(TcmsCondition::Stale),
         (Place::Tcms, Effect::Dead) => *tcms = Some(TcmsCondition::Silent),
         (Place::TcmsCabs, Effect::Dead) => *cabs_stay = true,
-        _ => {}
+        _ => bench.add(mode, effect),
     }
 }

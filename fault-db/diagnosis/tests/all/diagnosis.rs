@@ -49,7 +49,7 @@ fn run(fails: &[&str], t: Option<f64>) -> Observation {
     };
     Observation {
         steps: checks().into_iter().map(step).collect(),
-        signs: BTreeSet::new(),
+        ..Observation::default()
     }
 }
 
@@ -150,7 +150,7 @@ fn a_measured_value_decides_between_two_modes_of_one_step() {
     let model = Model::new(&dictionary, &settings, &BTreeMap::new());
     let only = |t| Observation {
         steps: run(&["a.s1"], t).steps[..1].to_vec(),
-        signs: BTreeSet::new(),
+        ..Observation::default()
     };
     let slow = Diagnosis::of(&model, &only(Some(640.0)));
     let dead = Diagnosis::of(&model, &only(None));

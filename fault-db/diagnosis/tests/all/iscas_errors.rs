@@ -156,7 +156,7 @@ fn run(matrix: &Matrix, state: usize, tests: &[usize], dice: &mut Dice) -> Obser
     });
     Observation {
         steps: steps.collect(),
-        signs: Default::default(),
+        ..Observation::default()
     }
 }
 

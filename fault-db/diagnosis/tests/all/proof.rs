@@ -20,7 +20,7 @@ fn run(result: Verdict) -> Observation {
             values: vec![("t".into(), Some(240.0))],
             signs: BTreeSet::new(),
         }],
-        signs: BTreeSet::new(),
+        ..Observation::default()
     }
 }
 

@@ -1,7 +1,8 @@
 //! Fault statistics: frequency, mean time between faults, mean time to repair, and repairs that held.
 //!
 //! A file counts its packed faults, for every filter and for several spans at once (`in_file`); a server is asked in SQL
-//! (`on_server`), because it groups its rows faster than it returns them.
+//! (`on_server`), because it groups its rows faster than it returns them. SQLite does not: it took 0.8 to 1.5 s to group
+//! 375 000 occurrences by key and month, where a million may take 0.3 s.
 
 mod cases;
 mod counts;

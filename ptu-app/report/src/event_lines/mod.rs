@@ -60,7 +60,10 @@ impl EventLines {
             SessionEvent::LinkLost(why) => {
                 let findings = Findings::from(Finding::LinkLost { why: why.clone() });
                 (
-                    "link_lost",
+                    match why.is_of_the_bench() {
+                        true => "bench_failed",
+                        false => "link_lost",
+                    },
                     json!({ "reason": why.to_string(), "findings": findings }),
                 )
             }

@@ -258,6 +258,11 @@ pub const EVENTS: &[EventKeys] = &[
         &[("reason", Text, "why"), FINDINGS],
     ),
     (
+        "bench_failed",
+        "an instrument of the bench failed, and nothing can be judged any more",
+        &[("reason", Text, "why"), FINDINGS],
+    ),
+    (
         "ended",
         "nothing more comes of the procedure",
         &[(

@@ -11,6 +11,7 @@ use super::settled::settled;
 use super::sources::Sources;
 use super::steps::{self, passed, tone};
 use super::{Sheet, SheetTrace};
+use crate::departure::Departure;
 use crate::naming;
 use crate::trace_notes::{note_text, noted_by};
 use crate::words::{Words, fill};
@@ -18,7 +19,7 @@ use crate::{count_text, coverage_text};
 use ptu_runs::clock::{local, local_zoned};
 use ptu_runs::coverage::{Coverage, counts_of};
 use ptu_runs::run::{Evidence, InstrumentEvidence};
-use ptu_runs::stored::{by_procedure, valid_until_us};
+use ptu_runs::stored::by_procedure;
 
 pub fn blocks(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let mut blocks = head(sheet, words);
@@ -77,9 +78,8 @@ fn head(sheet: &Sheet, words: &Words) -> Vec<Block> {
         Block::Title(report.sheet.into(), below),
         Block::Verdict(tone, sentence(said), counted),
     ];
-    if let Some(at_us) = valid_until_us(&sheet.run) {
-        let at = local_zoned(at_us);
-        blocks.push(Block::Facts(vec![(report.valid_until.into(), at)]));
+    if let Some(departure) = Departure::of(&sheet.run) {
+        blocks.push(Block::Facts(vec![departure.fact(words)]));
     }
     if run.verdict.is_none() {
         blocks.push(Block::Text(Tone::Bad, report.not_finished.into()));

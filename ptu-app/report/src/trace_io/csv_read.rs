@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 use std::collections::HashSet;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufRead, Read};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -15,7 +15,7 @@ use super::csv::beside;
 use super::known::{Known, KnownSignals};
 use super::series::{Import, Table, check_size, in_order, plain, wrong};
 use super::times::{Columns, TimeUnit};
-use super::utf16::Text;
+use super::utf16::text;
 use ptu_runs::data::LONGEST_FILE;
 use ptu_runs::failure::{Failure, FileTrouble};
 
@@ -259,7 +259,8 @@ fn read_table(
     known: &KnownSignals,
     asked: &Columns,
 ) -> Result<(Table, bool), Failure> {
-    let mut records = Records::new(file, BufReader::new(Text::new(BufReader::new(input))))?;
+    let input = text(input).map_err(|error| wrong(file, &error.to_string()))?;
+    let mut records = Records::new(file, input)?;
     let Above {
         mut headings,
         time,

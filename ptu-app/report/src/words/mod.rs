@@ -154,6 +154,14 @@ impl Words {
         said.map_or(Cow::Borrowed(name), Cow::Owned)
     }
 
+    /// What a part of the catalogue is called.
+    pub fn part<'a>(&self, id: &'a str) -> &'a str {
+        match self.language {
+            Language::English => names::english_part(id),
+            Language::Korean => names::korean_part(id),
+        }
+    }
+
     /// A state of a signal, as it is stored.
     pub fn state<'a>(&self, signal: &str, label: &'a str) -> Cow<'a, str> {
         let said = match self.language {

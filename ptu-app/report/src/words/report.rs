@@ -42,6 +42,7 @@ wordings! {
         bench_time: "Time on the bench", "시험대 시간";
         wall_time: "Time by the clock", "실제 소요 시간";
         program: "Program version", "프로그램 버전";
+        not_valid: "Not valid as a departure test", "출고 점검으로 유효하지 않음";
         valid_until: "Departure test, valid until", "출고 점검 유효 기한";
         injected: "Faults injected", "주입한 고장";
         scripts_hash: "SHA-256 of all scripts", "전체 스크립트 SHA-256";

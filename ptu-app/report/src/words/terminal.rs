@@ -24,6 +24,9 @@ wordings! {
         no_korean: "no Korean in korean.toml: \"{text}\"", "korean.toml에 한국어 없음: \"{text}\"";
         each_korean: "each text has its Korean", "모든 문장에 한국어 있음";
         without_korean: "{n} texts have no Korean", "한국어 없는 문장 {n}개";
+        bench_checked: "bench {bench}: its file and drivers have no errors, it does {n} of {of} steps", "시험대 {bench}: 파일과 드라이버에 오류 없음, 단계 {of}개 중 {n}개 수행 가능";
+        bench_leaves_out: "{procedure}: {n} of {of} steps are left out: {why}", "{procedure}: 단계 {of}개 중 {n}개 제외: {why}";
+        departure_goes_on: "A departure test finds no part: its failed steps point at {parts}. `ptu run --adaptive` on this unit finds it, with the fault dictionary", "출고 점검은 부품을 찾지 않습니다. 불합격 단계가 가리키는 부품: {parts}. 이 장치에서 `ptu run --adaptive`를 실행하면 고장 사전으로 부품을 찾습니다";
         checked: "{procedures} procedures, {steps} steps, {files} data files, no errors", "절차 {procedures}개, 단계 {steps}개, 데이터 파일 {files}개, 오류 없음";
         other_time: "{file} is of another time: its beginning is laid at that of the trace; --shift SECONDS lays it elsewhere", "{file}은(는) 다른 시각의 기록이라 시작을 신호 기록의 시작에 맞췄습니다. 옮기려면 --shift SECONDS";
         pin_of: "PIN of {who}'s key: ", "{who} 키의 PIN: ";

@@ -61,13 +61,13 @@ impl Assessment {
 
     /// The right part is named for certain, and nothing else.
     pub fn is_found(&self) -> bool {
-        self.finding == Finding::Found && self.names_the_part()
+        matches!(self.finding, Finding::Found | Finding::OfBench) && self.names_the_part()
     }
 
     fn is_certain(&self) -> bool {
         matches!(
             self.finding,
-            Finding::Found | Finding::TwoFound | Finding::OneOf
+            Finding::Found | Finding::OfBench | Finding::OneOf
         )
     }
 
@@ -270,9 +270,11 @@ fn shortfall(fault: &str, runs: &[&Assessment], has: &dyn Fn(&Assessment) -> boo
     let mut taken_for: BTreeMap<String, usize> = BTreeMap::new();
     for run in runs.iter().filter(|run| !has(run)) {
         let what = match run.finding {
-            Finding::Found | Finding::TwoFound | Finding::OneOf | Finding::CannotTell => {
-                joined(&run.parts)
-            }
+            Finding::Found
+            | Finding::OfBench
+            | Finding::TwoFound
+            | Finding::OneOf
+            | Finding::CannotTell => joined(&run.parts),
             _ => run.finding.label().to_owned(),
         };
         *taken_for.entry(what).or_default() += 1;

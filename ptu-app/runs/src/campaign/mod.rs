@@ -20,7 +20,7 @@ mod tests;
 use btu_rig::procedure::plan::Connection;
 use diagnosis::{Basis, Dictionary, ModeName, Settings};
 use glob::Pattern;
-use protocol::injection::FaultMode;
+use protocol::injection::{FaultCatalogue, FaultMode, Lru};
 
 pub use adaptive::{AdaptiveFigures, Effort};
 pub use evaluate::{Assessment, Figures, Share, Shortfall, figures};
@@ -113,21 +113,27 @@ pub struct Outcome {
     pub runs: usize,
 }
 
+/// The fault modes that a dictionary knows of units reached so: a laptop alone has no bench that could be at fault.
+pub fn known_on(
+    catalogue: &FaultCatalogue,
+    connection: Connection,
+) -> impl Iterator<Item = &FaultMode> {
+    let modes = catalogue.faults.iter();
+    modes.filter(move |mode| connection == Connection::Btu || !mode.place.on_bench())
+}
+
 /// Fault modes that are asked for.
 ///
 /// # Errors
 /// There are none.
 pub fn chosen<'a>(suite: &'a Suite, asked: &Request) -> Result<Vec<&'a FaultMode>, Failure> {
-    let all = &suite.catalogue.faults;
+    let all = || known_on(&suite.catalogue, suite.connection());
     let Some(pattern) = &asked.faults else {
-        return Ok(all.iter().collect());
+        return Ok(all().collect());
     };
-    let chosen: Vec<_> = all
-        .iter()
-        .filter(|mode| pattern.matches(&mode.id))
-        .collect();
+    let chosen: Vec<_> = all().filter(|mode| pattern.matches(&mode.id)).collect();
     if chosen.is_empty() {
-        let known = all.iter().map(|mode| mode.id.as_str());
+        let known = all().map(|mode| mode.id.as_str());
         return Err(Failure::usage(Unknown::FaultGlob(
             pattern.to_string(),
             did_you_mean(pattern.as_str(), known),
@@ -243,12 +249,10 @@ fn dictionary(
     let (checks, suspects) = suite.checks().into_iter().unzip();
     let mut dictionary = Dictionary::new(made_of, seeds.into_iter().collect(), checks);
     dictionary.suspects = suspects;
-    dictionary.parts = suite
-        .catalogue
-        .lrus
-        .iter()
-        .map(|part| part.id.clone())
-        .collect();
+    let lrus = suite.catalogue.lrus.iter();
+    // A laptop alone has no bench that could be at fault.
+    let is_there = |part: &&Lru| suite.connection() == Connection::Btu || !part.of_bench;
+    dictionary.parts = lrus.filter(is_there).map(|part| part.id.clone()).collect();
     let of = |mode: Option<&str>, level: usize| {
         let chosen = samples.iter().zip(runs).filter(|(sample, _)| {
             sample.purpose == Purpose::Dictionary && sample.mode() == mode && sample.level == level

@@ -40,7 +40,7 @@ impl PairFigures {
             let first = diagnosis.lrus.iter().take(AMONG);
             let found = first.filter(|part| is_bad(&part.lru)).count();
             let sound = match diagnosis.conclusion.finding() {
-                Finding::Found => !is_bad(&diagnosis.lrus[0].lru),
+                Finding::Found | Finding::OfBench => !is_bad(&diagnosis.lrus[0].lru),
                 Finding::TwoFound => diagnosis.lrus.iter().take(2).any(|part| !is_bad(&part.lru)),
                 Finding::OneOf => !diagnosis
                     .conclusion

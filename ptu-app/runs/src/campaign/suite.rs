@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::samples::Sample;
 use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, RunTrouble};
+use crate::replay::first_deviation;
 use crate::run::{
     BenchChoice, BenchSetup, ObservationBuilder, SessionEvent, TO_THE_END, Task, isolate, loading,
     run_on_fresh,
@@ -178,10 +179,19 @@ impl<'a> UnitUnderTest<'a> {
         } = self;
         let procedure = &task.procedure.id;
         let mut observation = ObservationBuilder::new(procedure);
+        let (mut first_trace, mut recorded) = (None, None);
         let mut sink = |event| {
             observation.take(&event);
             saw(&event);
             let wrong = match event {
+                SessionEvent::Trace(cut) => {
+                    first_trace.get_or_insert(cut);
+                    return;
+                }
+                SessionEvent::Recording(stimuli) => {
+                    recorded = Some(stimuli);
+                    return;
+                }
                 SessionEvent::Fault(fault) => fault.finding.to_string(),
                 SessionEvent::Run(RunEvent::ProcedureFinished {
                     verdict, findings, ..
@@ -195,6 +205,10 @@ impl<'a> UnitUnderTest<'a> {
         };
         run_on_fresh(setup, task, stop, &mut sink, go_on);
         run.seen.steps.extend(observation.finish());
+        if let (Some(cut), Some(stimuli)) = (first_trace, recorded) {
+            let first = first_deviation(setup, procedure, (&cut, &stimuli), stop);
+            run.seen.residuals.extend(first);
+        }
         for (fault, onset_s) in self.setup.faults.iter_mut().zip(&self.own_onset_s) {
             fault.onset_s = *onset_s;
         }

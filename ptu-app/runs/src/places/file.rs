@@ -1,10 +1,11 @@
 //! The bench file, `benches/NAME.toml`.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use protocol::message::{Coil, Outputs, TrainLines};
+use protocol::message::{Coil, Outputs};
 use protocol::signal::Signal;
 use serde::Deserialize;
 use thiserror::Error;
@@ -12,7 +13,7 @@ use toml::Spanned;
 
 use super::model::Model;
 use super::placed::SAFE_WITHIN;
-use super::points::{check_reading, check_stimulus};
+use super::points::{UnitInput, check_reading};
 use crate::signal::FULL_SCALE_MV;
 use crate::sound::ON_THE_WAY_MS;
 
@@ -32,26 +33,63 @@ pub enum PlacesError {
     },
 }
 
-/// How an instrument is reached.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum At {
-    /// Modbus TCP: address and unit.
-    Modbus(String, u8),
-    /// SCPI over TCP: address.
-    Scpi(String),
-    /// A sound card: name of its device.
-    Sound(String),
+/// What an instrument speaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Coils and inputs, over TCP or RTU.
+    Modbus,
+    /// Lines of text.
+    Scpi,
+    /// Samples of a sound card.
+    Sound,
 }
+
+/// Where an instrument is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// `HOST:PORT`
+    Tcp(String),
+    /// Serial port and its rate, 8 bits without parity.
+    Serial(String, u32),
+    /// The system's device of a USB instrument.
+    Usb(String),
+}
+
+impl Reach {
+    fn of(text: &str) -> Option<Self> {
+        if let Some((path, baud)) = text.rsplit_once('@') {
+            let baud = baud.parse().ok().filter(|_| !path.is_empty());
+            return Some(Self::Serial(path.to_owned(), baud?));
+        }
+        if text.starts_with(USB) {
+            return Some(Self::Usb(text.to_owned()));
+        }
+        let port = text.rsplit_once(':')?.1.parse::<u16>();
+        port.is_ok().then(|| Self::Tcp(text.to_owned()))
+    }
+}
+
+impl fmt::Display for Reach {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tcp(at) | Self::Usb(at) => f.write_str(at),
+            Self::Serial(path, baud) => write!(f, "{path}@{baud}"),
+        }
+    }
+}
+
+/// Devices of USB instruments (USBTMC) on Linux.
+const USB: &str = "/dev/usbtmc";
 
 /// An instrument as the bench file has it.
 #[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InstrumentEntry {
-    /// `modbus:HOST:PORT`, `scpi:HOST:PORT` or `sound:DEVICE`.
+    /// `modbus:` or `scpi:`, and `HOST:PORT`, `SERIALPORT@BAUD` or `/dev/usbtmcN`; or `sound:DEVICE`.
     at: String,
     /// Number of the Modbus unit.
     #[serde(default = "first_unit")]
-    unit: u8,
+    pub unit: u8,
     /// Driver of a SCPI instrument, `instruments/NAME.toml`.
     pub model: Option<String>,
     /// Serial number, by which it is registered.
@@ -111,6 +149,8 @@ pub struct Point {
     pub read: Option<String>,
     /// Signal per unit of what is read.
     pub scale: Option<f64>,
+    /// Voltage of the unit's supply, V.
+    pub volts: Option<f64>,
     /// Expanded uncertainty of the reading, in the unit of the signal.
     #[serde(default)]
     pub uncertainty: f64,
@@ -158,6 +198,12 @@ impl Point {
         if !(self.uncertainty.is_finite() && self.uncertainty >= 0.0) {
             return Err("uncertainty is a number, and not negative".into());
         }
+        if self
+            .volts
+            .is_some_and(|volts| !(volts.is_normal() && volts > 0.0))
+        {
+            return Err("volts is a number above 0".into());
+        }
         match self.scale.is_none_or(|scale| scale.is_normal()) {
             true => Ok(()),
             false => Err("scale is a number, and not 0".into()),
@@ -204,17 +250,12 @@ pub struct Places {
     /// Instruments in the order in which their outputs are switched off.
     pub safe: Vec<String>,
     /// Stimuli that are not in the frames.
-    pub stimuli: BTreeMap<&'static str, Point>,
+    pub stimuli: BTreeMap<UnitInput, Point>,
     /// Readings that are not in the frames.
     pub readings: BTreeMap<Signal, Point>,
     /// What the sound card makes of a whole sample of each channel, mV.
     pub full_scale_mv: [f64; 2],
 }
-
-/// Train lines, by their bits, and the other stimuli.
-const LINES: &str = "doors_closed hcr maintenance_key acknowledge start eb_loop forward backward eb_loop_fed doors_by_side \
-    left_closed left_locked right_closed right_locked";
-const OTHERS: &str = "code crosstalk tacho1 tacho2 marker mode_switch controller entries twc";
 
 /// Signals that the unit's contacts and displays show, and the contact.
 pub(super) const READINGS: [(Signal, Outputs); 17] = [
@@ -236,17 +277,6 @@ pub(super) const READINGS: [(Signal, Outputs); 17] = [
     (Signal::Marker, Outputs::empty()),
     (Signal::MarkerCount, Outputs::empty()),
 ];
-
-/// Train lines with their names in a bench file.
-pub(super) fn lines() -> impl Iterator<Item = (&'static str, TrainLines)> {
-    let bits = (0..).map(|bit| TrainLines::from_bits_retain(1 << bit));
-    LINES.split_ascii_whitespace().zip(bits)
-}
-
-/// Everything that a bench file may place.
-pub(super) fn stimuli() -> impl Iterator<Item = &'static str> {
-    LINES.split_ascii_whitespace().chain(OTHERS.split(' '))
-}
 
 impl Places {
     /// Reads a bench file; `model` reads the driver of that name.
@@ -287,7 +317,7 @@ impl Places {
         }
         let cards = instruments
             .values()
-            .filter(|entry: &&InstrumentEntry| matches!(entry.at(), At::Sound(_)));
+            .filter(|entry: &&InstrumentEntry| entry.kind() == Kind::Sound);
         if cards.count() > 1 {
             return Err(wrong(
                 &read.safe.span(),
@@ -299,11 +329,13 @@ impl Places {
         let mut taken = BTreeSet::new();
         for (name, point) in &read.stimuli {
             let refuse = |why| wrong(&point.span(), format!("stimulus {name}: {why}"));
-            let known = stimuli().find(|known| known == name);
+            let known = UnitInput::from_name(name);
             let known = known.ok_or_else(|| refuse("there is no such stimulus".into()))?;
             let place = point.get_ref().place();
             point.get_ref().check().map_err(refuse)?;
-            check_stimulus(known, point.get_ref(), of(&point.get_ref().at)).map_err(refuse)?;
+            known
+                .check(point.get_ref(), of(&point.get_ref().at))
+                .map_err(refuse)?;
             if let Place::Instrument(instrument) = place {
                 let coils = point.get_ref().coils.iter();
                 let mut twice = coils.filter(|coil| !taken.insert((instrument, **coil)));
@@ -348,10 +380,8 @@ impl Places {
     pub fn sound_card(&self) -> Option<(&String, String)> {
         self.instruments
             .iter()
-            .find_map(|(name, entry)| match entry.at() {
-                At::Sound(device) => Some((name, device)),
-                _ => None,
-            })
+            .find(|(_, entry)| entry.kind() == Kind::Sound)
+            .map(|(name, entry)| (name, entry.reach().to_string()))
     }
 
     /// The coils whose waveforms go to the sound card.
@@ -360,14 +390,14 @@ impl Places {
             return Vec::new();
         };
         let coils = [
-            ("code", Coil::AtpAntenna),
-            ("twc", Coil::TwcAntenna),
-            ("marker", Coil::MarkerAntenna),
+            (UnitInput::Code, Coil::AtpAntenna),
+            (UnitInput::Twc, Coil::TwcAntenna),
+            (UnitInput::Marker, Coil::MarkerAntenna),
         ];
-        let there = |name: &str| self.stimuli.get(name).map(Point::place);
+        let there = |input| self.stimuli.get(&input).map(Point::place);
         let by_sound = coils
             .into_iter()
-            .filter(|(name, _)| there(name) == Some(Place::Instrument(card)));
+            .filter(|(name, _)| there(*name) == Some(Place::Instrument(card)));
         by_sound.map(|(_, coil)| coil).collect()
     }
 
@@ -379,8 +409,8 @@ impl Places {
 
     /// Everything that frames to the unit's inputs carry has another place.
     pub(super) fn leaves_no_input(&self) -> bool {
-        let elsewhere = |name: &str| ["crosstalk", "entries", "twc"].contains(&name);
-        stimuli().all(|name| elsewhere(name) || self.stimuli.contains_key(name))
+        (UnitInput::ALL.iter())
+            .all(|input| !input.is_in_inputs() || self.stimuli.contains_key(input))
     }
 
     /// Everything that frames of the unit's outputs carry has another place.
@@ -390,30 +420,36 @@ impl Places {
 }
 
 impl InstrumentEntry {
-    /// How it is reached.
-    pub fn at(&self) -> At {
+    /// What it speaks.
+    pub(super) fn kind(&self) -> Kind {
         match self.at.split_once(':') {
-            Some(("modbus", address)) => At::Modbus(address.to_owned(), self.unit),
-            Some(("sound", device)) => At::Sound(device.to_owned()),
-            Some((_, address)) => At::Scpi(address.to_owned()),
-            None => At::Scpi(String::new()),
+            Some(("modbus", _)) => Kind::Modbus,
+            Some(("sound", _)) => Kind::Sound,
+            _ => Kind::Scpi,
         }
     }
 
+    /// Where it is.
+    pub(super) fn reach(&self) -> Reach {
+        let at = self.at.split_once(':').map_or("", |(_, at)| at);
+        Reach::of(at).unwrap_or_else(|| Reach::Tcp(at.to_owned()))
+    }
+
     fn check(&self, switches: bool, instruments: usize) -> Result<(), String> {
-        let (kind, address) = self.at.split_once(':').unwrap_or_default();
-        let is_sound = kind == "sound" && !address.is_empty();
-        let port = address
-            .rsplit_once(':')
-            .map(|(_, port)| port.parse::<u16>());
-        let is_tcp = ["modbus", "scpi"].contains(&kind) && matches!(port, Some(Ok(_)));
-        if !is_tcp && !is_sound {
+        let (kind, at) = self.at.split_once(':').unwrap_or_default();
+        let is_wrong = match Reach::of(at) {
+            _ if kind == "sound" => at.is_empty(),
+            None => true,
+            Some(Reach::Usb(_)) => kind != "scpi",
+            Some(_) => !["modbus", "scpi"].contains(&kind),
+        };
+        if is_wrong {
             return Err(format!(
-                "at is modbus:HOST:PORT, scpi:HOST:PORT or sound:DEVICE, not \"{}\"",
+                "at is modbus:HOST:PORT, modbus:SERIALPORT@BAUD, scpi:HOST:PORT, scpi:SERIALPORT@BAUD, scpi:{USB}0 or sound:DEVICE, not \"{}\"",
                 self.at
             ));
         }
-        if (kind == "scpi") != self.model.is_some() {
+        if (self.kind() == Kind::Scpi) != self.model.is_some() {
             return Err("a SCPI instrument has a model, a Modbus module has none".into());
         }
         if self.poll_ms == 0 || self.uncertainty_ms <= self.poll_ms {
@@ -430,6 +466,7 @@ impl InstrumentEntry {
         {
             return Err("the watchdog waits longer than poll_ms".into());
         }
+        let is_sound = self.kind() == Kind::Sound;
         if is_sound && self.uncertainty_ms <= ON_THE_WAY_MS {
             return Err(format!(
                 "sound takes more than {ON_THE_WAY_MS} ms on its way: uncertainty_ms is more"

@@ -3,65 +3,68 @@
 
 use std::sync::Arc;
 
-use btu_rig::procedure::plan::{Action, Expectation, Procedure, Step};
+use btu_rig::procedure::plan::{Action, Condition, Expectation, Procedure, Step};
+use btu_rig::rig::InstrumentFault;
 use btu_rig::stimulus::{DoorLine, Stimulus};
 use protocol::Duration;
 use protocol::signal::Signal;
 
 use super::file::{InstrumentEntry, Place, Places, Point};
 use super::model::code_values;
+use super::points::UnitInput;
 use super::widen::{Motion, READ_ANY};
 use crate::words::BenchNote;
 
 /// What a stimulus needs.
-fn needs(stimulus: &Stimulus) -> &'static [&'static str] {
+fn needs(stimulus: &Stimulus) -> &'static [UnitInput] {
+    use UnitInput as U;
     match stimulus {
         Stimulus::Code { .. } | Stimulus::CodeDrift { .. } | Stimulus::CodesAlong { on: true } => {
-            &["code"]
+            &[U::Code]
         }
-        Stimulus::Crosstalk { level_mv, .. } if *level_mv > 0.0 => &["crosstalk"],
+        Stimulus::Crosstalk { level_mv, .. } if *level_mv > 0.0 => &[U::Crosstalk],
         Stimulus::Speed { .. }
         | Stimulus::Travel { .. }
         | Stimulus::Direction { .. }
-        | Stimulus::TrainDriven { on: true } => &["tacho1", "tacho2"],
-        Stimulus::Tacho { channel: 1, .. } => &["tacho1"],
-        Stimulus::Tacho { .. } => &["tacho2"],
+        | Stimulus::TrainDriven { on: true } => &[U::Tacho1, U::Tacho2],
+        Stimulus::Tacho { channel: 1, .. } => &[U::Tacho1],
+        Stimulus::Tacho { .. } => &[U::Tacho2],
         Stimulus::Marker { .. }
         | Stimulus::MarkerMoved { .. }
-        | Stimulus::MarkersAlong { section: Some(_) } => &["marker"],
-        Stimulus::Station(_) | Stimulus::Orders(Some(_)) | Stimulus::Wayside(_) => &["twc"],
+        | Stimulus::MarkersAlong { section: Some(_) } => &[U::Marker],
+        Stimulus::Station(_) | Stimulus::Orders(Some(_)) | Stimulus::Wayside(_) => &[U::Twc],
         Stimulus::Doors { .. } | Stimulus::DoorsFollow { .. } => &[
-            "doors_closed",
-            "left_closed",
-            "left_locked",
-            "right_closed",
-            "right_locked",
+            U::DoorsClosed,
+            U::LeftClosed,
+            U::LeftLocked,
+            U::RightClosed,
+            U::RightLocked,
         ],
         Stimulus::SideDoors { left: true, .. } | Stimulus::DoorObstacle { left: true, .. } => {
-            &["doors_by_side", "left_closed", "left_locked"]
+            &[U::DoorsBySide, U::LeftClosed, U::LeftLocked]
         }
         Stimulus::SideDoors { .. } | Stimulus::DoorObstacle { .. } => {
-            &["doors_by_side", "right_closed", "right_locked"]
+            &[U::DoorsBySide, U::RightClosed, U::RightLocked]
         }
         Stimulus::DoorLine { on: Some(_), line } => match line {
-            DoorLine::All => &["doors_closed"],
-            DoorLine::LeftClosed => &["left_closed"],
-            DoorLine::LeftLocked => &["left_locked"],
-            DoorLine::RightClosed => &["right_closed"],
-            DoorLine::RightLocked => &["right_locked"],
-            DoorLine::BySide => &["doors_by_side"],
+            DoorLine::All => &[U::DoorsClosed],
+            DoorLine::LeftClosed => &[U::LeftClosed],
+            DoorLine::LeftLocked => &[U::LeftLocked],
+            DoorLine::RightClosed => &[U::RightClosed],
+            DoorLine::RightLocked => &[U::RightLocked],
+            DoorLine::BySide => &[U::DoorsBySide],
         },
-        Stimulus::Hcr { .. } => &["hcr"],
-        Stimulus::MaintenanceKey { .. } => &["maintenance_key"],
-        Stimulus::TrainNumber { number: 1.. } => &["entries"],
-        Stimulus::WheelDiameter { diameter_mm } if *diameter_mm > 0.0 => &["entries"],
-        Stimulus::ModeSwitch(_) => &["mode_switch"],
+        Stimulus::Hcr { .. } => &[U::Hcr],
+        Stimulus::MaintenanceKey { .. } => &[U::MaintenanceKey],
+        Stimulus::TrainNumber { number: 1.. } => &[U::Entries],
+        Stimulus::WheelDiameter { diameter_mm } if *diameter_mm > 0.0 => &[U::Entries],
+        Stimulus::ModeSwitch(_) => &[U::ModeSwitch],
         Stimulus::Controller { .. }
         | Stimulus::ControllerVolts { volts: Some(_) }
-        | Stimulus::ControllerContacts { contacts: Some(_) } => &["controller"],
-        Stimulus::Reverser { .. } => &["forward", "backward"],
-        Stimulus::Acknowledge => &["acknowledge"],
-        Stimulus::Start => &["start"],
+        | Stimulus::ControllerContacts { contacts: Some(_) } => &[U::Controller],
+        Stimulus::Reverser { .. } => &[U::Forward, U::Backward],
+        Stimulus::Acknowledge => &[U::Acknowledge],
+        Stimulus::Start => &[U::Start],
         Stimulus::Crosstalk { .. }
         | Stimulus::CodeOff
         | Stimulus::CodesAlong { on: false }
@@ -110,15 +113,24 @@ pub(super) fn inner_mut(action: &mut Action) -> &mut Action {
     }
 }
 
+/// How what a bench makes of procedures is put into words.
+#[derive(Clone, Copy)]
+pub struct Teller<'a> {
+    /// A note.
+    pub note: &'a dyn Fn(BenchNote) -> String,
+    /// What a signal is called.
+    pub signal: &'a dyn Fn(Signal) -> String,
+    /// What a person is to do, and the key of an input.
+    pub text: &'a dyn Fn(&str) -> String,
+    /// What a person is to see.
+    pub condition: &'a dyn Fn(&Condition) -> String,
+}
+
 impl Places {
-    /// The procedures as this bench does them; `say` puts a note into words.
-    pub fn fit(
-        &self,
-        procedures: Vec<Arc<Procedure>>,
-        say: &dyn Fn(BenchNote) -> String,
-    ) -> Vec<Arc<Procedure>> {
+    /// The procedures as this bench does them, told so.
+    pub fn fit(&self, procedures: Vec<Arc<Procedure>>, tell: &Teller<'_>) -> Vec<Arc<Procedure>> {
         let fit = |mut procedure: Arc<Procedure>| {
-            self.fit_one(Arc::make_mut(&mut procedure), say);
+            self.fit_one(Arc::make_mut(&mut procedure), tell);
             procedure
         };
         procedures.into_iter().map(fit).collect()
@@ -133,25 +145,25 @@ impl Places {
         self.instruments.iter().filter_map(told)
     }
 
-    fn fit_one(&self, procedure: &mut Procedure, say: &dyn Fn(BenchNote) -> String) {
+    fn fit_one(&self, procedure: &mut Procedure, tell: &Teller<'_>) {
         if procedure.lacks.is_none() {
             let lacks = procedure
                 .setup
                 .iter()
-                .find_map(|action| self.lacks_for(action));
-            procedure.lacks = lacks.map(say);
+                .find_map(|action| self.lacks_for(action, tell));
+            procedure.lacks = lacks.map(tell.note);
         }
         self.wait_longer(&mut procedure.setup);
         self.wait_longer(&mut procedure.cleanup);
-        self.ask_for(&mut procedure.setup, say);
-        self.ask_for(&mut procedure.cleanup, say);
+        self.ask_for(&mut procedure.setup, tell);
+        self.ask_for(&mut procedure.cleanup, tell);
         let mut before: Option<String> = None;
         let mut motion = Motion::default();
         for step in &mut procedure.steps {
             let own = step
                 .lacks
                 .is_none()
-                .then(|| self.step_lacks(step).map(say))
+                .then(|| self.step_lacks(step, tell).map(tell.note))
                 .flatten();
             if !step.continues {
                 motion = Motion::default();
@@ -161,41 +173,42 @@ impl Places {
             if let Some(lacks) = &lacks {
                 step.lacks = Some(lacks.clone());
             } else {
-                self.fit_step(step, &mut motion, say);
+                self.fit_step(step, &mut motion, tell);
             }
             before = lacks;
         }
     }
 
-    fn fit_step(&self, step: &mut Step, motion: &mut Motion, say: &dyn Fn(BenchNote) -> String) {
+    fn fit_step(&self, step: &mut Step, motion: &mut Motion, tell: &Teller<'_>) {
         let before = worst_case(&step.actions);
-        self.widen(step, motion, say);
-        self.see_for(step, say);
-        self.ask_for(&mut step.actions, say);
+        self.widen(step, motion, tell);
+        self.see_for(step, tell);
+        self.ask_for(&mut step.actions, tell);
         let longer =
             worst_case(&step.actions) - before + self.acts_late() + self.reads_late(&READ_ANY);
         step.time_limit += longer;
         step.worst_case += longer;
     }
 
-    fn no_place(&self, what: &str) -> BenchNote {
-        BenchNote::NoPlace(self.name.clone(), what.to_owned())
+    fn unread_note(&self, signal: Signal, tell: &Teller<'_>) -> BenchNote {
+        BenchNote::Unread(self.name.clone(), (tell.signal)(signal))
     }
 
     /// Why this bench cannot do the action, if so.
-    fn lacks_for(&self, action: &Action) -> Option<BenchNote> {
+    fn lacks_for(&self, action: &Action, tell: &Teller<'_>) -> Option<BenchNote> {
+        use UnitInput as U;
         match inner(action) {
             Action::Stimulus(stimulus) => {
                 // Without word of doors by side, the unit goes by the line of all doors.
                 let of_all = matches!(
                     stimulus,
                     Stimulus::Doors { .. } | Stimulus::DoorsFollow { .. }
-                ) && self.is_none("doors_by_side");
+                ) && self.is_none(U::DoorsBySide);
                 let mut needs = needs(stimulus).iter();
-                let missing =
-                    needs.find(|name| self.is_none(name) && (!of_all || **name == "doors_closed"));
+                let missing = needs
+                    .find(|name| self.is_none(**name) && (!of_all || **name == U::DoorsClosed));
                 missing
-                    .map(|name| self.no_place(name))
+                    .map(|name| BenchNote::NoPlace(self.name.clone(), (tell.text)(name.name())))
                     .or_else(|| self.beyond(stimulus))
             }
             Action::Until { condition, .. } => {
@@ -205,14 +218,14 @@ impl Places {
                         missing.get_or_insert(signal);
                     }
                 });
-                missing.map(|signal| self.no_place(signal.name()))
+                missing.map(|signal| self.unread_note(signal, tell))
             }
             _ => None,
         }
     }
 
-    fn is_none(&self, stimulus: &str) -> bool {
-        let point = self.stimuli.get(stimulus);
+    fn is_none(&self, input: UnitInput) -> bool {
+        let point = self.stimuli.get(&input);
         point.is_some_and(|point| point.place() == Place::None)
     }
 
@@ -232,7 +245,7 @@ impl Places {
         else {
             return None;
         };
-        let Place::Instrument(name) = self.stimuli.get("code")?.place() else {
+        let Place::Instrument(name) = self.stimuli.get(&UnitInput::Code)?.place() else {
             return None;
         };
         let values = code_values(carrier_hz, rate_hz, level_mv);
@@ -240,10 +253,11 @@ impl Places {
             return None;
         }
         let model = self.models.get(name)?;
-        if rate_hz <= 0.0 && model.acts.get("code")?.get_ref().unmodulated.is_empty() {
-            return Some(self.no_place("code, unmodulated"));
-        }
-        let beyond = model.out_of_range(&values)?;
+        let unmodulated = &model.acts.get("code")?.get_ref().unmodulated;
+        let beyond = match rate_hz <= 0.0 && unmodulated.is_empty() {
+            true => InstrumentFault::NoUnmodulated,
+            false => model.out_of_range(&values)?,
+        };
         Some(BenchNote::Beyond(
             self.name.clone(),
             name.to_owned(),
@@ -251,11 +265,11 @@ impl Places {
         ))
     }
 
-    fn step_lacks(&self, step: &Step) -> Option<BenchNote> {
+    fn step_lacks(&self, step: &Step, tell: &Teller<'_>) -> Option<BenchNote> {
         let missing = step
             .actions
             .iter()
-            .find_map(|action| self.lacks_for(action));
+            .find_map(|action| self.lacks_for(action, tell));
         missing.or_else(|| {
             let mut missing = None;
             let mut seen = step.clone();
@@ -266,12 +280,12 @@ impl Places {
                     missing.get_or_insert(signal);
                 }
             });
-            missing.map(|signal| self.no_place(signal.name()))
+            missing.map(|signal| self.unread_note(signal, tell))
         })
     }
 
     /// What a person has to see, and in which time.
-    fn asked(&self, expected: &Expectation) -> Option<(String, u64)> {
+    fn asked<'a>(&self, expected: &'a Expectation) -> Option<(&'a Condition, u64)> {
         let Expectation::Becomes { condition, .. } = expected else {
             return None;
         };
@@ -282,37 +296,36 @@ impl Places {
                 _ => all = false,
             },
         );
-        within
-            .filter(|_| all)
-            .map(|within| (condition.to_string(), within))
+        within.filter(|_| all).map(|within| (condition, within))
     }
 
     /// What a person sees is asked at the end of the actions.
-    fn see_for(&self, step: &mut Step, say: &dyn Fn(BenchNote) -> String) {
+    fn see_for(&self, step: &mut Step, tell: &Teller<'_>) {
         let asked: Vec<_> = step
             .expectations
             .iter()
             .filter_map(|e| self.asked(e))
+            .map(|(what, within_s)| (BenchNote::See((tell.condition)(what)), within_s))
             .collect();
         step.expectations
             .retain(|expected| self.asked(expected).is_none());
         for (what, within_s) in asked {
             step.actions.push(Action::Prompt {
-                text: say(BenchNote::See(what)),
+                text: (tell.note)(what),
                 within: Duration::from_ms(within_s * 1000),
             });
         }
     }
 
     /// What a person does is asked for before it counts as done.
-    fn ask_for(&self, actions: &mut Vec<Action>, say: &dyn Fn(BenchNote) -> String) {
+    fn ask_for(&self, actions: &mut Vec<Action>, tell: &Teller<'_>) {
         let asked = |action: Action| {
             let within = match inner(&action) {
                 Action::Stimulus(stimulus) => {
                     needs(stimulus)
                         .iter()
                         .find_map(|name| match self.stimuli.get(name)?.place() {
-                            Place::Operator(within_s) => Some((stimulus.to_string(), within_s)),
+                            Place::Operator(within_s) => Some((*stimulus, within_s)),
                             _ => None,
                         })
                 }
@@ -320,7 +333,7 @@ impl Places {
             };
             let prompt = within.map(|(what, within_s)| {
                 let prompt = Action::Prompt {
-                    text: say(BenchNote::Do(what)),
+                    text: (tell.note)(BenchNote::Do((tell.text)(&what.to_string()))),
                     within: Duration::from_ms(within_s * 1000),
                 };
                 match &action {

@@ -9,6 +9,7 @@
 
 mod file;
 mod fit;
+mod line;
 mod modbus;
 mod model;
 mod placed;
@@ -19,6 +20,8 @@ mod tests;
 mod widen;
 mod worker;
 
-pub use file::{At, InstrumentEntry, Place, Places, PlacesError, Point, Written};
+pub use file::{InstrumentEntry, Place, Places, PlacesError, Point, Written};
+pub use fit::Teller;
 pub use model::Model;
 pub use placed::{Checked, Placed};
+pub use points::UnitInput;

@@ -1,8 +1,7 @@
-//! A Modbus TCP module: coils that are relays, inputs that are contacts.
+//! A Modbus module, over TCP or RTU: coils that are relays, inputs that are contacts.
 
 use std::collections::BTreeMap;
 use std::io::{Read, Write};
-use std::net::{TcpStream, ToSocketAddrs};
 use std::time::{Duration, Instant};
 
 use btu_rig::rig::InstrumentFault;
@@ -11,18 +10,23 @@ use rmodbus::client::ModbusRequest;
 use rmodbus::guess_response_frame_len;
 use rmodbus::{ErrorKind, ModbusProto};
 
-use super::file::{Places, Point, Watchdog};
-use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted, span};
+use super::file::{Places, Point, Reach, Watchdog};
+use super::line::{SharedLine, io_fault, locked};
+use super::points::UnitInput;
+use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted};
 
+/// Bytes of an answer that say how many there are, over TCP and RTU.
+const HEAD: [usize; 2] = [6, 3];
 /// How long a relay and the contact that proves it may differ [default: pull-in, bounce and a poll].
 const RELAY_TAKES: Duration = Duration::from_millis(150);
 
 /// A module that was switched off after connecting, with the points of the bench file that it has.
 pub(super) struct Module {
-    stream: TcpStream,
+    line: SharedLine,
+    proto: ModbusProto,
     unit: u8,
     transaction: u16,
-    stimuli: Vec<(&'static str, Point)>,
+    stimuli: Vec<(UnitInput, Point)>,
     readings: Vec<(Signal, Point)>,
     /// What was last written; none = not known.
     written: Option<Vec<bool>>,
@@ -38,53 +42,21 @@ pub(super) struct Module {
     astray: BTreeMap<u16, Instant>,
 }
 
-/// Connects to an address within the time for an answer.
-pub(super) fn connect(address: &str) -> Result<TcpStream, InstrumentFault> {
-    let not_there = |error: std::io::Error| InstrumentFault::NotThere {
-        at: address.to_owned(),
-        why: error.to_string(),
-    };
-    let addresses = address.to_socket_addrs().map_err(not_there)?;
-    let mut tried = Err(std::io::Error::other("the name has no address"));
-    for address in addresses {
-        tried = TcpStream::connect_timeout(&address, ANSWERS_WITHIN);
-        if tried.is_ok() {
-            break;
-        }
-    }
-    let stream = tried.map_err(not_there)?;
-    let set = stream
-        .set_nodelay(true)
-        .and_then(|()| stream.set_read_timeout(Some(ANSWERS_WITHIN)))
-        .and_then(|()| stream.set_write_timeout(Some(ANSWERS_WITHIN)));
-    set.map_err(not_there)?;
-    Ok(stream)
-}
-
-/// What a failed exchange says of an instrument.
-pub(super) fn io_fault(error: &std::io::Error) -> InstrumentFault {
-    use std::io::ErrorKind as E;
-    match error.kind() {
-        E::WouldBlock | E::TimedOut => InstrumentFault::Silent(span(ANSWERS_WITHIN)),
-        _ => InstrumentFault::Disconnected(error.to_string()),
-    }
-}
-
 impl Module {
     /// Connects, starts the watchdog, and reads once.
-    pub fn open(
-        places: &Places,
-        name: &str,
-        (address, unit): (&str, u8),
-        watchdog: Option<Watchdog>,
-    ) -> Result<Self, InstrumentFault> {
+    pub fn open(places: &Places, name: &str, line: SharedLine) -> Result<Self, InstrumentFault> {
+        let entry = &places.instruments[name];
         let (stimuli, readings) = places.points_at(name);
         let coils = stimuli.iter().flat_map(|(_, point)| &point.coils);
         let proofs = stimuli.iter().filter_map(|(_, point)| point.proved_by);
         let inputs = readings.iter().filter_map(|(_, point)| point.input);
         let mut module = Self {
-            stream: connect(address)?,
-            unit,
+            line,
+            proto: match entry.reach() {
+                Reach::Tcp(_) => ModbusProto::TcpUdp,
+                _ => ModbusProto::Rtu,
+            },
+            unit: entry.unit,
             transaction: 0,
             coils: coils.max().map_or(0, |last| usize::from(*last) + 1),
             inputs: inputs.chain(proofs).max().map_or(0, |last| last + 1),
@@ -92,12 +64,14 @@ impl Module {
             readings,
             written: None,
             asked: Instant::now(),
-            drops_after: watchdog.map(|watchdog| Duration::from_millis(u64::from(watchdog.ms))),
+            drops_after: entry
+                .watchdog
+                .map(|watchdog| Duration::from_millis(u64::from(watchdog.ms))),
             pulses: None,
             pulse: None,
             astray: BTreeMap::new(),
         };
-        if let Some(Watchdog { register, ms }) = watchdog {
+        if let Some(Watchdog { register, ms }) = entry.watchdog {
             module.ask(|request, out| request.generate_set_holding(register, ms, out))?;
         }
         module.off()?;
@@ -111,28 +85,29 @@ impl Module {
     ) -> Result<(ModbusRequest, Vec<u8>), InstrumentFault> {
         self.transaction = self.transaction.wrapping_add(1);
         self.asked = Instant::now();
-        let mut request = ModbusRequest::new_tcp_udp(self.unit, self.transaction);
+        let mut request = ModbusRequest::new(self.unit, self.proto);
+        request.tr_id = self.transaction;
         let mut out = Vec::new();
         let refused = |request: &ModbusRequest, error: ErrorKind| InstrumentFault::Refused {
             command: format!("{:?} {}+{}", request.func, request.reg, request.count),
             error: error.to_string(),
         };
         generate(&mut request, &mut out).map_err(|error| refused(&request, error))?;
-        self.stream
-            .write_all(&out)
-            .map_err(|error| io_fault(&error))?;
-        // The head says how long the rest is.
-        let mut answer = vec![0; 6];
-        self.stream
-            .read_exact(&mut answer)
-            .map_err(|error| io_fault(&error))?;
-        let head = [0, 1, 2, 3, 4, 5].map(|at| answer[at]);
-        let length = guess_response_frame_len(&head, ModbusProto::TcpUdp);
+        let mut line = locked(&self.line);
+        line.forget();
+        let mut answer = vec![0; HEAD[usize::from(self.proto == ModbusProto::Rtu)]];
+        let exchanged = line
+            .wait_for(ANSWERS_WITHIN)
+            .and_then(|()| line.write_all(&out))
+            .and_then(|()| line.read_exact(&mut answer));
+        exchanged.map_err(|error| io_fault(&error))?;
+        let length = guess_response_frame_len(&answer, self.proto);
         let length = length.map_err(|error| refused(&request, error))?;
-        answer.resize(usize::from(length), 0);
-        self.stream
-            .read_exact(&mut answer[6..])
-            .map_err(|error| io_fault(&error))?;
+        let head = answer.len();
+        answer.resize(head.max(length.into()), 0);
+        let rest = line.read_exact(&mut answer[head..]);
+        rest.map_err(|error| io_fault(&error))?;
+        drop(line);
         request
             .parse_ok(&answer)
             .map_err(|error| refused(&request, error))?;
@@ -146,7 +121,7 @@ impl Module {
             let values = wanted.get(name);
             let value = |key| values.and_then(|values: &Values| values.get(key)).copied();
             let on = match *name {
-                "marker" => {
+                UnitInput::Marker => {
                     let count = value("count");
                     let before = std::mem::replace(&mut self.pulses, count);
                     if let (Some(count), Some(before), Some(psm)) = (count, before, value("psm"))
@@ -159,7 +134,7 @@ impl Module {
                     self.pulse = self.pulse.filter(|(_, until)| Instant::now() < *until);
                     self.pulse.map(|(coil, _)| coil)
                 }
-                "mode_switch" => value("position")
+                UnitInput::ModeSwitch => value("position")
                     .and_then(|position| point.coils.get(position as usize))
                     .copied(),
                 _ => (point.coils.first().copied()).filter(|_| value("on") == Some(1.0)),
@@ -188,7 +163,7 @@ impl Module {
                 > RELAY_TAKES
             {
                 return Err(InstrumentFault::Stuck {
-                    contact: (*name).to_owned(),
+                    contact: name.name().to_owned(),
                     ordered: u8::from(is),
                 });
             }

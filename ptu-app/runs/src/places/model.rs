@@ -65,7 +65,7 @@ pub struct Read {
 }
 
 /// Acts and their values.
-const ACTS: [(&str, &[&str]); 2] = [
+const ACTS: [(&str, &[&str]); 3] = [
     (
         "code",
         &[
@@ -78,6 +78,7 @@ const ACTS: [(&str, &[&str]); 2] = [
         ],
     ),
     ("pulses", &["channel", "hz", "backward"]),
+    ("supply", &["channel", "volts"]),
 ];
 
 impl Model {
@@ -95,7 +96,7 @@ impl Model {
             let Some((_, values)) = ACTS.iter().find(|(known, _)| known == name) else {
                 return Err(wrong(
                     act.span(),
-                    format!("no act \"{name}\": it is code or pulses"),
+                    format!("no act \"{name}\": it is code, pulses or supply"),
                 ));
             };
             let act = act.get_ref();

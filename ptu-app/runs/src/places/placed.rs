@@ -13,9 +13,11 @@ use protocol::message::{
 use protocol::signal::Signal;
 use protocol::{Instant, Speed};
 
-use super::file::{At, Place, Places, Point, READINGS, lines};
+use super::file::{Kind, Place, Places, Point, READINGS};
+use super::line::Lines;
 use super::modbus::Module;
 use super::model::code_values;
+use super::points::UnitInput;
 use super::scpi::Scpi;
 use super::worker::{Instrument, Timing, Values, Wanted, Worker, span};
 use crate::sound::Stream;
@@ -32,8 +34,10 @@ pub struct Placed {
     places: Arc<Places>,
     workers: Vec<Worker>,
     sound: Option<BySound>,
-    to_unit: Bodies,
-    from_unit: Bodies,
+    /// Open until the workers have ended.
+    lines: Lines,
+    to_unit: Relay,
+    from_unit: Relay,
     pulses: [PulseRate; 2],
     wanted: Wanted,
     /// What the unit's own frames said last.
@@ -52,16 +56,16 @@ fn trouble(instrument: &str, fault: InstrumentFault) -> LinkTrouble {
     }
 }
 
-fn open(places: &Places, name: &str) -> Result<Box<dyn Instrument>, InstrumentFault> {
+fn open(
+    places: &Places,
+    name: &str,
+    lines: &mut Lines,
+) -> Result<Box<dyn Instrument>, InstrumentFault> {
     let entry = &places.instruments[name];
-    Ok(match entry.at() {
-        At::Modbus(address, unit) => Box::new(Module::open(
-            places,
-            name,
-            (&address, unit),
-            entry.watchdog,
-        )?),
-        At::Scpi(address) | At::Sound(address) => Box::new(Scpi::open(places, name, &address)?),
+    let line = lines.to(&entry.reach())?;
+    Ok(match entry.kind() {
+        Kind::Modbus => Box::new(Module::open(places, name, line)?),
+        Kind::Scpi | Kind::Sound => Box::new(Scpi::open(places, name, line)?),
     })
 }
 
@@ -143,20 +147,28 @@ impl Placed {
     /// # Errors
     /// The first that does not do its part.
     pub fn open(places: &Arc<Places>) -> Result<Self, LinkTrouble> {
+        let lines = Lines::of(places).map_err(|(name, fault)| trouble(&name, fault))?;
         let mut placed = Self {
             places: places.clone(),
             workers: Vec::new(),
             sound: BySound::open(places)?,
-            to_unit: Bodies::default(),
-            from_unit: Bodies::default(),
+            lines,
+            to_unit: Relay::default(),
+            from_unit: Relay::default(),
             pulses: Default::default(),
             wanted: Wanted::new(),
             outputs: IoOutput::default(),
             link: Link::new(End::Unit),
         };
+        // A unit without its supply says nothing to which frames could be sent.
+        if let Some(supply) = places.stimuli.get(&UnitInput::Supply) {
+            let volts = supply.volts.unwrap_or_default();
+            let on = Values::from([("on", 1.0), ("volts", volts)]);
+            placed.wanted.insert(UnitInput::Supply, on);
+        }
         for (place, name) in (0..).zip(&places.safe) {
             let entry = &places.instruments[name];
-            if matches!(entry.at(), At::Sound(_)) {
+            if entry.kind() == Kind::Sound {
                 continue;
             }
             let timing = Timing {
@@ -164,7 +176,8 @@ impl Placed {
                 uncertainty: Duration::from_millis(entry.uncertainty_ms),
                 place,
             };
-            let instrument = open(places, name).map_err(|fault| trouble(name, fault))?;
+            let instrument = open(places, name, &mut placed.lines);
+            let instrument = instrument.map_err(|fault| trouble(name, fault))?;
             placed
                 .workers
                 .push(Worker::start(name.clone(), timing, instrument));
@@ -179,11 +192,17 @@ impl Placed {
     /// Tries each instrument by itself, in so many rounds. A relay that proves itself is switched in each, and the round is over
     /// when it is proved; the slowest round counts, and the time until the next reading with it.
     pub fn check(places: &Places, rounds: u32) -> Vec<Checked> {
-        let tried = |name: &String| {
-            if let At::Sound(device) = places.instruments[name].at() {
-                return try_sound(&open_sound(places, &device)?);
+        let mut lines = match Lines::of(places) {
+            Ok(lines) => lines,
+            // Another program works with them: nothing is touched.
+            Err((name, fault)) => return vec![(name, Err(fault))],
+        };
+        let mut tried = |name: &String| {
+            if places.instruments[name].kind() == Kind::Sound {
+                let device = &places.instruments[name].reach().to_string();
+                return try_sound(&open_sound(places, device)?);
             }
-            let mut instrument = open(places, name)?;
+            let mut instrument = open(places, name, &mut lines)?;
             let here = |point: &Point| point.place() == Place::Instrument(name);
             let proved = |point: &Point| here(point) && point.proved_by.is_some();
             let loops = places.stimuli.iter().filter(|(_, point)| proved(point));
@@ -214,13 +233,13 @@ impl Placed {
 
     /// What of the rig's bytes the unit gets as frames; the rest is wanted of the instruments.
     pub fn take(&mut self, now: Instant, bytes: &[u8], out: &mut Vec<u8>) {
-        self.to_unit.0.extend_from_slice(bytes);
+        self.to_unit.push(bytes);
         while let Some((mut header, message)) = self.to_unit.next(out) {
             if header.channel == Channel::Io {
                 let left_out = self.sound.as_ref().map_or(0, |sound| sound.left_out);
                 header.seq = header.seq.wrapping_sub(left_out);
             }
-            let placed = |name: &str| self.places.stimuli.contains_key(name);
+            let placed = |input| self.places.stimuli.contains_key(&input);
             match message {
                 Message::CoilSamples(part)
                     if (self.sound.as_ref()).is_some_and(|sound| sound.carries(part.coil)) =>
@@ -234,9 +253,9 @@ impl Placed {
                         send(&header, &left.into(), out);
                     }
                 }
-                Message::Crosstalk(_) if placed("crosstalk") => {}
-                Message::CabEntries(_) | Message::WheelEntry(_) if placed("entries") => {}
-                _ if header.channel == Channel::Twc && placed("twc") => {}
+                Message::Crosstalk(_) if placed(UnitInput::Crosstalk) => {}
+                Message::CabEntries(_) | Message::WheelEntry(_) if placed(UnitInput::Entries) => {}
+                _ if header.channel == Channel::Twc && placed(UnitInput::Twc) => {}
                 other => send(&header, &other, out),
             }
         }
@@ -255,7 +274,7 @@ impl Placed {
         bytes: &[u8],
         out: &mut Vec<u8>,
     ) -> Result<(), LinkTrouble> {
-        self.from_unit.0.extend_from_slice(bytes);
+        self.from_unit.push(bytes);
         while let Some((header, message)) = self.from_unit.next(out) {
             match message {
                 Message::IoOutput(_) if self.places.leaves_no_output() => {}
@@ -307,55 +326,66 @@ impl Placed {
 
     /// Takes out of the inputs what has a place.
     fn place(&mut self, now: Instant, mut input: IoInput) -> IoInput {
-        let placed = |name: &str| self.places.stimuli.contains_key(name);
-        let mut want = |name, values: Values| {
-            self.wanted.insert(name, values);
+        let placed = |input| self.places.stimuli.contains_key(&input);
+        let mut want = |input, values: Values| {
+            self.wanted.insert(input, values);
         };
-        for (name, line) in lines().filter(|(name, _)| placed(name)) {
+        for (line_input, line) in UnitInput::lines().filter(|(input, _)| placed(*input)) {
             want(
-                name,
+                line_input,
                 Values::from([("on", f64::from(u8::from(input.lines.contains(line))))]),
             );
             input.lines.remove(line);
         }
-        if placed("code") {
+        if placed(UnitInput::Code) {
             let values = code_values(
                 f64::from(input.carrier_hz),
                 f64::from(input.code_rate_chz) / 100.0,
                 f64::from(input.level_mv),
             );
-            want("code", values);
+            want(UnitInput::Code, values);
             (input.carrier_hz, input.code_rate_chz, input.level_mv) = (0, 0, 0);
         }
         let tachos = [
-            ("tacho1", &mut input.tacho1_count, &mut input.tacho1_edge_us),
-            ("tacho2", &mut input.tacho2_count, &mut input.tacho2_edge_us),
+            (
+                UnitInput::Tacho1,
+                &mut input.tacho1_count,
+                &mut input.tacho1_edge_us,
+            ),
+            (
+                UnitInput::Tacho2,
+                &mut input.tacho2_count,
+                &mut input.tacho2_edge_us,
+            ),
         ];
-        for (channel, (name, count, age_us)) in tachos.into_iter().enumerate() {
-            if placed(name) {
+        for (channel, (input_of, count, age_us)) in tachos.into_iter().enumerate() {
+            if placed(input_of) {
                 let backward = input.tacho_backward >> channel & 1;
                 let hz = self.pulses[channel].step(now, *count, *age_us);
                 want(
-                    name,
+                    input_of,
                     Values::from([("hz", hz), ("backward", f64::from(backward))]),
                 );
                 input.tacho_backward &= !(1 << channel);
                 (*count, *age_us) = (0, 0);
             }
         }
-        if placed("marker") {
+        if placed(UnitInput::Marker) {
             let (psm, count) = (f64::from(input.marker), f64::from(input.marker_edges));
-            want("marker", Values::from([("psm", psm), ("count", count)]));
+            want(
+                UnitInput::Marker,
+                Values::from([("psm", psm), ("count", count)]),
+            );
             (input.marker, input.marker_edges, input.marker_edge_us) = (0, 0, 0);
         }
-        if placed("mode_switch") {
+        if placed(UnitInput::ModeSwitch) {
             want(
-                "mode_switch",
+                UnitInput::ModeSwitch,
                 Values::from([("position", f64::from(input.mode_switch.code()))]),
             );
             input.mode_switch = ModeSwitch::Off;
         }
-        if placed("controller") {
+        if placed(UnitInput::Controller) {
             input.controller = 0;
         }
         input
@@ -399,37 +429,36 @@ fn try_sound(stream: &Stream) -> Result<f64, InstrumentFault> {
     played.map(|_| takes_ms as f64)
 }
 
-/// Bytes between flags.
+/// Frames that pass by; what is no frame, as one that is damaged on purpose, goes on as it came.
 #[derive(Default)]
-struct Bodies(Vec<u8>);
+struct Relay {
+    decoder: Decoder,
+    came: Vec<u8>,
+}
 
-impl Bodies {
-    /// The next that is whole, stuffed as it came; what is no frame, as one that is damaged on purpose, goes on as it is.
+impl Relay {
+    fn push(&mut self, bytes: &[u8]) {
+        self.decoder.push(bytes);
+        self.came.extend_from_slice(bytes);
+    }
+
     fn next(&mut self, out: &mut Vec<u8>) -> Option<(Header, Message)> {
-        loop {
-            let Some(end) = self.0.iter().position(|byte| *byte == FLAG) else {
-                if self.0.len() > MAX_PENDING {
-                    out.append(&mut self.0);
-                }
-                return None;
-            };
-            let body: Vec<u8> = self.0.drain(..=end).collect();
-            if body.len() == 1 {
-                continue;
-            }
-            let mut decoder = Decoder::new();
-            decoder.push(&[FLAG]);
-            decoder.push(&body);
-            let read = decoder.next_frame().and_then(Result::ok);
-            let read = read.and_then(|(header, payload)| {
+        while let Some(read) = self.decoder.next_frame() {
+            let read = read.ok().and_then(|(header, payload)| {
                 Some((header, Message::decode(header.channel, payload).ok()?))
             });
+            let seen = self.came.len() - self.decoder.pending_len();
             if read.is_some() {
+                self.came.drain(..seen);
                 return read;
             }
             out.push(FLAG);
-            out.extend_from_slice(&body);
+            out.extend(self.came.drain(..seen));
         }
+        if self.came.len() > MAX_PENDING {
+            out.append(&mut self.came);
+        }
+        None
     }
 }
 

@@ -1,16 +1,146 @@
-//! What a stimulus or a reading can be at, and what it has to state there.
+//! What a bench file may place: inputs of the unit and what its outputs show, where each can be, and what it has to state
+//! there.
 
-use protocol::message::ModeSwitch;
+use std::collections::BTreeMap;
+
+use protocol::message::{ModeSwitch, TrainLines};
 use protocol::signal::Signal;
 
-use super::file::{At, InstrumentEntry, Place, Places, Point};
+use super::file::{InstrumentEntry, Kind, Place, Places, Point};
 use super::model::Model;
 
 /// The instrument at which a point is, and its driver.
 pub(super) type Named<'a> = (Option<&'a InstrumentEntry>, Option<&'a Model>);
 
 /// Stimuli and readings of an instrument.
-pub(super) type PointsAt = (Vec<(&'static str, Point)>, Vec<(Signal, Point)>);
+pub(super) type PointsAt = (Vec<(UnitInput, Point)>, Vec<(Signal, Point)>);
+
+macro_rules! inputs {
+    ($($name:ident $key:literal,)*) => {
+        /// An input of the unit: what a bench file places as a stimulus.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum UnitInput { $(#[doc = $key] $name,)* }
+
+        impl UnitInput {
+            pub(super) const ALL: &[Self] = &[$(Self::$name,)*];
+
+            /// Its key in a bench file.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$name => $key,)* }
+            }
+        }
+    };
+}
+
+// Train lines first, by their bits.
+inputs! {
+    DoorsClosed "doors_closed", Hcr "hcr", MaintenanceKey "maintenance_key", Acknowledge "acknowledge", Start "start",
+    EbLoop "eb_loop", Forward "forward", Backward "backward", EbLoopFed "eb_loop_fed", DoorsBySide "doors_by_side",
+    LeftClosed "left_closed", LeftLocked "left_locked", RightClosed "right_closed", RightLocked "right_locked",
+    Code "code", Crosstalk "crosstalk", Tacho1 "tacho1", Tacho2 "tacho2", Marker "marker", ModeSwitch "mode_switch",
+    Controller "controller", Entries "entries", Twc "twc", Supply "supply",
+}
+
+impl UnitInput {
+    /// The input of this key.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|known| known.name() == name)
+    }
+
+    /// Train lines.
+    pub(super) fn lines() -> impl Iterator<Item = (Self, TrainLines)> {
+        let bits = (0..).map(|bit| TrainLines::from_bits_retain(1 << bit));
+        let lines = Self::ALL.iter().copied();
+        lines
+            .take_while(|input| *input <= Self::RightLocked)
+            .zip(bits)
+    }
+
+    /// What a SCPI instrument does for it.
+    pub(super) const fn act(self) -> Option<&'static str> {
+        match self {
+            Self::Code => Some("code"),
+            Self::Tacho1 | Self::Tacho2 => Some("pulses"),
+            Self::Supply => Some("supply"),
+            _ => None,
+        }
+    }
+
+    /// Relays that make it; 0 = relays cannot.
+    const fn coils(self) -> usize {
+        match self {
+            Self::ModeSwitch => ModeSwitch::ALL.len(),
+            Self::Marker => 4,
+            Self::Code | Self::Tacho1 | Self::Tacho2 => 0,
+            Self::Controller | Self::Entries | Self::Twc | Self::Crosstalk => 0,
+            _ => 1,
+        }
+    }
+
+    /// Frames to the unit carry it with the others of a scan.
+    pub(super) const fn is_in_inputs(self) -> bool {
+        !matches!(
+            self,
+            Self::Crosstalk | Self::Entries | Self::Twc | Self::Supply
+        )
+    }
+
+    /// A person is quick enough for it.
+    const fn is_by_hand(self) -> bool {
+        !matches!(
+            self,
+            Self::Code | Self::Crosstalk | Self::Tacho1 | Self::Tacho2 | Self::Marker | Self::Twc
+        )
+    }
+
+    /// What it has to state where it is.
+    pub(super) fn check(self, point: &Point, (entry, model): Named<'_>) -> Result<(), String> {
+        let Place::Instrument(instrument) = point.place() else {
+            return match point.place() {
+                _ if self == Self::Supply => Err("an instrument switches it".into()),
+                Place::Operator(_) if matches!(self, Self::EbLoop | Self::EbLoopFed) => {
+                    Err("no step moves it, so no person is asked for it".into())
+                }
+                Place::Operator(_) if !self.is_by_hand() => {
+                    Err("no person is quick enough for it".into())
+                }
+                _ => Ok(()),
+            };
+        };
+        let Some(entry) = entry else {
+            return Err(format!("no instrument {instrument}"));
+        };
+        match (entry.kind(), self.act(), self.coils()) {
+            (Kind::Scpi, Some(act), _) => {
+                let Some(model) = model.filter(|model| model.acts.contains_key(act)) else {
+                    return Err(format!("the model of {instrument} has no act {act}"));
+                };
+                if self == Self::Supply && point.volts.is_none() {
+                    return Err("volts = the unit's supply".into());
+                }
+                let volts = point.volts.map(|volts| ("volts", volts));
+                let beyond = model.out_of_range(&volts.into_iter().collect::<BTreeMap<_, _>>());
+                beyond.map_or(Ok(()), |beyond| Err(beyond.to_string()))
+            }
+            (Kind::Sound, ..) if matches!(self, Self::Code | Self::Twc | Self::Marker) => Ok(()),
+            (Kind::Sound, ..) => Err("a sound card carries code, twc and marker".into()),
+            (Kind::Modbus, None, 0) => Err("a module has no contacts for it".into()),
+            (Kind::Modbus, _, coils) if coils > 0 => {
+                if coils != 1 && point.proved_by.is_some() {
+                    return Err("proved_by is for a stimulus of one relay".into());
+                }
+                if self == Self::Marker && point.pulse_ms == 0 {
+                    return Err("pulse_ms is at least 1".into());
+                }
+                match point.coils.len() {
+                    n if n == coils => Ok(()),
+                    n => Err(format!("it takes {coils} coils, not {n}")),
+                }
+            }
+            _ => Err(format!("{instrument} is no instrument for it")),
+        }
+    }
+}
 
 impl Places {
     /// The stimuli and readings that this instrument has.
@@ -25,57 +155,6 @@ impl Places {
     }
 }
 
-pub(super) fn check_stimulus(
-    name: &str,
-    point: &Point,
-    (entry, model): Named<'_>,
-) -> Result<(), String> {
-    let Place::Instrument(instrument) = point.place() else {
-        let cab = !["code", "crosstalk", "tacho1", "tacho2", "marker", "twc"].contains(&name);
-        return match point.place() {
-            Place::Operator(_) if name.starts_with("eb_loop") => {
-                Err("no step moves it, so no person is asked for it".into())
-            }
-            Place::Operator(_) if !cab => Err("no person is quick enough for it".into()),
-            _ => Ok(()),
-        };
-    };
-    let act = act_of(name);
-    match (entry.map(InstrumentEntry::at), act) {
-        (None, _) => Err(format!("no instrument {instrument}")),
-        (Some(At::Scpi(_)), Some(act)) => {
-            match model.is_some_and(|model| model.acts.contains_key(act)) {
-                true => Ok(()),
-                false => Err(format!("the model of {instrument} has no act {act}")),
-            }
-        }
-        (Some(At::Sound(_)), _) => match name {
-            "code" | "twc" | "marker" => Ok(()),
-            _ => Err("a sound card carries code, twc and marker".into()),
-        },
-        (Some(At::Modbus(..)), None) => {
-            let coils = match name {
-                "mode_switch" => ModeSwitch::ALL.len(),
-                "marker" => 4,
-                "controller" | "entries" | "twc" | "crosstalk" => 0,
-                _ => 1,
-            };
-            if coils != 1 && point.proved_by.is_some() {
-                return Err("proved_by is for a stimulus of one relay".into());
-            }
-            if name == "marker" && point.pulse_ms == 0 {
-                return Err("pulse_ms is at least 1".into());
-            }
-            match point.coils.len() {
-                n if n == coils && n > 0 => Ok(()),
-                _ if coils == 0 => Err("a module has no contacts for it".into()),
-                n => Err(format!("it takes {coils} coils, not {n}")),
-            }
-        }
-        _ => Err(format!("{instrument} is no instrument for it")),
-    }
-}
-
 pub(super) fn check_reading(
     is_contact: bool,
     point: &Point,
@@ -84,28 +163,19 @@ pub(super) fn check_reading(
     let Place::Instrument(instrument) = point.place() else {
         return Ok(());
     };
-    match entry.map(InstrumentEntry::at) {
+    match entry.map(InstrumentEntry::kind) {
         None => Err(format!("no instrument {instrument}")),
-        Some(At::Sound(_)) => Err("a sound card reads nothing".into()),
-        Some(At::Modbus(..)) if !is_contact => Err("an input is no display".into()),
-        Some(At::Scpi(_)) if is_contact => Err("a contact is read by an input".into()),
-        Some(At::Modbus(..)) if point.input.is_some() => Ok(()),
-        Some(At::Modbus(..)) => Err("which input?".into()),
-        Some(At::Scpi(_)) => {
+        Some(Kind::Sound) => Err("a sound card reads nothing".into()),
+        Some(Kind::Modbus) if !is_contact => Err("an input is no display".into()),
+        Some(Kind::Scpi) if is_contact => Err("a contact is read by an input".into()),
+        Some(Kind::Modbus) if point.input.is_some() => Ok(()),
+        Some(Kind::Modbus) => Err("which input?".into()),
+        Some(Kind::Scpi) => {
             let read = point.read.as_deref().unwrap_or_default();
             match model.is_some_and(|model| model.reads.contains_key(read)) {
                 true => Ok(()),
                 false => Err(format!("the model of {instrument} reads no \"{read}\"")),
             }
         }
-    }
-}
-
-/// What a SCPI instrument does for a stimulus.
-pub(super) fn act_of(stimulus: &str) -> Option<&'static str> {
-    match stimulus {
-        "code" => Some("code"),
-        "tacho1" | "tacho2" => Some("pulses"),
-        _ => None,
     }
 }

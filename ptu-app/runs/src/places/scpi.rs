@@ -1,8 +1,7 @@
-//! A SCPI instrument over TCP: lines out, lines in, its error queue after each command.
+//! A SCPI instrument: lines out, lines in, its error queue after each command.
 
 use std::collections::BTreeMap;
-use std::io::{BufRead, BufReader, Write};
-use std::net::TcpStream;
+use std::io::{Read, Write};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -11,9 +10,9 @@ use protocol::signal::Signal;
 use toml::Spanned;
 
 use super::file::{Places, Point};
-use super::modbus::{connect, io_fault};
+use super::line::{SharedLine, io_fault, locked};
 use super::model::{Model, filled};
-use super::points::act_of;
+use super::points::UnitInput;
 use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted, span};
 
 /// Number of the error that says that its queue is full (SCPI-99 21.8.11).
@@ -26,24 +25,23 @@ const LONGEST: usize = 4096;
 
 /// An instrument whose model was checked, with the points of the bench file that it has.
 pub(super) struct Scpi {
-    stream: BufReader<TcpStream>,
+    line: SharedLine,
+    /// Read, and not yet an answer.
+    came: Vec<u8>,
     model: Arc<Model>,
-    stimuli: Vec<(&'static str, Point)>,
+    stimuli: Vec<(UnitInput, Point)>,
     readings: Vec<(Signal, Point)>,
     set: Wanted,
 }
 
 impl Scpi {
-    /// Connects and checks: the model, and an error queue that is empty.
-    pub fn open(places: &Places, name: &str, address: &str) -> Result<Self, InstrumentFault> {
+    /// Connects and checks: the model, its serial number, and an error queue that is empty.
+    pub fn open(places: &Places, name: &str, line: SharedLine) -> Result<Self, InstrumentFault> {
         let (stimuli, readings) = places.points_at(name);
-        let missing = || InstrumentFault::NotThere {
-            at: address.to_owned(),
-            why: "no driver".into(),
-        };
         let mut scpi = Self {
-            stream: BufReader::new(connect(address)?),
-            model: places.models.get(name).cloned().ok_or_else(missing)?,
+            line,
+            came: Vec::new(),
+            model: places.models[name].clone(),
             stimuli,
             readings,
             set: Wanted::new(),
@@ -55,6 +53,16 @@ impl Scpi {
                 expected: scpi.model.idn.clone(),
             });
         }
+        let expected = &places.instruments[name].serial;
+        match serial_of(&found) {
+            Some(serial) if !serial.eq_ignore_ascii_case(expected) => {
+                return Err(InstrumentFault::OtherSerial {
+                    found: serial.to_owned(),
+                    expected: expected.clone(),
+                });
+            }
+            _ => {}
+        }
         for command in scpi.model.clone().begin.iter() {
             scpi.command(command)?;
         }
@@ -62,44 +70,41 @@ impl Scpi {
         Ok(scpi)
     }
 
-    fn say(&mut self, line: &str) -> Result<(), InstrumentFault> {
-        let sent = self
-            .stream
-            .get_mut()
-            .write_all(format!("{line}\n").as_bytes());
+    fn say(&self, text: &str) -> Result<(), InstrumentFault> {
+        let sent = locked(&self.line).write_all(format!("{text}\n").as_bytes());
         sent.map_err(|error| io_fault(&error))
     }
 
     fn ask(&mut self, question: &str) -> Result<String, InstrumentFault> {
+        locked(&self.line).forget();
         self.say(question)?;
         self.answer(question, Instant::now() + ANSWERS_WITHIN)
     }
 
-    /// A line, whole until then, however its bytes come.
+    /// The next line.
     fn answer(&mut self, question: &str, until: Instant) -> Result<String, InstrumentFault> {
-        let mut answer = Vec::new();
-        while !answer.ends_with(b"\n") {
+        let mut line = locked(&self.line);
+        let end = loop {
+            if let Some(end) = self.came.iter().position(|byte| *byte == b'\n') {
+                break end;
+            }
+            if self.came.len() > LONGEST {
+                let found = format!("{} bytes", self.came.len());
+                let asked = question.to_owned();
+                return Err(InstrumentFault::NoAnswer { asked, found });
+            }
             let left = until.saturating_duration_since(Instant::now());
             if left.is_zero() {
                 return Err(InstrumentFault::Silent(span(ANSWERS_WITHIN)));
             }
-            let came = self.stream.get_ref().set_read_timeout(Some(left));
-            let came = came.and_then(|()| self.stream.fill_buf());
-            let came = came.map_err(|error| io_fault(&error))?;
-            if came.is_empty() {
-                return Err(InstrumentFault::Disconnected(question.to_owned()));
+            let mut chunk = [0; LONGEST];
+            let count = line.wait_for(left).and_then(|()| line.read(&mut chunk));
+            match count.map_err(|error| io_fault(&error))? {
+                0 => return Err(InstrumentFault::Disconnected(question.to_owned())),
+                count => self.came.extend_from_slice(&chunk[..count]),
             }
-            let end = came.iter().position(|byte| *byte == b'\n');
-            let end = end.map_or(came.len(), |end| end + 1);
-            answer.extend_from_slice(&came[..end]);
-            self.stream.consume(end);
-            if answer.len() > LONGEST {
-                return Err(InstrumentFault::NoAnswer {
-                    asked: question.to_owned(),
-                    found: format!("{} bytes", answer.len()),
-                });
-            }
-        }
+        };
+        let answer: Vec<u8> = self.came.drain(..=end).collect();
         Ok(String::from_utf8_lossy(&answer).trim().to_owned())
     }
 
@@ -127,9 +132,14 @@ impl Scpi {
         }
     }
 
-    fn act(&mut self, stimulus: &str, channel: u8, values: &Values) -> Result<(), InstrumentFault> {
+    fn act(
+        &mut self,
+        input: UnitInput,
+        channel: u8,
+        values: &Values,
+    ) -> Result<(), InstrumentFault> {
         let model = self.model.clone();
-        let act = act_of(stimulus).and_then(|act| model.acts.get(act));
+        let act = input.act().and_then(|act| model.acts.get(act));
         let act = act.map(Spanned::get_ref);
         let Some(act) = act else {
             return Ok(());
@@ -142,10 +152,7 @@ impl Scpi {
             _ => &act.on,
         };
         if commands.is_empty() && !is_off {
-            return Err(InstrumentFault::Refused {
-                command: format!("{stimulus}, unmodulated"),
-                error: "its driver has no commands for it".into(),
-            });
+            return Err(InstrumentFault::NoUnmodulated);
         }
         let mut values = values.clone();
         values.insert("channel", f64::from(channel));
@@ -158,6 +165,12 @@ impl Scpi {
     }
 }
 
+/// The serial number in an answer to `*IDN?`: maker, model, serial number, version; 0 = it does not tell (IEEE 488.2 10.14).
+fn serial_of(idn: &str) -> Option<&str> {
+    let serial = idn.split(',').nth(2)?.trim();
+    (!["", "0"].contains(&serial)).then_some(serial)
+}
+
 impl Instrument for Scpi {
     fn cycle(
         &mut self,
@@ -167,8 +180,8 @@ impl Instrument for Scpi {
         let mut did = !self.readings.is_empty();
         for (name, point) in self.stimuli.clone() {
             let Some(values) = wanted
-                .get(name)
-                .filter(|values| self.set.get(name) != Some(values))
+                .get(&name)
+                .filter(|values| self.set.get(&name) != Some(values))
             else {
                 continue;
             };

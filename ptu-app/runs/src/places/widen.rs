@@ -8,7 +8,7 @@ use protocol::Duration;
 use protocol::signal::Signal;
 
 use super::file::{Place, Places, Point};
-use super::fit::{inner, inner_mut};
+use super::fit::{Teller, inner, inner_mut};
 use crate::words::BenchNote;
 
 /// Greatest speed and acceleration of steps that continue each other.
@@ -43,12 +43,7 @@ impl Places {
     }
 
     /// Motion is what steps before left that this one continues, and becomes what this one leaves.
-    pub(super) fn widen(
-        &self,
-        step: &mut Step,
-        motion: &mut Motion,
-        say: &dyn Fn(BenchNote) -> String,
-    ) {
+    pub(super) fn widen(&self, step: &mut Step, motion: &mut Motion, tell: &Teller<'_>) {
         let acts = self.acts_late();
         for action in &step.actions {
             if let Action::Stimulus(
@@ -99,7 +94,7 @@ impl Places {
                 let by = format!("{:.1} {}", by, measure.unit());
                 measure
                     .origin
-                    .add(say(BenchNote::Wider(self.name.clone(), used, by)));
+                    .add((tell.note)(BenchNote::Wider(self.name.clone(), used, by)));
             }
         }
         let late = acts + self.reads_late(&READ_ANY);
@@ -127,7 +122,7 @@ impl Places {
             let used = self.safe.join(" ");
             let by = format!("{:.0} ms", late.as_secs() * 1000.0);
             step.origin
-                .add(say(BenchNote::Wider(self.name.clone(), used, by)));
+                .add((tell.note)(BenchNote::Wider(self.name.clone(), used, by)));
         }
     }
 

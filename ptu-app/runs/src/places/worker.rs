@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 use btu_rig::rig::InstrumentFault;
 use protocol::signal::Signal;
 
+use super::points::UnitInput;
+
 /// Longest time for an answer: less than what all have to become safe in.
 pub(super) const ANSWERS_WITHIN: Duration = Duration::from_millis(400);
 /// Time without a scan of the bench after which outputs are switched off, and what each further instrument waits longer,
@@ -21,7 +23,7 @@ const SLOW_AFTER: u32 = 3;
 /// Values of a stimulus by name.
 pub(super) type Values = BTreeMap<&'static str, f64>;
 /// What is wanted of an instrument, by stimulus.
-pub(super) type Wanted = BTreeMap<&'static str, Values>;
+pub(super) type Wanted = BTreeMap<UnitInput, Values>;
 
 /// An instrument that is connected and has passed its self-check.
 pub(super) trait Instrument: Send {
@@ -280,7 +282,7 @@ mod tests {
     #[test]
     fn a_long_poll_delays_no_switching_off() {
         let (mut worker, offs) = started(0, 0, 5_000);
-        worker.feed(&Wanted::from([("hcr", Values::new())]));
+        worker.feed(&Wanted::from([(UnitInput::Hcr, Values::new())]));
         std::thread::sleep(UNFED + Duration::from_millis(300));
         assert_eq!(*offs.lock().expect("a count"), 1);
         worker.end(Duration::from_secs(1));

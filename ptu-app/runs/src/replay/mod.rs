@@ -13,10 +13,12 @@ mod original;
 mod path;
 mod replay_embedded;
 mod rerun;
+mod residual;
 
 pub use compare::{Comparison, Deviation, Difference, Rule, compare};
 pub use explain::{Explanation, Link, explain};
 pub use original::{Original, rule_between};
 pub use rerun::{ReplayMatch, Rerun, Rerunning, rerun};
+pub use residual::{add_residuals, first_deviation};
 
 pub use replay_embedded::good_twin;

@@ -237,7 +237,7 @@ impl BenchSetup {
 
 /// Those the unit itself has; it knows nothing of the train's.
 fn of_unit(faults: &[FaultMode]) -> Vec<FaultMode> {
-    let own = faults.iter().filter(|fault| !fault.place.on_train());
+    let own = faults.iter().filter(|fault| fault.place.in_unit());
     own.cloned().collect()
 }
 

@@ -129,8 +129,16 @@ impl BenchChoice {
     pub fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
         let endpoint = Endpoint::from_str(&self.endpoint).map_err(Failure::usage)?;
         let faults = directory.chosen_faults(&self.faults)?;
-        if endpoint != Endpoint::Sim && faults.iter().any(|fault| !fault.place.on_train()) {
+        if endpoint != Endpoint::Sim && faults.iter().any(|fault| fault.place.in_unit()) {
             return Err(Failure::usage(RunTrouble::InjectElsewhere));
+        }
+        let by_numbers = self.signals == Signals::Values
+            && self.harness != Harness::None
+            && self.places.is_empty();
+        if let Some(fault) = faults.iter().find(|fault| fault.place.on_bench())
+            && !by_numbers
+        {
+            return Err(Failure::usage(RunTrouble::BenchFault(fault.id.clone())));
         }
         let serial = Some(self.serial.clone()).filter(|serial| !serial.is_empty());
         if let Some(serial) = &serial {

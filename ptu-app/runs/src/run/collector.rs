@@ -3,6 +3,7 @@
 
 use btu_rig::procedure::{Finding, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict};
 use btu_rig::recorder::RecordedWindow;
+use btu_rig::rig::LinkTrouble;
 use fault_db::{Id, MeasurementRecord, RecordingRecord, StepCounter, StepCounts, StepRecord};
 use protocol::{Duration, Instant};
 
@@ -49,6 +50,8 @@ pub struct Outcome {
     pub exit: Exit,
     /// The history does not hold the run: why, and where it is kept.
     pub lost: Option<Trouble>,
+    /// Nothing was begun: why.
+    pub prevented: Option<Trouble>,
     /// How many of the run's steps were due, passed, failed and so on.
     pub counts: StepCounts,
 }
@@ -84,7 +87,7 @@ pub struct Collector<'a> {
     search: bool,
     /// Steps by procedure and place in it.
     counter: StepCounter<(String, usize)>,
-    link_lost: bool,
+    link_lost: Option<LinkTrouble>,
     /// The tester itself could not go on.
     broken_off: bool,
 }
@@ -119,7 +122,7 @@ impl<'a> Collector<'a> {
             planned,
             search,
             counter: StepCounter::default(),
-            link_lost: false,
+            link_lost: None,
             broken_off: false,
         }
     }
@@ -219,7 +222,7 @@ impl<'a> Collector<'a> {
                 self.store_outside(&procedure.id);
             }
             SessionEvent::Run(_) | SessionEvent::Rows(_) => {}
-            SessionEvent::LinkLost(_) => self.link_lost = true,
+            SessionEvent::LinkLost(why) => self.link_lost = Some(why),
             SessionEvent::Fault(fault) => self.fault(fault),
             SessionEvent::Trace(cut) => self.trace(&cut),
             SessionEvent::Recording(stimuli) => self.recording(&procedure.id, &stimuli),
@@ -235,7 +238,7 @@ impl<'a> Collector<'a> {
     fn overall(&self) -> Verdict {
         match self.verdict {
             Verdict::Aborted => Verdict::Aborted,
-            _ if self.link_lost || self.broken_off => Verdict::Error,
+            _ if self.link_lost.is_some() || self.broken_off => Verdict::Error,
             // Nothing ran: nothing was tested.
             Verdict::Skipped => Verdict::Error,
             verdict => verdict,
@@ -335,8 +338,18 @@ impl<'a> Collector<'a> {
         let mut verdict = self.overall();
         let counts = self.counter.counts(self.planned);
         let (run, of, left) = (counts.run(), counts.planned, counts.not_run());
-        if self.link_lost && left > 0 {
-            self.say_of_whole(verdict, Finding::LinkLostAt { run, of, left });
+        if let Some(why) = self.link_lost.take().filter(|_| left > 0) {
+            let instrument = match why {
+                LinkTrouble::Instrument { instrument, .. } => Some(instrument),
+                _ => None,
+            };
+            let at = Finding::LinkLostAt {
+                run,
+                of,
+                left,
+                instrument,
+            };
+            self.say_of_whole(verdict, at);
         } else if self.search && left > 0 && is_passed(verdict) {
             verdict = Verdict::Inconclusive;
             self.say_of_whole(verdict, Finding::NotAcceptance { run, of });
@@ -362,6 +375,7 @@ impl<'a> Collector<'a> {
                 bench_time: self.before,
                 exit,
                 lost: None,
+                prevented: None,
                 counts,
             },
         )

@@ -51,7 +51,7 @@ impl BenchSetup {
     pub(super) fn reach(&self, stop: &Stop) -> Result<ReadyUnit, Failure> {
         let mut link = WireLink::open(&self.endpoint)?.slower(self.slower);
         if let Some(places) = &self.places {
-            link = link.with_instruments(Placed::open(places).map_err(NoUnit::PortFailed)?);
+            link = link.with_instruments(Placed::open(places).map_err(NoUnit::BadBench)?);
         }
         let mut rig = self.rig(self.seed, Instant::ZERO);
         rig.set_harness(self.harness);
@@ -130,12 +130,10 @@ impl BenchSetup {
         if let Some(why) = session.bench().rig().turned_away() {
             return Err(NoUnit::Taken(at(), why).into());
         }
-        if let Some(error) = session.link_failure() {
-            return Err(NoUnit::PortFailed(error.clone()).into());
+        if let Some(why) = session.link_failure().filter(|why| !why.is_of_the_bench()) {
+            return Err(NoUnit::PortFailed(why.clone()).into());
         }
-        if let Some(why) = session.link_error() {
-            return Err(NoUnit::BadLink(at(), why).into());
-        }
+        self.link_holds(session)?;
         let Some(identity) = session.bench().rig().identity().copied().filter(|_| ready) else {
             return Err(NoUnit::NotReady(at(), READY_WITHIN).into());
         };
@@ -150,15 +148,21 @@ impl BenchSetup {
             let rig = bench.rig();
             rig.evidence().log == LogState::Read || rig.link_error().is_some()
         });
-        if let Some(why) = session.link_error() {
-            return Err(NoUnit::BadLink(at(), why).into());
-        }
+        self.link_holds(session)?;
         let failed = session.bench().rig().evidence().self_test;
         if !failed.is_empty() {
             let sample = session.bench().rig().sample().clone();
             found.push(fault_watch::of_self_test(failed, session.now(), &sample));
         }
         Ok(identity)
+    }
+
+    fn link_holds(&self, session: &Session<WireLink>) -> Result<(), NoUnit> {
+        match session.link_error() {
+            None => Ok(()),
+            Some(why) if why.is_of_the_bench() => Err(NoUnit::BadBench(why)),
+            Some(why) => Err(NoUnit::BadLink(self.endpoint.clone(), why)),
+        }
     }
 
     /// Holds the unit's clock against the bench's, as long as there is doubt, from the `first` time it reported

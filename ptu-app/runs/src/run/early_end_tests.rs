@@ -361,10 +361,9 @@ fn a_run_stopped_before_its_unit_was_reached_is_aborted() {
     stop.press();
     let (folder, store) = store();
     let mut plan = plan_of(&[PASSES]);
-    let Err(failure) = run(&mut plan, setup, store, &stop, &mut ()) else {
-        panic!("there is no unit")
-    };
-    assert_eq!(failure.exit, Exit::Aborted, "{failure}");
+    let (_, outcome) = run(&mut plan, setup, store, &stop, &mut ()).expect("a recorded run");
+    assert_eq!(outcome.exit, Exit::Aborted);
+    assert!(outcome.prevented.is_some(), "there is no unit");
     let store = Store::open_read_only(&folder.path().join("history.db")).expect("the database");
     let runs = store.runs(&fault_db::RunFilter::default()).expect("runs");
     let verdicts: Vec<_> = runs.iter().map(|run| run.verdict).collect();

@@ -40,7 +40,7 @@ mod settle;
 mod signals;
 mod store_thread;
 mod suite;
-mod trace_data;
+pub(crate) mod trace_data;
 mod unfinished;
 pub mod unit_text;
 #[cfg(test)]

@@ -211,7 +211,9 @@ impl<L: UnitLink> Session<L> {
         self.keep_in_step();
         let late = self.bench.link_mut().take_late();
         let behind = self.behind().max(late);
-        if late > Duration::ZERO || self.max_lag.is_some_and(|max_lag| behind > max_lag) {
+        let is_late = late > Duration::ZERO || self.max_lag.is_some_and(|at_most| behind > at_most);
+        // What broke took its time, and no attempt at a step makes it good.
+        if is_late && self.link_error.is_none() {
             self.stalled = self.stalled.max(Some(behind));
             let now = self.bench.now();
             self.bench.rig_mut().note_stalled(now);

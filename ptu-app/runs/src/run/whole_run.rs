@@ -4,8 +4,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Finding, Outside, OutsideStep};
-use fault_db::{RunEnd, RunRecord, Store, UnitRecord, Verdict};
-use protocol::Instant;
+use fault_db::{Instrument, RunEnd, RunRecord, StepCounter, Store, UnitRecord, Verdict};
+use protocol::{Duration, Instant};
 
 use super::adaptive;
 use super::bench_contents::BenchContents;
@@ -24,10 +24,10 @@ use crate::platform;
 use crate::stop::Stop;
 use crate::stored::{WHOLE_RUN, from_stored, outside_record, stored};
 
-/// Runs the plan and records it; the store comes back for the report.
+/// Runs the plan and records it, also where the unit cannot be reached; the store comes back for the report.
 ///
 /// # Errors
-/// The unit cannot be reached or the database fails; what was recorded stays.
+/// The database fails; what was recorded stays.
 pub fn run(
     plan: &mut RunPlan,
     setup: BenchSetup,
@@ -36,7 +36,11 @@ pub fn run(
     listener: &mut dyn Listener,
 ) -> Result<(Store, Outcome), Failure> {
     let began = RunStart::now();
-    let (mut connected, store) = reach(plan, &setup, store, stop, &began)?;
+    let (reached, store) = reach(plan, &setup, store, stop, &began)?;
+    let mut connected = match reached {
+        Ok(connected) => connected,
+        Err(over) => return Ok((store, *over)),
+    };
     trace_repaired(&mut plan.tasks, &store, &connected.serial())?;
     if plan.measuring.guard_band {
         instruments::guard_band(&mut plan.tasks, &store)?;
@@ -47,7 +51,7 @@ pub fn run(
 /// The same of an adaptive run, which goes by what `adaptive` makes for the unit as it was reached.
 ///
 /// # Errors
-/// The unit cannot be reached, it has no dictionary, or the database fails; what was recorded stays.
+/// The unit has no dictionary, or the database fails; what was recorded stays.
 pub fn search(
     plan: &mut RunPlan,
     setup: BenchSetup,
@@ -57,7 +61,11 @@ pub fn search(
     adaptive: impl FnOnce(&Store, &str, Connection) -> Result<Adaptive, Failure>,
 ) -> Result<(Store, Outcome), Failure> {
     let began = RunStart::now();
-    let (mut connected, store) = reach(plan, &setup, store, stop, &began)?;
+    let (reached, store) = reach(plan, &setup, store, stop, &began)?;
+    let mut connected = match reached {
+        Ok(connected) => connected,
+        Err(over) => return Ok((store, *over)),
+    };
     let connection = connected.connection();
     trace_repaired(&mut plan.tasks, &store, &connected.serial())?;
     if plan.measuring.guard_band {
@@ -67,37 +75,67 @@ pub fn search(
     run_on(&mut connected, &began, plan, &setup, store, stop, listener)
 }
 
-/// Reaches the unit; a run that cannot is recorded, too.
+/// The unit, or what the run came to that could not reach it.
+type Reached = Result<Connected, Box<Outcome>>;
+
+/// Reaches the unit; a run that cannot is recorded, too, and over.
 fn reach(
     plan: &RunPlan,
     setup: &BenchSetup,
     store: Store,
     stop: &Stop,
     began: &RunStart,
-) -> Result<(Connected, Store), Failure> {
-    run_record(plan, setup, setup.expected_serial(), began.at_us).check()?;
+) -> Result<(Reached, Store), Failure> {
+    let serial = setup.expected_serial();
+    run_record(plan, setup, serial.clone(), began.at_us).check()?;
     let usable = instruments::of_run(&store, setup, plan.measuring.uncalibrated);
-    match usable.and_then(|_| setup.connect(stop)) {
-        Ok(connected) => Ok((connected, store)),
-        Err(failure) => {
-            let record = run_record(plan, setup, setup.expected_serial(), began.at_us);
-            let verdict = match failure.exit {
-                Exit::Aborted => Verdict::Aborted,
-                _ => Verdict::Error,
-            };
-            let run_store = RunStore::begin(store, record, None, stop)?;
-            run_store.step(outside_record(
-                WHOLE_RUN,
-                &OutsideStep {
-                    place: Outside::Bench,
-                    verdict: from_stored(verdict),
-                    finding: prevented_by(&failure.message),
-                    at: Instant::ZERO,
-                },
-                0,
-            ));
-            run_store.finish(began.end(verdict, 0))?;
-            Err(failure)
+    let failure = match usable.and_then(|_| setup.connect(stop)) {
+        Ok(connected) => return Ok((Ok(connected), store)),
+        Err(failure) => failure,
+    };
+    let made = BenchContents::of(setup, serial.clone(), Connection::Btu);
+    let used = instruments::of_run(&store, setup, true)?;
+    let record = RunRecord {
+        evidence: Some(plan.evidence(made, used).text()),
+        ..run_record(plan, setup, serial, began.at_us)
+    };
+    let verdict = match failure.exit {
+        Exit::Aborted => Verdict::Aborted,
+        _ => Verdict::Error,
+    };
+    let run_store = RunStore::begin(store, record, None, stop)?;
+    let id = run_store.id;
+    run_store.step(outside_record(
+        WHOLE_RUN,
+        &OutsideStep {
+            place: Outside::Bench,
+            verdict: from_stored(verdict),
+            finding: prevented_by(&failure.message),
+            at: Instant::ZERO,
+        },
+        0,
+    ));
+    let mut counter = StepCounter::<()>::default();
+    counter.note_outside(verdict);
+    let (store, lost) = run_store.finish(began.end(verdict, 0))?;
+    let over = Outcome {
+        id,
+        verdict: from_stored(verdict),
+        bench_time: Duration::ZERO,
+        exit: failure.exit,
+        lost,
+        prevented: Some(failure.message),
+        counts: counter.counts(different_steps(&plan.tasks)),
+    };
+    Ok((Err(Box::new(over)), store))
+}
+
+impl RunPlan {
+    /// What its results rest on, on a bench that is made so and measures with these.
+    fn evidence(&self, made: BenchContents, used: Vec<Instrument>) -> Evidence {
+        Evidence {
+            is_part: self.tasks.iter().any(|task| task.options.chosen.is_some()),
+            ..Evidence::now(made, used, self.measuring, different_steps(&self.tasks))
         }
     }
 }
@@ -120,13 +158,9 @@ pub fn run_on(
     let made = BenchContents::of(setup, connected.serial(), connection);
     let used = instruments::of_run(&store, setup, plan.measuring.uncalibrated)?;
     let planned = different_steps(&plan.tasks);
-    let evidence = Evidence {
-        is_part: plan.tasks.iter().any(|task| task.options.chosen.is_some()),
-        ..Evidence::now(made.clone(), used, plan.measuring, planned)
-    };
     let record = RunRecord {
         connection: Some(connection.word().into()),
-        evidence: Some(evidence.text()),
+        evidence: Some(plan.evidence(made.clone(), used).text()),
         ..run_record(plan, setup, connected.serial(), began.at_us)
     };
     let run_store = RunStore::begin(store, record, listener.line_printer(), stop)?;

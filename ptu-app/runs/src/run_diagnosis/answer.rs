@@ -18,7 +18,9 @@ use super::{UNIT_CONFIG, settings};
 use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
 use crate::failure::{DiagnosisTrouble, Failure, Trouble, Unknown, did_you_mean};
+use crate::replay::add_residuals;
 use crate::run::{Adaptive, of_run};
+use crate::stored::DEPARTURE;
 use crate::structure::Structure;
 use crate::symptoms::{self, Symptom};
 use crate::words::Warning;
@@ -105,13 +107,15 @@ pub fn diagnose(
         mut warnings,
         current,
     } = choose(Some(store), directory, connection_of(&run))?;
-    let seen = of_run(&run, &occurrences);
+    let mut seen = of_run(&run, &occurrences);
+    add_residuals(&mut seen, (store, directory), &run, &occurrences);
     let mut seen = comparable(&run, seen, &dictionary, &mut warnings);
     for other in with {
-        let more = of_same_unit(store, &run, *other)?;
+        let more = of_same_unit((store, directory), &run, *other)?;
         let more = comparable(&run, more, &dictionary, &mut warnings);
         seen.steps.extend(more.steps);
         seen.signs.extend(more.signs);
+        seen.residuals.extend(more.residuals);
     }
     if seen.is_empty() {
         warnings.push(Warning::NothingToDiagnose);
@@ -181,7 +185,11 @@ pub(super) fn observed(
 }
 
 /// What was seen in another run of the unit.
-fn of_same_unit(store: &Store, run: &RunDetail, other: Id) -> Result<Observation, Failure> {
+fn of_same_unit(
+    (store, directory): (&Store, &ScriptsDirectory),
+    run: &RunDetail,
+    other: Id,
+) -> Result<Observation, Failure> {
     let other = store.run(other)?;
     let (this, that) = (&run.run, &other.run);
     if this.id == that.id {
@@ -196,7 +204,10 @@ fn of_same_unit(store: &Store, run: &RunDetail, other: Id) -> Result<Observation
             this.unit_config_name.clone(),
         )));
     }
-    Ok(of_run(&other, &store.run_occurrences(that.id)?))
+    let occurrences = store.run_occurrences(that.id)?;
+    let mut seen = of_run(&other, &occurrences);
+    add_residuals(&mut seen, (store, directory), &other, &occurrences);
+    Ok(seen)
 }
 
 fn no_such_part(part: &LruId, model: &Model<'_>) -> Failure {
@@ -306,6 +317,10 @@ fn comparable(
     if !run.steps.is_empty() && run.run.line != basis.line {
         warnings.push(Warning::OtherLine(run.run.line.clone(), basis.line.clone()));
     }
+    if !run.run.train.is_empty() && run.run.train != basis.train {
+        let (train, of_dictionary) = (run.run.train.clone(), basis.train.clone());
+        warnings.push(Warning::OtherTrain(train, of_dictionary));
+    }
     let others = run.scripts.iter().filter(|script| {
         let name = script.path.trim_end_matches(".star");
         let sum = basis.procedures.get(name);
@@ -319,6 +334,12 @@ fn comparable(
         warnings.push(Warning::OtherScripts(scripts));
         seen.steps
             .retain(|step| !others.contains(&step.check.procedure));
+    }
+    let (departure, others): (Vec<_>, Vec<_>) = (std::mem::take(&mut seen.steps).into_iter())
+        .partition(|step| step.check.procedure.starts_with(DEPARTURE));
+    seen.steps = others;
+    if !departure.is_empty() {
+        warnings.push(Warning::Departure);
     }
     let before = seen.steps.len();
     seen.steps

@@ -6,6 +6,7 @@ use diagnosis::{Basis, Dictionary};
 use fault_db::Store;
 
 use super::basis::Contents;
+use crate::campaign::known_on;
 use crate::data::ScriptsDirectory;
 use crate::failure::{DiagnosisTrouble, Failure, FileTrouble};
 use crate::words::{Differs, Warning};
@@ -99,7 +100,7 @@ pub fn choose(
         let differs = differences(&dictionary.basis, &now);
         warnings.push(Warning::Stale(differs, how));
     }
-    let known = directory.faults()?.faults.len();
+    let known = known_on(&directory.faults()?, connection).count();
     if dictionary.modes.len() < known {
         warnings.push(Warning::KnowsPart(dictionary.modes.len(), known));
     }

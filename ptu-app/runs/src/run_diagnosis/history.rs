@@ -171,7 +171,7 @@ mod tests {
                 values: Vec::new(),
                 signs: BTreeSet::new(),
             }],
-            signs: BTreeSet::new(),
+            ..Observation::default()
         };
         let mut dictionary = Dictionary::new(Basis::default(), vec![1, 2], vec![check.clone()]);
         dictionary.set_healthy(&[came(Verdict::Passed), came(Verdict::Passed)]);

@@ -84,6 +84,11 @@ fn of_instrument(fault: &InstrumentFault) -> String {
             ms(stated)
         ),
         F::OtherModel { found, expected } => format!("기종이 다름: {found} 응답 (예상 {expected})"),
+        F::OtherSerial { found, expected } => {
+            format!("다른 계측기: 일련번호 {found} 응답 (예상 {expected})")
+        }
+        F::Taken => "이 컴퓨터의 다른 프로그램이 사용 중".to_owned(),
+        F::NoUnmodulated => "드라이버에 무변조 반송파 명령이 없음".to_owned(),
         F::Refused { command, error } => format!("명령 {command}을(를) 거부함: {error}"),
         F::QueueFull(error) => format!("오류 대기열이 가득 참: {error}"),
         F::OutOfRange {
@@ -125,6 +130,9 @@ mod tests {
         {"instrument": {"instrument": "io3", "fault": {"silent": 1500000}}},
         {"instrument": {"instrument": "io4", "fault": {"slow": {"took": 71000, "stated": 20000}}}},
         {"instrument": {"instrument": "io5", "fault": {"other_model": {"found": "28", "expected": "29"}}}},
+        {"instrument": {"instrument": "io51", "fault": {"other_serial": {"found": "52", "expected": "53"}}}},
+        {"instrument": {"instrument": "io54", "fault": "taken"}},
+        {"instrument": {"instrument": "io55", "fault": "no_unmodulated"}},
         {"instrument": {"instrument": "io6", "fault": {"refused": {"command": "30", "error": "-222"}}}},
         {"instrument": {"instrument": "io7", "fault": {"queue_full": "-350"}}},
         {"instrument": {"instrument": "io8", "fault": {"out_of_range": {"what": "p1", "value": "81", "low": "2", "high": "3"}}}},

@@ -1,6 +1,6 @@
 //! `ptu run --check`: what of scripts without errors is still to be done.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
@@ -9,10 +9,15 @@ use crate::cli::print_out;
 use ptu_report::without_korean;
 use ptu_report::words::{Words, fill};
 use ptu_runs::failure::{Exit, Failure};
+use ptu_runs::places::Places;
 use ptu_runs::stdio;
 
 /// Limits without a source and texts without Korean as notes, and how many there are.
-pub(super) fn show(procedures: &[Arc<Procedure>], data_files: usize) -> Result<Exit, Failure> {
+pub(super) fn show(
+    procedures: &[Arc<Procedure>],
+    data_files: usize,
+    fitted: Option<(&Places, Vec<Arc<Procedure>>)>,
+) -> Result<Exit, Failure> {
     let steps: usize = (procedures.iter())
         .map(|procedure| procedure.steps.len())
         .sum();
@@ -37,5 +42,41 @@ pub(super) fn show(procedures: &[Arc<Procedure>], data_files: usize) -> Result<E
             ("files", &data_files),
         ],
     );
-    print_out(&format!("{checked}; {found}; {english}"))
+    let bench = fitted.map_or_else(String::new, |(bench, fitted)| {
+        format!("\n{}", of_bench(bench, &fitted))
+    });
+    print_out(&format!("{checked}; {found}; {english}{bench}"))
+}
+
+/// What a bench leaves out of procedures as notes, and how much it does.
+fn of_bench(bench: &Places, fitted: &[Arc<Procedure>]) -> String {
+    let terminal = &Words::shown().terminal;
+    let (mut all, mut left_out) = (0, 0);
+    for procedure in fitted {
+        let mut reasons: BTreeMap<_, usize> = BTreeMap::new();
+        for step in &procedure.steps {
+            if let Some(why) = procedure.lacks.as_ref().or(step.lacks.as_ref()) {
+                *reasons.entry(why).or_default() += 1;
+            }
+        }
+        let of = procedure.steps.len();
+        for (why, n) in reasons {
+            left_out += n;
+            let said = [
+                ("procedure", &procedure.id as _),
+                ("n", &n as _),
+                ("of", &of as _),
+                ("why", why as _),
+            ];
+            stdio::note(&fill(terminal.bench_leaves_out, &said));
+        }
+        all += of;
+    }
+    let does = all - left_out;
+    let said = [
+        ("bench", &bench.name as _),
+        ("n", &does as _),
+        ("of", &all as _),
+    ];
+    fill(terminal.bench_checked, &said)
 }

@@ -1,19 +1,19 @@
 //! What a run comes to beyond its verdict: the diagnosis, and what it says of repairs.
 
-use fault_db::{RunDetail, Store};
+use std::collections::BTreeSet;
+
+use fault_db::{RunDetail, Store, Verdict};
 
 use super::RunArguments;
 use crate::cli::print_out;
 use ptu_report::diagnosis::diagnosis_text;
-use ptu_report::proof_text;
 use ptu_report::words::{Words, fill};
-use ptu_runs::clock::local_zoned;
+use ptu_report::{Departure, proof_text};
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::run::Outcome;
 use ptu_runs::run_diagnosis::{Answer, RepairProof, diagnose_run};
 use ptu_runs::stdio;
-use ptu_runs::stored::valid_until_us;
 
 impl RunArguments {
     /// The diagnosis of an adaptive run, and of any other that failed.
@@ -23,7 +23,8 @@ impl RunArguments {
         directory: &ScriptsDirectory,
         outcome: &Outcome,
     ) -> Option<Result<Answer, Failure>> {
-        let is_wanted = self.adaptive || outcome.exit == Exit::Failed;
+        let is_begun = outcome.prevented.is_none();
+        let is_wanted = self.adaptive && is_begun || outcome.exit == Exit::Failed;
         is_wanted.then(|| diagnose_run(store, directory, outcome.id))
     }
 
@@ -51,12 +52,30 @@ impl RunArguments {
     }
 }
 
-/// Until when a departure test that passed holds.
+/// Until when a departure test holds; of one that does not, why, and how the part is found.
 pub(super) fn say_validity(run: &RunDetail) -> Result<(), Failure> {
-    valid_until_us(run).map_or(Ok(()), |at_us| {
-        let said = Words::shown().report.valid_until;
-        print_out(&format!("{said} {}", local_zoned(at_us))).map(drop)
-    })
+    let Some(departure) = Departure::of(run) else {
+        return Ok(());
+    };
+    let words = Words::shown();
+    let (name, value) = departure.fact(words);
+    let between = if departure.why_not.is_empty() {
+        " "
+    } else {
+        ": "
+    };
+    print_out(&format!("{name}{between}{value}"))?;
+    if run.run.verdict == Some(Verdict::Failed) {
+        let parts: BTreeSet<_> = run
+            .faults
+            .iter()
+            .map(|fault| words.part(&fault.lru))
+            .collect();
+        let parts = parts.into_iter().collect::<Vec<_>>().join(", ");
+        let said = fill(words.terminal.departure_goes_on, &[("parts", &parts)]);
+        print_out(&said)?;
+    }
+    Ok(())
 }
 
 /// What a run that passed says of the repairs made before it.

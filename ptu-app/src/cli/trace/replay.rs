@@ -50,7 +50,7 @@ impl ReplayArguments {
     pub fn run(self, database: &Database) -> Result<Exit, Failure> {
         let directory = self.scripts.find()?;
         let faults = directory.chosen_faults(&self.inject)?;
-        if self.unit != Endpoint::Sim && faults.iter().any(|fault| !fault.place.on_train()) {
+        if self.unit != Endpoint::Sim && faults.iter().any(|fault| fault.place.in_unit()) {
             return Err(Failure::usage(RunTrouble::InjectElsewhere));
         }
         self.reports.check()?;

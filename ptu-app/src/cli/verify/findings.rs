@@ -5,6 +5,7 @@ use std::fmt::Display;
 use fault_db::{About, Id, Statement, Verification};
 use serde_json::{Value, json};
 
+use ptu_report::Departure;
 use ptu_report::words::{Language, Words, fill};
 use ptu_runs::clock::{self, rfc3339};
 use ptu_runs::keys::{KeyList, Standing};
@@ -28,6 +29,8 @@ pub(super) struct Findings {
     pub(super) doubts: Vec<String>,
     /// What is neither a change nor a doubt, as samples that were pruned.
     pub(super) remarks: Vec<String>,
+    /// What it is worth as a departure test.
+    pub(super) departure: Option<Departure>,
 }
 
 /// A clock may be ahead of this one by so much, µs.
@@ -55,6 +58,7 @@ impl Findings {
             changes: Vec::new(),
             doubts: Vec::new(),
             remarks: Vec::new(),
+            departure: None,
         }
     }
 
@@ -148,11 +152,26 @@ impl Findings {
         }));
     }
 
+    /// Until when a departure test holds, or why it does not: then it is no good one.
+    pub(super) fn say_departure(&mut self, departure: Departure) {
+        let verify = &self.words.verify;
+        if departure.why_not.is_empty() {
+            let at = clock::local_zoned(departure.until_us);
+            let of = [("unit", &departure.unit as _), ("at", &at as _)];
+            self.remarks.push(fill(verify.valid_until, &of));
+        } else {
+            let why = departure.why_not(self.words).join("; ");
+            self.doubts
+                .push(fill(verify.not_departure, &[("why", &why)]));
+        }
+        self.departure = Some(departure);
+    }
+
     pub(super) fn json(&self) -> Value {
         json!({
             "what": self.what, "id": self.id,
             "verified": self.changes.is_empty() && self.doubts.is_empty(),
-            "changes": self.changes, "doubts": self.doubts, "signatures": self.signatures, "remarks": self.remarks,
+            "departure": self.departure.as_ref().map(Departure::json), "changes": self.changes, "doubts": self.doubts, "signatures": self.signatures, "remarks": self.remarks,
         })
     }
 

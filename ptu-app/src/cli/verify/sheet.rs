@@ -57,6 +57,7 @@ pub(super) fn sheet(page: &str, keys: &KeyList, words: &'static Words) -> Findin
             if sheet.id != found.id || digest.is_some_and(|digest| digest != sheet.digest) {
                 found.changes.push(verify.two_runs.to_owned());
             }
+            found.departure = sheet.departure;
             let of = Statement {
                 what: "sheet".to_owned(),
                 id: sheet.id,

@@ -28,6 +28,7 @@ fn a_unit_s_own_log_points_at_a_part_without_any_step() {
     let seen = Observation {
         steps: Vec::new(),
         signs: BTreeSet::from([dead]),
+        ..Observation::default()
     };
     let found = diagnosed(&dictionary, &seen);
     assert_eq!(top(&found), "sensor.dead", "{:?}", found.conclusion);

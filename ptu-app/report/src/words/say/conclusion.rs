@@ -18,6 +18,7 @@ pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names
     let [said, said_ko] = answered(conclusion, next.is_some(), names);
     let then = match conclusion {
         Conclusion::Found { .. }
+        | Conclusion::OfBench { .. }
         | Conclusion::TwoFound { .. }
         | Conclusion::NoFault { .. }
         | Conclusion::NotWeighed => None,
@@ -43,13 +44,26 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
             let [part, part_ko] = named(part, Some(*probability), names);
             [format!("replace {part}"), format!("교체 대상: {part_ko}")]
         }
+        Conclusion::OfBench { part, probability } => {
+            let [part, part_ko] = named(part, Some(*probability), names);
+            [
+                format!("the unit is not at fault: examine {part}, and run the suite again"),
+                format!(
+                    "장치 고장이 아닙니다. 점검 대상: {part_ko}. 점검 후 전체 시험을 다시 합니다"
+                ),
+            ]
+        }
         Conclusion::TwoFound { parts, probability } => {
             let sure = percent(*probability);
             let [[one, one_ko], [other, other_ko]] =
                 parts.each_ref().map(|part| named(part, None, names));
             [
-                format!("two faults ({sure}): replace {one} and {other}"),
-                format!("복합 고장 ({sure}), 교체 대상: {one_ko}, {other_ko}"),
+                format!(
+                    "perhaps two faults ({sure}): replace {one} and run again what failed; {other} if something still fails"
+                ),
+                format!(
+                    "복합 고장 추정 ({sure}): {one_ko} 교체 후 불합격 항목을 다시 시험하고, 다시 불합격하면 {other_ko} 교체"
+                ),
             ]
         }
         Conclusion::OneOf { group, probability } => {
@@ -192,12 +206,21 @@ fn swap(conclusion: &Conclusion, names: &[Lru]) -> Both {
         Conclusion::CannotTell { likely } => likely.first(),
         _ => None,
     };
-    match likeliest.map(|part| called(&part.lru, names)) {
+    let of_bench = |part: &LruId| {
+        names
+            .iter()
+            .any(|known| known.of_bench && known.id == *part)
+    };
+    match likeliest.map(|part| (of_bench(&part.lru), called(&part.lru, names))) {
         None => [
             "no check tells more".to_owned(),
             "더 알려 줄 점검이 없습니다".to_owned(),
         ],
-        Some([part, part_ko]) => [
+        Some((true, [part, part_ko])) => [
+            format!("no check tells more: examine {part} and run again what failed"),
+            format!("더 알려 줄 점검이 없습니다: {part_ko} 점검 후 불합격 항목을 다시 시험합니다"),
+        ],
+        Some((false, [part, part_ko])) => [
             format!("no check tells more: swap {part} and run again what failed"),
             format!("더 알려 줄 점검이 없습니다: {part_ko} 교환 후 불합격 항목을 다시 시험합니다"),
         ],

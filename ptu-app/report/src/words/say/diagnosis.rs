@@ -8,7 +8,9 @@ use ptu_runs::run_diagnosis::Answer;
 
 use super::super::{Words, content};
 use super::conclusion::{all_called, concluded, tells};
-use super::reasons::{fault_text, logged, step_expected, step_found, told};
+use super::reasons::{
+    deviated, deviated_share, fault_text, logged, step_expected, step_found, told,
+};
 
 /// The same in English and in Korean.
 pub(super) type Both = [String; 2];
@@ -53,6 +55,7 @@ impl Words {
         self.choose(match reason {
             Reason::Step(step) => step_found(step, run),
             Reason::Logged(sign) => logged(sign),
+            Reason::Deviated { signal, .. } => deviated(signal),
             Reason::Known(known) => told(known),
         })
     }
@@ -61,6 +64,9 @@ impl Words {
     pub fn reason_detail(&self, reason: &Reason) -> Option<String> {
         match reason {
             Reason::Step(step) => Some(self.choose(step_expected(step))),
+            Reason::Deviated { signal, shares } => {
+                Some(self.choose(deviated_share(signal, *shares)))
+            }
             Reason::Logged(_) | Reason::Known(_) => None,
         }
     }

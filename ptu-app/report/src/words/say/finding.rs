@@ -171,6 +171,7 @@ pub fn korean(finding: &Finding) -> String {
                 format!("제한 시간 {limit} 초과: 기다린 조건 {expected}")
             }
         },
+        Finding::LinkLost { why } if why.is_of_the_bench() => link_korean(why),
         Finding::LinkLost { why } => format!("장치와의 통신: {}", link_korean(why)),
         Finding::StoodStill { by, attempt } => {
             let by = by.as_secs();
@@ -208,8 +209,17 @@ pub fn korean(finding: &Finding) -> String {
         Finding::NoStepToRun => "시험할 단계 없음".to_owned(),
         Finding::NoStepRun => "수행한 단계 없음".to_owned(),
         Finding::ProgramFailed => "시험 중 프로그램 오류가 발생함".to_owned(),
-        Finding::LinkLostAt { run, of, left } => {
-            format!("{of}개 단계 중 {run}번째에서 연결 끊김; {left}개 미실행")
+        Finding::LinkLostAt {
+            run,
+            of,
+            left,
+            instrument,
+        } => {
+            let what = instrument.as_ref().map_or_else(
+                || "연결 끊김".to_owned(),
+                |name| format!("시험대 계측기 {name} 고장"),
+            );
+            format!("{of}개 단계 중 {run}번째에서 {what}; {left}개 미실행")
         }
         Finding::NotAcceptance { run, of } => {
             format!("인수 판정이 아님: {of}개 단계 중 {run}개 수행, 모두 합격")

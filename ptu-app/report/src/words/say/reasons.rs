@@ -114,6 +114,26 @@ pub(super) fn logged(sign: &Sign) -> Both {
     ]
 }
 
+/// The signal by which a trace first leaves that of a sound unit.
+pub(super) fn deviated(signal: &str) -> Both {
+    let name = crate::naming::signal(signal, Language::English.words());
+    let name_ko = crate::naming::signal(signal, Language::Korean.words());
+    [
+        format!("traces leave a sound unit's first at the signal \"{name}\""),
+        format!("신호 기록이 정상 장치와 처음 달라진 신호: {name_ko}"),
+    ]
+}
+
+/// The same with the shares of traces in which that signal is the first, under the fault and under any.
+pub(super) fn deviated_share(signal: &str, shares: [f64; 2]) -> Both {
+    let [said, said_ko] = deviated(signal);
+    let [own, any] = shares.map(|share| format!("{:.0} %", 100.0 * share));
+    [
+        format!("{said} (under this fault {own} of traces, under any {any})"),
+        format!("{said_ko} (이 고장일 때 기록의 {own}, 모든 고장에서 {any})"),
+    ]
+}
+
 /// The fault that a sign is.
 fn sign_named(sign: &Sign) -> Both {
     match Event::from_name(&sign.fault).map(Event::definition) {

@@ -1,10 +1,15 @@
 //! What went wrong, as a window says it, without commands, or as the command line does.
 
+use std::sync::Arc;
+
+use btu_rig::procedure::Procedure;
 use ptu_runs::failure::Failure;
+use ptu_runs::places::{Places, Teller};
 use ptu_runs::stdio;
 use ptu_runs::words::{Manner, Say};
 
 use super::super::{Language, Words};
+use super::condition;
 
 impl Words {
     /// Why something could not be done, and the next move.
@@ -15,6 +20,21 @@ impl Words {
     /// Why something could not be done, with the commands that help.
     pub fn told(&self, what: &impl Say) -> String {
         what.say(self.manner(true))
+    }
+
+    /// The procedures as a bench does them, told in this language.
+    pub fn fitted(&self, bench: &Places, procedures: Vec<Arc<Procedure>>) -> Vec<Arc<Procedure>> {
+        let korean = self.language == Language::Korean;
+        let teller = Teller {
+            note: &|note| self.told(&note),
+            signal: &|signal| self.signal(signal.name()).into_owned(),
+            text: &|text| self.content(text).into_owned(),
+            condition: &|seen| match korean {
+                true => condition::korean(seen),
+                false => seen.to_string(),
+            },
+        };
+        bench.fit(procedures, &teller)
     }
 
     pub(in crate::words) fn manner(&self, commands: bool) -> Manner {

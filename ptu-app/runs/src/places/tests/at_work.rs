@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant as Clock};
 
-use btu_rig::rig::LinkTrouble;
+use btu_rig::rig::{InstrumentFault, LinkTrouble};
 use protocol::link::{End, Link};
 use protocol::message::{IoInput, IoOutput, Message, ModeSwitch, Outputs, TrainLines};
 use protocol::{Instant, SCAN};
@@ -110,7 +110,8 @@ fn each_fault_of_an_instrument_is_named() {
         ("", "mute", "gen", "no answer within 0.40 s"),
         ("", "leaves", "gen", "disconnected"),
         ("", "drips", "gen", "no answer within 0.40 s"),
-        ("", "model", "gen", "wrong model: ACME,SCALE,1,1 answers"),
+        ("", "model", "gen", "wrong model: ACME,SCALE,G-1,1 answers"),
+        ("", "serial", "gen", "another instrument: serial number G-2"),
         (
             "",
             "-350,\"Overflow\"",
@@ -137,7 +138,7 @@ fn each_fault_of_an_instrument_is_named() {
         let others_are_off = match (name, of_generator) {
             ("io", _) => last("OUTP1").is_some_and(|said| said == "OUTP1 0"),
             // The bench was not opened.
-            (_, "model") => told.is_empty(),
+            (_, "model" | "serial") => told.is_empty(),
             _ => last("coils").is_some_and(|said| said == "coils 0000"),
         };
         assert!(others_are_off, "{of_module} {of_generator}: {told:?}");
@@ -181,6 +182,26 @@ fn outputs_are_off_in_their_order_on_every_end() {
         );
         drop(kept.take());
     }
+}
+
+/// Goal: instruments that one program works with are left alone by a second, which says so.
+#[test]
+fn a_bench_that_is_in_use_is_not_touched() {
+    let log = Log::default();
+    let text = BENCH.replace("MODULE", &module("", log.clone()).to_string());
+    let text = text.replace("GENERATOR", &generator("", log.clone()).to_string());
+    let places = Arc::new(bench(&text).expect("a bench"));
+    let placed = Placed::open(&places).expect("nobody has it");
+    log.take();
+    let checked = Placed::check(&places, 2);
+    let [(_, Err(InstrumentFault::Taken))] = &checked[..] else {
+        panic!("{checked:?}")
+    };
+    let second = Placed::open(&places).err().expect("it is taken");
+    assert!(second.to_string().contains("another program"), "{second}");
+    assert!(!log.take().iter().any(|said| said.starts_with("OUTP")));
+    drop(placed);
+    assert!(Placed::check(&places, 2).iter().all(|(_, how)| how.is_ok()));
 }
 
 /// Goal: overload of a meter is no reading.

@@ -6,7 +6,7 @@ use btu_rig::procedure::plan::{Action, Condition, Operand, What};
 use btu_rig::procedure::{Procedure, Step};
 use btu_rig::stimulus::{DoorLine, Stimulus};
 
-use super::{BENCH, bench};
+use super::{BENCH, ENGLISH, bench};
 use crate::test_support::{procedures, setup};
 
 /// Goal: a code that a generator cannot make skips its step, and one of no level is none.
@@ -32,7 +32,7 @@ fn a_code_beyond_the_generator_is_skipped() {
                 step.actions.push(Action::Stimulus(code));
             }
         }
-        let fitted = places.fit(plain, &|note| note.to_string());
+        let fitted = places.fit(plain, &ENGLISH);
         let said = step(&fitted, id, name).lacks.as_deref();
         let fits = said.is_some_and(|said| lacks.is_some_and(|lacks| said.contains(lacks)));
         assert!(
@@ -81,7 +81,7 @@ fn doors_and_waits_are_fitted() {
         };
         procedure.lacks = None;
         procedure.setup = vec![Action::OnBench(Box::new(until)), Action::Stimulus(stimulus)];
-        let fitted = places(none).fit(plain, &|note| note.to_string());
+        let fitted = places(none).fit(plain, &ENGLISH);
         let said = lacks.map(|what| format!("bench bench has no {what}"));
         assert_eq!(fitted[0].lacks, said, "{none}: {stimulus}");
         let Action::OnBench(until) = &fitted[0].setup[0] else {
@@ -110,7 +110,7 @@ fn motion_of_a_step_that_is_continued_counts() {
             || signal.definition().unit == "km/h")
     };
     let places = bench(&text).expect("a bench");
-    let fit = |plain| places.fit(plain, &|note| note.to_string());
+    let fit = |plain| places.fit(plain, &ENGLISH);
     let all = procedures(&setup(&[]));
     let steps = |all: &[Arc<Procedure>]| {
         all.iter()
@@ -169,7 +169,7 @@ fn wider(before: &Step, after: &Step) -> [f64; 2] {
 fn procedures_are_fitted_to_the_bench() {
     let places = bench(&BENCH.replace("MODULE", "1").replace("GENERATOR", "2")).expect("a bench");
     let plain = procedures(&setup(&[]));
-    let fitted = places.fit(plain.clone(), &|note| note.to_string());
+    let fitted = places.fit(plain.clone(), &ENGLISH);
     let two_codes = step(&fitted, "atp/limit_speed", "two codes that come near");
     let why = "bench bench has no crosstalk";
     assert_eq!(two_codes.lacks.as_deref(), Some(why));

@@ -12,7 +12,7 @@ use btu_rig::rig::LinkTrouble;
 use protocol::Instant;
 
 use super::placed::PulseRate;
-use super::{Model, Placed, Places};
+use super::{Model, Placed, Places, Teller};
 use crate::test_support::scripts;
 
 /// What the peers were told, in order.
@@ -135,13 +135,15 @@ fn generator(wrong: Wrong, log: Log) -> u16 {
                 return;
             }
             let answer = match (line.as_str(), wrong) {
-                ("*IDN?", "pulses") => "ACME,PULSES,1,1",
+                ("*IDN?", "pulses") => "ACME,PULSES,P-1,1",
                 ("SYST:ERR?", "pulses") if asked > 5 => {
                     std::thread::sleep(Duration::from_secs(2));
                     continue;
                 }
-                ("*IDN?", "model") => "ACME,SCALE,1,1",
-                ("*IDN?", _) => "ACME,GENERATOR,METER,1",
+                ("*IDN?", "model") => "ACME,SCALE,G-1,1",
+                ("*IDN?", "serial") => "ACME,GENERATOR,G-2,1",
+                // What tells no serial number is taken as it is.
+                ("*IDN?", _) => "ACME,GENERATOR,0,METER",
                 ("MEAS:VOLT? (@101)", answer) => answer,
                 ("SYST:ERR?", error) if asked > 6 && error.starts_with('-') => error,
                 ("SYST:ERR?", _) => "0,\"No error\"",
@@ -186,6 +188,14 @@ marker = { at = "io", coils = [3, 4, 5, 6], pulse_ms = 2000 }
 eb = { at = "io", input = 16, inverted = true }
 alarm = { at = "operator", within_s = 30 }
 "#;
+
+/// As the command line tells it in English.
+const ENGLISH: Teller<'_> = Teller {
+    note: &|note| note.to_string(),
+    signal: &|signal| signal.name().to_owned(),
+    text: &|text| text.to_owned(),
+    condition: &|seen| seen.to_string(),
+};
 
 fn bench(text: &str) -> Result<Places, String> {
     let model = |name: &str| {
@@ -248,7 +258,12 @@ coils = [2]|coils = [1]|20|another use
 11, 12, 13]|11, 12, 13], proved_by = 9|22|one relay
 eb = {|speed = {|27|no display
 at = "operator", within_s = 30|at = "gen", read = "volts"|28|read by an input
-maintenance_key|eb_loop|23|no step moves it"#;
+maintenance_key|eb_loop|23|no step moves it
+maintenance_key|supply|23|an instrument switches it
+code = { at = "gen" }|supply = { at = "gen" }|18|no act supply
+scpi:127.0.0.1:2|scpi:/dev/ttyUSB0@fast|10|SERIALPORT@BAUD
+modbus:127.0.0.1:1|modbus:/dev/usbtmc0|4|SERIALPORT@BAUD
+within_s = 20|volts = -1|23|volts is a number"#;
     for row in table.trim().lines() {
         let [right, wrong, line, word] = row.split('|').collect::<Vec<_>>()[..] else {
             panic!("{row}")

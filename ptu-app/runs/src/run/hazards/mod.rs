@@ -104,7 +104,8 @@ impl Search {
     fn new(setup: BenchSetup, modes: &str) -> Self {
         let mut catalogue = scripts().faults().expect("fault modes").faults;
         let glob = glob::Pattern::new(modes).expect("a glob");
-        catalogue.retain(|mode| glob.matches(&mode.id));
+        // The monitor holds what the bench knows for the truth.
+        catalogue.retain(|mode| glob.matches(&mode.id) && !mode.place.on_bench());
         Self {
             setup,
             modes: catalogue,

@@ -44,7 +44,7 @@ impl Told {
     pub fn of(run: Verdict, said: Option<&Conclusion>) -> Self {
         match run {
             Verdict::Failed => match said {
-                Some(Conclusion::Found { .. } | Conclusion::TwoFound { .. }) => Self::Part,
+                Some(Conclusion::Found { .. }) => Self::Part,
                 Some(said) if !parts(said).is_empty() => Self::Unsure,
                 _ => Self::NoPart,
             },
@@ -127,6 +127,7 @@ pub fn named(diagnosis: &Diagnosis) -> Vec<LruId> {
 fn parts(said: &Conclusion) -> Vec<LruId> {
     match said {
         Conclusion::Found { part, .. }
+        | Conclusion::OfBench { part, .. }
         | Conclusion::OneOrCommon { part, .. }
         | Conclusion::NotAlone { part, .. } => vec![part.clone()],
         Conclusion::TwoFound { parts, .. } | Conclusion::Common { parts, .. } => parts.to_vec(),
@@ -173,6 +174,13 @@ mod tests {
         let said = [
             (None, 2),
             (Some(found), 0),
+            (
+                Some(Conclusion::OfBench {
+                    part: part.clone(),
+                    probability,
+                }),
+                1,
+            ),
             (Some(Conclusion::OneOf { group, probability }), 1),
             (
                 Some(Conclusion::Common {
@@ -191,7 +199,7 @@ mod tests {
                 }),
                 1,
             ),
-            (Some(Conclusion::TwoFound { parts, probability }), 0),
+            (Some(Conclusion::TwoFound { parts, probability }), 1),
             (Some(Conclusion::CannotTell { likely: likely(3) }), 1),
             (
                 Some(Conclusion::NotAlone {

@@ -26,6 +26,7 @@ fn a_part_is_called_by_its_name_with_its_identifier() {
         id: id.parse().expect("a part"),
         name: name.into(),
         name_ko: name_ko.into(),
+        of_bench: false,
     };
     let names = [
         known("eb_relay", "EB relay", "비상제동 계전기"),
@@ -45,9 +46,9 @@ fn a_part_is_called_by_its_name_with_its_identifier() {
         probability: 0.96,
     };
     let [english, korean] = concluded(&two, None, &names);
-    let said = "two faults (96.0 %): replace speed sensor 1 (speed_sensor_1) and the master controller (master_controller)";
+    let said = "perhaps two faults (96.0 %): replace speed sensor 1 (speed_sensor_1) and run again what failed; the master controller (master_controller) if something still fails";
     assert_eq!(english, said);
-    let said = "복합 고장 (96.0 %), 교체 대상: 속도센서 1 (speed_sensor_1), 주간제어기 (master_controller)";
+    let said = "복합 고장 추정 (96.0 %): 속도센서 1 (speed_sensor_1) 교체 후 불합격 항목을 다시 시험하고, 다시 불합격하면 주간제어기 (master_controller) 교체";
     assert_eq!(korean, said);
     assert_eq!(found("relay", &names)[0], "replace relay (99.6 %)");
 }

@@ -1,0 +1,147 @@
+//! Whether a run holds as a departure test, until when, or why not.
+
+use std::fmt::Display;
+
+use fault_db::{RunDetail, RunFilter, Store, Verdict};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use crate::words::{Language, Words, fill};
+use ptu_runs::clock::{local_zoned, now_us, rfc3339};
+use ptu_runs::coverage::counts_of;
+use ptu_runs::failure::Failure;
+use ptu_runs::run::Evidence;
+use ptu_runs::stored::DEPARTURE;
+
+/// How long a unit that passed is good for service, µs: 24 hours, as the operating rules of a railway have it (CSS 551).
+const VALID_US: i64 = 86_400_000_000;
+
+/// What a run is worth as a departure test.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Departure {
+    /// Serial number of the unit.
+    pub unit: String,
+    /// Until when it holds, µs.
+    pub until_us: i64,
+    /// Why it does not hold, in English and Korean.
+    pub why_not: Vec<[String; 2]>,
+}
+
+/// A sentence of both languages, with what is filled in as that language has it.
+fn both(sentence: impl Fn(&'static Words) -> String) -> [String; 2] {
+    [Language::English, Language::Korean].map(|language| sentence(language.words()))
+}
+
+impl Departure {
+    /// Of a run in which departure tests were due; a good one is these alone, whole, without injected faults, all passed.
+    pub fn of(run: &RunDetail) -> Option<Self> {
+        let is_departure = |path: &str| path.starts_with(DEPARTURE);
+        if !run.scripts.iter().any(|script| is_departure(&script.path)) {
+            return None;
+        }
+        let mut why_not = Vec::new();
+        if !run.scripts.iter().all(|script| is_departure(&script.path)) {
+            why_not.push(both(|words| words.verify.with_others.into()));
+        }
+        for step in &run.steps {
+            let said: fn(&Words) -> &'static str = match step.verdict {
+                Verdict::Passed => continue,
+                Verdict::Failed => |words| words.verify.step_failed,
+                Verdict::Skipped => |words| words.verify.step_skipped,
+                _ => |words| words.verify.step_not_tested,
+            };
+            why_not.push(both(|words| {
+                fill(said(words), &[("step", &words.content(&step.name))])
+            }));
+        }
+        let run_of = &run.run;
+        let counts = counts_of(run_of);
+        if counts.not_run() > 0 {
+            let of: [(&str, &dyn Display); 2] = [("n", &counts.not_run()), ("of", &counts.planned)];
+            why_not.push(both(|words| fill(words.verify.steps_not_run, &of)));
+        }
+        let evidence = run_of.evidence.as_deref().and_then(Evidence::of);
+        if run_of.continues.is_some() || evidence.is_none_or(|evidence| evidence.is_part) {
+            why_not.push(both(|words| words.verify.is_part.into()));
+        }
+        if let Some(faults) = run_of.injected.as_ref().filter(|faults| !faults.is_empty()) {
+            why_not.push(both(|words| {
+                fill(words.verify.with_faults, &[("faults", faults)])
+            }));
+        }
+        if run_of.verdict != Some(Verdict::Passed) && why_not.is_empty() {
+            why_not.push(both(|words| words.verify.no_pass.into()));
+        }
+        Some(Self {
+            unit: run_of.unit_serial.clone(),
+            until_us: run_of.finished_at_us.unwrap_or(run_of.started_at_us) + VALID_US,
+            why_not,
+        })
+    }
+
+    /// One more reason for which it does not hold.
+    pub fn add(&mut self, why: impl Fn(&'static Words) -> String) {
+        self.why_not.push(both(why));
+    }
+
+    /// A later departure test of this unit that failed ends it.
+    ///
+    /// # Errors
+    /// The store cannot be read.
+    pub fn held_against(&mut self, store: &Store) -> Result<(), Failure> {
+        let filter = RunFilter {
+            unit: Some(self.unit.clone()),
+            verdict: Some(Verdict::Failed),
+            since_us: Some(self.until_us - VALID_US),
+            ..RunFilter::default()
+        };
+        for later in store.runs(&filter)? {
+            let is_real = later.injected.as_deref().unwrap_or_default().is_empty();
+            if is_real && Self::of(&store.run(later.id)?).is_some() {
+                let at = local_zoned(later.started_at_us);
+                let of: [(&str, &dyn Display); 2] = [("run", &later.id.short()), ("at", &at)];
+                let said = both(|words| fill(words.verify.later_failed, &of));
+                self.why_not.push(said);
+            }
+        }
+        Ok(())
+    }
+
+    /// It holds now, or why it does not.
+    pub fn now(mut self) -> Self {
+        if self.why_not.is_empty() && now_us() > self.until_us {
+            let at = local_zoned(self.until_us);
+            let said = both(|words| fill(words.verify.was_valid_until, &[("at", &at)]));
+            self.why_not.push(said);
+        }
+        self
+    }
+
+    /// Why it does not hold; empty where it does.
+    pub fn why_not(&self, words: &Words) -> Vec<&str> {
+        let place = usize::from(words.language == Language::Korean);
+        let said = self.why_not.iter().map(|why| why[place].as_str());
+        said.collect()
+    }
+
+    /// What it is worth, as a fact with its name.
+    pub fn fact(&self, words: &Words) -> (String, String) {
+        match self.why_not.is_empty() {
+            true => (words.report.valid_until.into(), local_zoned(self.until_us)),
+            false => (
+                words.report.not_valid.into(),
+                self.why_not(words).join("; "),
+            ),
+        }
+    }
+
+    /// For other programs.
+    pub fn json(&self) -> Value {
+        json!({
+            "unit_serial": self.unit, "valid": self.why_not.is_empty(),
+            "valid_until": self.why_not.is_empty().then(|| rfc3339(self.until_us)),
+            "why_not": self.why_not(Language::English.words()),
+        })
+    }
+}

@@ -1,0 +1,165 @@
+//! The line to an instrument, a TCP connection, a serial port or a USB test and measurement device: one program has it at a
+//! time, and modules on one line take turns.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Result, Write};
+use std::net::{TcpStream, ToSocketAddrs};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use btu_rig::rig::InstrumentFault;
+use serialport::{ClearBuffer, SerialPort};
+
+use super::file::{Places, Reach};
+use super::worker::{ANSWERS_WITHIN, span};
+use crate::platform;
+
+/// An open line.
+pub(super) enum Line {
+    Tcp(TcpStream),
+    Serial(Box<dyn SerialPort>),
+    /// What is written to the device is a message, and so is what is read.
+    Usb(File),
+}
+
+/// A line of one or several instruments.
+pub(super) type SharedLine = Arc<Mutex<Line>>;
+
+/// The line, for one exchange.
+pub(super) fn locked(line: &SharedLine) -> MutexGuard<'_, Line> {
+    line.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The lines of a bench, kept to this program.
+#[derive(Default)]
+pub(super) struct Lines {
+    locks: BTreeMap<String, Option<File>>,
+    open: BTreeMap<String, SharedLine>,
+}
+
+impl Lines {
+    /// Those of all instruments, none open yet.
+    ///
+    /// # Errors
+    /// Another program has one: the name of its instrument.
+    pub fn of(places: &Places) -> std::result::Result<Self, (String, InstrumentFault)> {
+        let mut lines = Self::default();
+        for (name, entry) in &places.instruments {
+            let at = entry.reach().to_string();
+            if let Entry::Vacant(free) = lines.locks.entry(at) {
+                let lock = lock(free.key()).map_err(|()| (name.clone(), InstrumentFault::Taken));
+                free.insert(lock?);
+            }
+        }
+        Ok(lines)
+    }
+
+    /// The line to this place, which is opened if it is not yet.
+    pub fn to(&mut self, reach: &Reach) -> std::result::Result<SharedLine, InstrumentFault> {
+        let at = reach.to_string();
+        if let Some(open) = self.open.get(&at) {
+            return Ok(open.clone());
+        }
+        let opened = Line::open(reach).map_err(|error| InstrumentFault::NotThere {
+            at: at.clone(),
+            why: error.to_string(),
+        });
+        let opened = Arc::new(Mutex::new(opened?));
+        self.open.insert(at, opened.clone());
+        Ok(opened)
+    }
+}
+
+/// Keeps a place to this program, for as long as the file is open; none where the computer has no locks.
+fn lock(at: &str) -> std::result::Result<Option<File>, ()> {
+    let name = at.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+    let path = std::env::temp_dir().join(format!("ptu-instrument-{name}.lock"));
+    let mut options = OpenOptions::new();
+    let made = options.write(true).create(true).truncate(false).open(&path);
+    // Another user made it.
+    let Ok(file) = made.or_else(|_| File::open(&path)) else {
+        return Ok(None);
+    };
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(()),
+        Err(TryLockError::Error(_)) | Ok(()) => Ok(Some(file)),
+    }
+}
+
+impl Line {
+    fn open(reach: &Reach) -> Result<Self> {
+        Ok(match reach {
+            Reach::Tcp(address) => Self::Tcp(connect(address)?),
+            Reach::Serial(path, baud) => {
+                Self::Serial(platform::open_alone(path, *baud, ANSWERS_WITHIN)?)
+            }
+            Reach::Usb(path) => Self::Usb(OpenOptions::new().read(true).write(true).open(path)?),
+        })
+    }
+
+    /// Forgets what a serial line still holds of an answer that came too late.
+    pub fn forget(&mut self) {
+        if let Self::Serial(port) = self {
+            let _ = port.clear(ClearBuffer::Input);
+        }
+    }
+
+    /// How long reading waits; a USB device has its driver's own time.
+    pub fn wait_for(&mut self, within: Duration) -> Result<()> {
+        match self {
+            Self::Tcp(stream) => stream.set_read_timeout(Some(within)),
+            Self::Serial(port) => Ok(port.set_timeout(within)?),
+            Self::Usb(_) => Ok(()),
+        }
+    }
+}
+
+impl Read for Line {
+    fn read(&mut self, into: &mut [u8]) -> Result<usize> {
+        match self {
+            Self::Tcp(stream) => stream.read(into),
+            Self::Serial(port) => port.read(into),
+            Self::Usb(device) => device.read(into),
+        }
+    }
+}
+
+impl Write for Line {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize> {
+        match self {
+            Self::Tcp(stream) => stream.write(bytes),
+            Self::Serial(port) => port.write(bytes),
+            Self::Usb(device) => device.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        Ok(())
+    }
+}
+
+fn connect(address: &str) -> Result<TcpStream> {
+    let mut tried = Err(std::io::Error::other("the name has no address"));
+    for address in address.to_socket_addrs()? {
+        tried = TcpStream::connect_timeout(&address, ANSWERS_WITHIN);
+        if tried.is_ok() {
+            break;
+        }
+    }
+    let stream = tried?;
+    stream.set_nodelay(true)?;
+    stream.set_read_timeout(Some(ANSWERS_WITHIN))?;
+    stream.set_write_timeout(Some(ANSWERS_WITHIN))?;
+    Ok(stream)
+}
+
+/// What a failed exchange says of an instrument.
+pub(super) fn io_fault(error: &std::io::Error) -> InstrumentFault {
+    use std::io::ErrorKind as E;
+    match error.kind() {
+        E::WouldBlock | E::TimedOut => InstrumentFault::Silent(span(ANSWERS_WITHIN)),
+        _ => InstrumentFault::Disconnected(error.to_string()),
+    }
+}
