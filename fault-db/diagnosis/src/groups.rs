@@ -78,6 +78,16 @@ impl Group {
         self.parts.contains(part)
     }
 
+    /// With the likeliest part first.
+    fn likeliest_first(&self, weights: &Weights) -> Self {
+        let rank = |part: &LruId| weights.lrus.iter().position(|one| one.lru == *part);
+        let mut group = self.clone();
+        group
+            .parts
+            .sort_by_key(|part| rank(part).unwrap_or(usize::MAX));
+        group
+    }
+
     fn others<'a>(&'a self, part: &'a LruId) -> impl Iterator<Item = &'a LruId> {
         self.parts.iter().filter(move |other| *other != part)
     }
@@ -99,31 +109,35 @@ fn not_alone(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Conclusion> {
         return None;
     };
     let others = named_beside(belief, weights, one);
-    (!others.is_empty()).then(|| beside(model, (one, probability), others.iter()))
+    let others: Vec<LruId> = others.into_iter().collect();
+    let (other, more) = others.split_first()?;
+    Some(beside(model, (one, probability), (other, more)))
 }
 
-/// A part beside which something of others shows: what both share, if they share anything, may be the cause.
-fn beside<'a>(
+/// A part beside which something of others shows, of `other` first: what both share, if they share anything, may be the
+/// cause.
+fn beside(
     model: &Model<'_>,
     (part, probability): (&LruId, f64),
-    others: impl Iterator<Item = &'a LruId> + Clone,
+    (other, more): (&LruId, &[LruId]),
 ) -> Conclusion {
-    let sharing = others.clone().find_map(|other| {
+    let mut others = std::iter::once(other).chain(more);
+    let sharing = others.find_map(|other| {
         let shared = model.relations.shared_by([part, other])?;
         Some((other, shared))
     });
     let part = part.clone();
-    match (sharing, { others }.next()) {
-        (Some((other, cause)), _) => Conclusion::OneOrCommon {
+    match sharing {
+        Some((other, cause)) => Conclusion::OneOrCommon {
             cause: cause.clone(),
             part,
             probability,
             other: other.clone(),
         },
-        (None, other) => Conclusion::NotAlone {
-            other: other.unwrap_or(&part).clone(),
+        None => Conclusion::NotAlone {
             part,
             probability,
+            other: other.clone(),
         },
     }
 }
@@ -186,9 +200,9 @@ fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Conclusion> {
         !parts.any(|part| model.deviates_with(part, signal))
     });
     match elsewhere.and_then(|signal| model.likeliest_of(signal)) {
-        Some(other) => Some(beside(model, (first, *probability), [other].into_iter())),
+        Some(other) => Some(beside(model, (first, *probability), (other, &[]))),
         None => Some(Conclusion::OneOf {
-            group: (*group).clone(),
+            group: group.likeliest_first(weights),
             probability: *probability,
         }),
     }
@@ -197,13 +211,15 @@ fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Conclusion> {
 /// Whether what was seen tells a part from the others of a group.
 fn tells_apart(belief: &Belief<'_, '_>, part: &LruId, group: &Group) -> bool {
     let relations = belief.model.relations;
-    if group
+    let is_of_bench = |part: &LruId| relations.of_bench.contains(part);
+    let bench: Vec<_> = group
         .parts
         .iter()
-        .any(|part| relations.of_bench.contains(part))
-    {
+        .filter(|part| is_of_bench(part))
+        .collect();
+    if !bench.is_empty() && deviates_at_one_of(belief, &bench) {
         // What comes from the bench cannot tell the bench from the part that it comes to.
-        return !relations.of_bench.contains(part) && fails_without_bench(belief, part);
+        return !is_of_bench(part) && fails_without_bench(belief, part);
     }
     let signs = belief.signs();
     let mut shown = signs.in_steps.union(&signs.in_log);
@@ -214,6 +230,16 @@ fn tells_apart(belief: &Belief<'_, '_>, part: &LruId, group: &Group) -> bool {
                 && modes(part) >= belief.model.settings.conclusion.modes_with_sign
                 && group.others(part).all(|other| modes(other) == 0)
         })
+}
+
+/// Whether a trace deviates first at a signal that one of these parts makes; any trace may where none could be had again.
+fn deviates_at_one_of(belief: &Belief<'_, '_>, parts: &[&LruId]) -> bool {
+    let makers = &belief.model.relations.makers;
+    let made_here = |signal: &String| {
+        let makers = makers.get(signal);
+        makers.is_some_and(|makers| parts.iter().any(|part| makers.contains(*part)))
+    };
+    belief.residuals().is_empty() || belief.residuals().iter().any(made_here)
 }
 
 /// Whether a step failed that judges the part and that the bench has no part in.

@@ -162,6 +162,7 @@ impl Settings {
             ("other_spells", self.other_spells),
             ("other_part", self.other_part),
             ("weight_of_step", self.weight_of_step),
+            ("weight_of_residual", self.weight_of_residual),
             ("likelihood.passed", likelihood.passed),
             ("likelihood.failed", likelihood.failed),
             ("likelihood.error", likelihood.error),

@@ -55,10 +55,16 @@ impl FaultCatalogue {
             if catalogue.faults[..i].iter().any(|f| f.id == fault.id) {
                 return Err(conflict(&format!("fault {} is listed twice", fault.id)));
             }
-            if !lrus.iter().any(|l| l.id == fault.lru) {
+            let Some(part) = lrus.iter().find(|l| l.id == fault.lru) else {
                 return Err(conflict(&format!(
                     "fault {} names the part {}, which is not listed under lrus",
                     fault.id, fault.lru
+                )));
+            };
+            if part.of_bench != fault.place.on_bench() {
+                return Err(conflict(&format!(
+                    "fault {}: its part and its place are both of the bench, or neither is",
+                    fault.id
                 )));
             }
             check(fault)?;

@@ -378,15 +378,25 @@ mod tests {
     #[test]
     fn a_part_that_is_missing_on_a_way_is_a_finding() {
         let text = scripts().text(FILE).unwrap();
-        let sensor = "parts = [\"speed_sensor_1\", \"atp_cpu\"]";
+        let sensor = "\"speed_sensor_1\", \"atp_cpu\"]";
         assert!(text.contains(sensor));
         let catalogue = scripts().faults().unwrap();
         let parts: Vec<_> = catalogue.lrus.iter().map(|part| &part.id).collect();
-        let without = Structure::from_toml(&text.replace(sensor, "parts = []"), &parts).unwrap();
+        let without = Structure::from_toml(&text.replace(sensor, "]"), &parts).unwrap();
         let off = without.off_way(&procedures(&setup(&[])), &dictionary());
         let off = without.not_understood(off);
         let of_sensor = |off: &OffWay| off.fault.starts_with("speed_sensor_1.");
         assert!(!off.is_empty() && off.iter().all(of_sensor), "{off:?}");
+    }
+
+    /// A misspelt name would never match, and nobody would see.
+    #[test]
+    fn procedures_without_the_bench_are_procedures_of_a_laptop() {
+        let procedures = procedures(&setup(&[]));
+        for name in &structure().relations.without_bench {
+            let of_laptop = |one: &&Arc<Procedure>| one.needs == Connection::Ptu && one.id == *name;
+            assert!(procedures.iter().find(of_laptop).is_some(), "{name}");
+        }
     }
 
     #[test]

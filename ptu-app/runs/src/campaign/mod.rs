@@ -20,7 +20,7 @@ mod tests;
 use btu_rig::procedure::plan::Connection;
 use diagnosis::{Basis, Dictionary, ModeName, Settings};
 use glob::Pattern;
-use protocol::injection::{FaultCatalogue, FaultMode, Lru};
+use protocol::injection::{FaultCatalogue, FaultMode};
 
 pub use adaptive::{AdaptiveFigures, Effort};
 pub use evaluate::{Assessment, Figures, Share, Shortfall, figures};
@@ -250,9 +250,10 @@ fn dictionary(
     let mut dictionary = Dictionary::new(made_of, seeds.into_iter().collect(), checks);
     dictionary.suspects = suspects;
     let lrus = suite.catalogue.lrus.iter();
-    // A laptop alone has no bench that could be at fault.
-    let is_there = |part: &&Lru| suite.connection() == Connection::Btu || !part.of_bench;
-    dictionary.parts = lrus.filter(is_there).map(|part| part.id.clone()).collect();
+    dictionary.parts = lrus
+        .filter(|part| suite.connection() == Connection::Btu || !part.of_bench)
+        .map(|part| part.id.clone())
+        .collect();
     let of = |mode: Option<&str>, level: usize| {
         let chosen = samples.iter().zip(runs).filter(|(sample, _)| {
             sample.purpose == Purpose::Dictionary && sample.mode() == mode && sample.level == level

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use btu_rig::recorded::StimulusPlayer;
 use btu_rig::recorder::RecordedWindow;
 use diagnosis::Observation;
-use fault_db::{Id, RunDetail, RunOccurrence, Store, TraceData};
+use fault_db::{Id, RunOccurrence, Store, TraceData};
 
 use super::{Original, Rule, compare, good_twin};
 use crate::data::ScriptsDirectory;
@@ -40,19 +40,21 @@ pub fn first_deviation(
 pub fn add_residuals(
     seen: &mut Observation,
     (store, directory): (&Store, &ScriptsDirectory),
-    run: &RunDetail,
     occurrences: &[RunOccurrence],
 ) {
     let mut procedures = BTreeSet::new();
     let mut traces: Vec<Id> = occurrences.iter().filter_map(|one| one.trace_id).collect();
     traces.dedup();
+    // Traces of one procedure come one after the other: its first is the first to be asked for.
     for trace in traces {
+        let procedure = store.recording(trace).ok().flatten();
+        let procedure = procedure.map(|recording| recording.procedure);
+        if !procedure.is_some_and(|procedure| procedures.insert(procedure)) {
+            continue;
+        }
         let Ok(original) = Original::read(store, trace) else {
             continue;
         };
-        if original.run_id != run.run.id || !procedures.insert(original.procedure.clone()) {
-            continue;
-        }
         let twin = good_twin(&original, directory);
         let first = twin
             .ok()

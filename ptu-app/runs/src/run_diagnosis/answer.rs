@@ -108,7 +108,7 @@ pub fn diagnose(
         current,
     } = choose(Some(store), directory, connection_of(&run))?;
     let mut seen = of_run(&run, &occurrences);
-    add_residuals(&mut seen, (store, directory), &run, &occurrences);
+    add_residuals(&mut seen, (store, directory), &occurrences);
     let mut seen = comparable(&run, seen, &dictionary, &mut warnings);
     for other in with {
         let more = of_same_unit((store, directory), &run, *other)?;
@@ -206,7 +206,7 @@ fn of_same_unit(
     }
     let occurrences = store.run_occurrences(that.id)?;
     let mut seen = of_run(&other, &occurrences);
-    add_residuals(&mut seen, (store, directory), &other, &occurrences);
+    add_residuals(&mut seen, (store, directory), &occurrences);
     Ok(seen)
 }
 
