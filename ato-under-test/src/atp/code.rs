@@ -20,7 +20,7 @@ pub enum Code {
     Known(u8),
 }
 
-/// How exactly a receiver of waveforms knows at most when a code began that comes back.
+/// Greatest error of the beginning that a receiver states.
 const KNOWN_TO: Duration = Duration::from_ms(500);
 
 /// A code that comes more often than this within the hold time flickers: twice it comes at a border that is crossed.

@@ -76,6 +76,7 @@ pub struct Arguments {
         long,
         value_name = "MV",
         default_value_t = 4000.0,
+        value_parser = millivolts,
         requires = "signals"
     )]
     full_scale_mv: f32,
@@ -133,6 +134,12 @@ fn sound_device(text: &str) -> Result<String, String> {
     device
         .map(str::to_owned)
         .ok_or_else(|| "it is sound:DEVICE".to_owned())
+}
+
+/// Those that a sound device can be calibrated to.
+fn millivolts(text: &str) -> Result<f32, String> {
+    let mv = text.parse().ok().filter(|mv| (1e-3..1e9).contains(mv));
+    mv.ok_or_else(|| "it is from 0.001 to 1e9".to_owned())
 }
 
 /// The unit, served at its harness.

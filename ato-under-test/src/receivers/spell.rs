@@ -5,12 +5,13 @@ use core::f32::consts::{PI, TAU};
 
 use super::code::{CodeReceiver, OnCarrier, Tone};
 
+// All of these are [default]s, set by trial with the types of codes that there are.
 /// Time about each edge of the keying that is not looked at, s: what the filter takes.
 const EDGE_S: f32 = 0.022;
-/// Square of what a value is off the keying, over that of its amplitude, that is borne: more than a second code adds that
-/// does not count, less than one that does.
+/// Greatest squared distance of a value from the keying, over the squared amplitude, at which the value still fits the code:
+/// more than a weaker second code adds, less than one that counts adds.
 const BORNE: f32 = 0.4;
-/// Values' worth of what is beyond it that end a code.
+/// Sum of the distances beyond it at which a code ends.
 const ENDS: f32 = 1.0;
 /// Share of a period, and time, s, for which two codes may look the same where one becomes the other.
 const ALIKE: f32 = 0.5;

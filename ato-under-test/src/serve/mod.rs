@@ -24,7 +24,7 @@ use protocol::{Backlog, Instant, SCAN, ScanDeadlines};
 pub use platform::keep_time;
 pub use serial_end::{PORT_WAITS, SerialEnd};
 pub use sound::{DEFAULT, Listener, carrier, is_there};
-pub use steady::{Pair, Steady};
+pub use steady::{Pair, Steady, TAPS};
 pub use tcp::{NO_AUTHENTICATION, check_exposed};
 pub use wire::{Place, Wire};
 

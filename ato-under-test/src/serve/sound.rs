@@ -21,11 +21,11 @@ pub const DEFAULT: &str = "default";
 const CHANNELS: usize = 2;
 /// How long samples wait in the sound server on their way here, ms.
 const LATENCY_MS: u32 = 20;
-/// Samples that wait here, as many as come together and a scan's: 40 ms.
+/// Samples that are to wait here, 40 ms: more than a block of the sound server and a scan together.
 const WAITING: usize = 4 * COIL_SAMPLES;
 
-/// The program that plays on a device, or records from it, two channels of 16 bits through its standard streams; samples wait
-/// so long in the sound server. Else the names of those that are missing.
+/// The program that plays on a device, or records from it: two channels of 16 bits through its standard streams. The sound
+/// server holds samples for `latency_ms`. Without a program, the names of those that would do.
 pub fn carrier(
     plays: bool,
     device: &str,

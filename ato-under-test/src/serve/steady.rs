@@ -8,11 +8,11 @@ use std::vec::Vec;
 pub type Pair = [f32; 2];
 
 /// Values of the filter between samples, and places between two samples at which it is known.
-const TAPS: usize = 32;
+pub const TAPS: usize = 32;
 const PLACES: usize = 512;
-/// Most by which two clocks differ, and the share of the difference from its aim by which what waits corrects it.
+/// Greatest difference between two clocks, as a share: what is given differs from what came by no more.
 const MOST: f64 = 5e-4;
-/// Share of a block by which the mean of what waits follows it: over about 5 s.
+/// Weight of the newest block in the mean number of samples that wait: the mean is over about 5 s.
 const FOLLOWS: f64 = 0.002;
 /// What waits longer than so many times its aim is passed over.
 const TOO_MUCH: usize = 4;

@@ -213,6 +213,23 @@ pub enum InstrumentFault {
     /// A carrier without a code was ordered.
     #[error("its driver has no commands for a carrier that is not modulated")]
     NoUnmodulated,
+    /// Samples beyond what the sound card makes at most.
+    #[error("the waveform is louder than it can play")]
+    TooLoud,
+    /// Samples pile up.
+    #[error("the device takes no samples")]
+    TakesNoSamples,
+    /// No program of the system plays.
+    #[error("no program carries sound here: neither {server} nor {alsa} is installed")]
+    NoPlayer {
+        /// That of the sound server.
+        server: String,
+        /// That of ALSA.
+        alsa: String,
+    },
+    /// It ended, and said nothing.
+    #[error("the program that plays on it has ended")]
+    PlayerEnded,
     /// It reports an error after a command.
     #[error("it refused {command}: {error}")]
     Refused {

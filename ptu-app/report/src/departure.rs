@@ -11,7 +11,7 @@ use ptu_runs::clock::{local_zoned, now_us, rfc3339};
 use ptu_runs::coverage::counts_of;
 use ptu_runs::failure::Failure;
 use ptu_runs::run::Evidence;
-use ptu_runs::stored::DEPARTURE;
+use ptu_runs::stored::{DEPARTURE, standing};
 
 /// How long a unit that passed is good for service, µs: 24 hours, as the operating rules of a railway have it (CSS 551).
 const VALID_US: i64 = 86_400_000_000;
@@ -44,7 +44,7 @@ impl Departure {
         if !run.scripts.iter().all(|script| is_departure(&script.path)) {
             why_not.push(both(|words| words.verify.with_others.into()));
         }
-        for step in &run.steps {
+        for step in standing(&run.steps) {
             let said: fn(&Words) -> &'static str = match step.verdict {
                 Verdict::Passed => continue,
                 Verdict::Failed => |words| words.verify.step_failed,
@@ -75,7 +75,10 @@ impl Departure {
         }
         Some(Self {
             unit: run_of.unit_serial.clone(),
-            until_us: run_of.finished_at_us.unwrap_or(run_of.started_at_us) + VALID_US,
+            until_us: run_of
+                .finished_at_us
+                .unwrap_or(run_of.started_at_us)
+                .saturating_add(VALID_US),
             why_not,
         })
     }
@@ -93,7 +96,7 @@ impl Departure {
         let filter = RunFilter {
             unit: Some(self.unit.clone()),
             verdict: Some(Verdict::Failed),
-            since_us: Some(self.until_us - VALID_US),
+            since_us: Some(self.until_us.saturating_sub(VALID_US)),
             ..RunFilter::default()
         };
         for later in store.runs(&filter)? {

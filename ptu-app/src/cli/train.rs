@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use btu_rig::rig::Harness;
 use clap::{ArgGroup, Args};
 use ptu_runs::drive::SectionChoice;
 use ptu_runs::failure::{Exit, Failure, RunTrouble};
@@ -96,6 +97,7 @@ impl TrainArguments {
                 train: self.train,
                 serial: self.serial_no,
                 faults: self.inject,
+                harness: Harness::None,
                 seed: self.seed,
                 slower: self.slower,
                 ..BenchChoice::default()

@@ -42,7 +42,7 @@ pub struct VerifyArguments {
     #[arg(value_name = "RUN|FILE")]
     what: String,
     /// Unit whose departure test it should be, by its serial number
-    #[arg(long, value_name = "SERIAL")]
+    #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
     #[command(flatten)]
     keys: KeysOption,
@@ -62,8 +62,13 @@ impl VerifyArguments {
             true => self.file(path, &keys, words)?,
             false => self.of_run(&keys, words)?,
         };
-        if let Some(departure) = found.departure.take() {
-            self.judge(departure, &mut found)?;
+        match (found.departure.take(), &self.unit) {
+            (Some(departure), _) => self.judge(departure, &mut found)?,
+            (None, Some(asked)) => {
+                let said = fill(words.verify.no_departure, &[("asked", asked)]);
+                found.doubts.push(said);
+            }
+            (None, None) => {}
         }
         let good = found.changes.is_empty() && found.doubts.is_empty();
         let told = self.json.answer(|| found.json(), || found.text());
@@ -80,8 +85,9 @@ impl VerifyArguments {
             let said = |words: &Words| fill(words.verify.other_unit, &of);
             departure.add(said);
         }
-        if let Ok(store) = self.database.open_read_only() {
-            departure.held_against(&store)?;
+        let history = self.database.open_read_only().ok();
+        if let Some(store) = &history {
+            departure.held_against(store)?;
         }
         if found.signatures.is_empty() {
             departure.add(|words| words.verify.departure_unsigned.into());
@@ -89,6 +95,9 @@ impl VerifyArguments {
             departure.add(|words| words.verify.departure_unverified.into());
         }
         found.say_departure(departure);
+        if history.is_none() {
+            found.remarks.push(found.words.verify.no_history.into());
+        }
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-"""Instruments that pyvisa-sim plays, each at a TCP port that sinstruments serves: or at a serial line of
+"""Instruments that pyvisa-sim plays, each at a TCP port, served by sinstruments, or at a serial line of
 its own: `instruments.py FILE NAME=PORT|LINK ...`."""
 import sys
 

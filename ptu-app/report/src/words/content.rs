@@ -1,7 +1,7 @@
 //! What scripts and catalogues say, in Korean: names of steps, measurements, fault modes, signals, reasons of limits.
 //!
 //! They are written in English; `scripts/korean.toml` has the Korean beside the scripts it belongs to. A text is looked up with
-//! its numbers as `#`, so that `code 25 gives 25 km/h` and the same step of every other code are one entry. A depot's own `korean.toml`
+//! its numbers as `#`, so that `code 25 gives 25 km/h` and the same step of every other code are one entry, unless it has its own. A depot's own `korean.toml`
 //! beside its procedures is looked in first. What is in neither is shown as it was written.
 
 use std::borrow::Cow;
@@ -53,7 +53,8 @@ pub(super) fn korean(text: &str) -> Cow<'_, str> {
 fn said(text: &str) -> Option<String> {
     for name_length in [|_: &str| 0, code_name_length] {
         let (key, numbers) = without(text, name_length);
-        if let Some(korean) = contents().find_map(|content| content.texts.get(&key)) {
+        let of = |content: &'static Content| content.texts.get(text).or(content.texts.get(&key));
+        if let Some(korean) = contents().find_map(of) {
             return Some(with_numbers(korean, &numbers));
         }
     }

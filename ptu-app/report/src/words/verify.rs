@@ -25,6 +25,8 @@ wordings! {
         not_departure: "not valid as a departure test: {why}", "출고 점검으로 유효하지 않음: {why}";
         was_valid_until: "too old, it was valid until {at}", "유효 기한 지남 ({at}까지)";
         other_unit: "it is of unit {unit}, not of {asked}", "{asked}이(가) 아니라 장치 {unit}의 점검임";
+        no_departure: "it is no departure test of unit {asked}", "장치 {asked}의 출고 점검이 아님";
+        no_history: "later departure tests were not looked for: the database here does not open", "이력을 열 수 없어 이후 출고 점검은 확인하지 않음";
         later_failed: "the later departure test of {at}, run {run}, failed", "{at}의 이후 출고 점검 불합격 (시험 {run})";
         with_others: "other procedures were run with it", "다른 절차를 함께 시험함";
         step_failed: "\"{step}\" failed", "단계 \"{step}\" 불합격";

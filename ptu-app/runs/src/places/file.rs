@@ -15,7 +15,7 @@ use super::model::Model;
 use super::placed::SAFE_WITHIN;
 use super::points::{UnitInput, check_reading};
 use crate::signal::FULL_SCALE_MV;
-use crate::sound::ON_THE_WAY_MS;
+use crate::sound::TAKES_MS;
 
 /// Why a bench file or a driver is refused.
 #[derive(Debug, Error)]
@@ -324,6 +324,17 @@ impl Places {
                 "there is one sound card at most".into(),
             ));
         }
+        for (place, (name, entry)) in read.instruments.iter().enumerate() {
+            let mut before = read.instruments.iter().take(place);
+            if let Some((other, _)) =
+                before.find(|(_, other)| entry.get_ref().is_in_the_way_of(other.get_ref()))
+            {
+                let why = format!(
+                    "instrument {name}: {other} is at its address, too, which Modbus modules alone may share"
+                );
+                return Err(wrong(&entry.span(), why));
+            }
+        }
         let of = |name: &str| (instruments.get(name), models.get(name).map(|m| &**m));
         let mut stimuli_at = BTreeMap::new();
         let mut taken = BTreeSet::new();
@@ -435,6 +446,16 @@ impl InstrumentEntry {
         Reach::of(at).unwrap_or_else(|| Reach::Tcp(at.to_owned()))
     }
 
+    /// They are at one address, and do not take turns there.
+    fn is_in_the_way_of(&self, other: &Self) -> bool {
+        let port = |reach: Reach| match reach {
+            Reach::Serial(path, _) => path,
+            Reach::Tcp(at) | Reach::Usb(at) => at,
+        };
+        let take_turns = [self, other].map(Self::kind) == [Kind::Modbus; 2];
+        port(self.reach()) == port(other.reach()) && !(take_turns && self.reach() == other.reach())
+    }
+
     fn check(&self, switches: bool, instruments: usize) -> Result<(), String> {
         let (kind, at) = self.at.split_once(':').unwrap_or_default();
         let is_wrong = match Reach::of(at) {
@@ -450,7 +471,7 @@ impl InstrumentEntry {
             ));
         }
         if (self.kind() == Kind::Scpi) != self.model.is_some() {
-            return Err("a SCPI instrument has a model, a Modbus module has none".into());
+            return Err("a SCPI instrument has a model, and no other has one".into());
         }
         if self.poll_ms == 0 || self.uncertainty_ms <= self.poll_ms {
             return Err("uncertainty_ms is more than poll_ms, and that at least 1".into());
@@ -467,9 +488,9 @@ impl InstrumentEntry {
             return Err("the watchdog waits longer than poll_ms".into());
         }
         let is_sound = self.kind() == Kind::Sound;
-        if is_sound && self.uncertainty_ms <= ON_THE_WAY_MS {
+        if is_sound && self.uncertainty_ms <= TAKES_MS {
             return Err(format!(
-                "sound takes more than {ON_THE_WAY_MS} ms on its way: uncertainty_ms is more"
+                "sound is on its way for {TAKES_MS} ms: uncertainty_ms is more"
             ));
         }
         // A card falls silent by itself.

@@ -7,7 +7,7 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Result, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use btu_rig::rig::InstrumentFault;
 use serialport::{ClearBuffer, SerialPort};
@@ -19,7 +19,8 @@ use crate::platform;
 /// An open line.
 pub(super) enum Line {
     Tcp(TcpStream),
-    Serial(Box<dyn SerialPort>),
+    /// A serial port, its rate, and when its last byte has passed.
+    Serial(Box<dyn SerialPort>, u32, Instant),
     /// What is written to the device is a message, and so is what is read.
     Usb(File),
 }
@@ -93,15 +94,23 @@ impl Line {
         Ok(match reach {
             Reach::Tcp(address) => Self::Tcp(connect(address)?),
             Reach::Serial(path, baud) => {
-                Self::Serial(platform::open_alone(path, *baud, ANSWERS_WITHIN)?)
+                let port = platform::open_alone(path, *baud, ANSWERS_WITHIN)?;
+                Self::Serial(port, *baud, Instant::now())
             }
             Reach::Usb(path) => Self::Usb(OpenOptions::new().read(true).write(true).open(path)?),
         })
     }
 
+    /// Waits until a serial line has been silent for so long that a frame of Modbus RTU may begin.
+    pub fn await_silence(&self) {
+        if let Self::Serial(_, baud, passed) = self {
+            std::thread::sleep(silence(*baud).saturating_sub(passed.elapsed()));
+        }
+    }
+
     /// Forgets what a serial line still holds of an answer that came too late.
     pub fn forget(&mut self) {
-        if let Self::Serial(port) = self {
+        if let Self::Serial(port, ..) = self {
             let _ = port.clear(ClearBuffer::Input);
         }
     }
@@ -110,7 +119,7 @@ impl Line {
     pub fn wait_for(&mut self, within: Duration) -> Result<()> {
         match self {
             Self::Tcp(stream) => stream.set_read_timeout(Some(within)),
-            Self::Serial(port) => Ok(port.set_timeout(within)?),
+            Self::Serial(port, ..) => Ok(port.set_timeout(within)?),
             Self::Usb(_) => Ok(()),
         }
     }
@@ -120,7 +129,11 @@ impl Read for Line {
     fn read(&mut self, into: &mut [u8]) -> Result<usize> {
         match self {
             Self::Tcp(stream) => stream.read(into),
-            Self::Serial(port) => port.read(into),
+            Self::Serial(port, _, passed) => {
+                let read = port.read(into);
+                *passed = Instant::now();
+                read
+            }
             Self::Usb(device) => device.read(into),
         }
     }
@@ -130,7 +143,11 @@ impl Write for Line {
     fn write(&mut self, bytes: &[u8]) -> Result<usize> {
         match self {
             Self::Tcp(stream) => stream.write(bytes),
-            Self::Serial(port) => port.write(bytes),
+            Self::Serial(port, baud, passed) => {
+                let written = port.write(bytes)?;
+                *passed = Instant::now() + characters(written as f64, *baud);
+                Ok(written)
+            }
             Self::Usb(device) => device.write(bytes),
         }
     }
@@ -138,6 +155,16 @@ impl Write for Line {
     fn flush(&mut self) -> Result<()> {
         Ok(())
     }
+}
+
+/// How long so many characters take: 11 bits each (Modbus over serial line 2.5.1).
+fn characters(count: f64, baud: u32) -> Duration {
+    Duration::from_secs_f64(11.0 * count / f64::from(baud.max(1)))
+}
+
+/// What is between two frames of Modbus RTU (Modbus over serial line 2.5.1.1).
+fn silence(baud: u32) -> Duration {
+    characters(3.5, baud).max(Duration::from_micros(1_750))
 }
 
 fn connect(address: &str) -> Result<TcpStream> {
@@ -161,5 +188,16 @@ pub(super) fn io_fault(error: &std::io::Error) -> InstrumentFault {
     match error.kind() {
         E::WouldBlock | E::TimedOut => InstrumentFault::Silent(span(ANSWERS_WITHIN)),
         _ => InstrumentFault::Disconnected(error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_of_rtu_are_three_and_a_half_characters_apart_and_no_less_than_1_75_ms() {
+        let micros = [1_200, 9_600, 115_200].map(|baud| silence(baud).as_micros());
+        assert_eq!(micros, [32_083, 4_010, 1_750]);
     }
 }

@@ -94,6 +94,9 @@ impl Module {
         };
         generate(&mut request, &mut out).map_err(|error| refused(&request, error))?;
         let mut line = locked(&self.line);
+        if self.proto == ModbusProto::Rtu {
+            line.await_silence();
+        }
         line.forget();
         let mut answer = vec![0; HEAD[usize::from(self.proto == ModbusProto::Rtu)]];
         let exchanged = line

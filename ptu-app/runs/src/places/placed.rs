@@ -69,13 +69,6 @@ fn open(
     })
 }
 
-fn open_sound(places: &Places, device: &str) -> Result<Stream, InstrumentFault> {
-    Stream::start(device, places.full_scale_mv).map_err(|failure| InstrumentFault::NotThere {
-        at: device.to_owned(),
-        why: failure.to_string(),
-    })
-}
-
 /// The sound card at work.
 struct BySound {
     name: String,
@@ -86,7 +79,7 @@ struct BySound {
     late: Duration,
     /// This scan's samples: codes; TWC and markers.
     samples: [[f32; 2]; COIL_SAMPLES],
-    /// Frames that went this way and left no gap in the others' numbers.
+    /// Frames that were played and not sent: the numbers of later frames are lower by so many.
     left_out: u16,
 }
 
@@ -95,7 +88,8 @@ impl BySound {
         let Some((name, device)) = places.sound_card() else {
             return Ok(None);
         };
-        let stream = open_sound(places, &device).map_err(|fault| trouble(name, fault))?;
+        let stream = Stream::start(&device, places.full_scale_mv);
+        let stream = stream.map_err(|fault| trouble(name, fault))?;
         Ok(Some(Self {
             name: name.clone(),
             stream,
@@ -132,11 +126,8 @@ impl BySound {
     fn fault(&self) -> Option<InstrumentFault> {
         match self.stream.clipped() {
             Ok(0) => None,
-            Ok(_) => Some(InstrumentFault::Refused {
-                command: "samples".into(),
-                error: "louder than the sound card can play".into(),
-            }),
-            Err(why) => Some(InstrumentFault::Disconnected(why)),
+            Ok(_) => Some(InstrumentFault::TooLoud),
+            Err(fault) => Some(fault),
         }
     }
 }
@@ -200,7 +191,7 @@ impl Placed {
         let mut tried = |name: &String| {
             if places.instruments[name].kind() == Kind::Sound {
                 let device = &places.instruments[name].reach().to_string();
-                return try_sound(&open_sound(places, device)?);
+                return try_sound(&Stream::start(device, places.full_scale_mv)?);
             }
             let mut instrument = open(places, name, &mut lines)?;
             let here = |point: &Point| point.place() == Place::Instrument(name);
@@ -425,8 +416,7 @@ fn try_sound(stream: &Stream) -> Result<f64, InstrumentFault> {
         std::thread::sleep(Duration::from_millis(10));
         takes_ms = takes_ms.max(stream.takes_ms());
     }
-    let played = stream.clipped().map_err(InstrumentFault::Disconnected);
-    played.map(|_| takes_ms as f64)
+    stream.clipped().map(|_| takes_ms as f64)
 }
 
 /// Frames that pass by; what is no frame, as one that is damaged on purpose, goes on as it came.

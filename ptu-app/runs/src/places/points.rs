@@ -22,7 +22,8 @@ macro_rules! inputs {
         pub enum UnitInput { $(#[doc = $key] $name,)* }
 
         impl UnitInput {
-            pub(super) const ALL: &[Self] = &[$(Self::$name,)*];
+            /// All, in the order of the train lines first.
+            pub const ALL: &[Self] = &[$(Self::$name,)*];
 
             /// Its key in a bench file.
             pub const fn name(self) -> &'static str {

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::rig::{ExpectedIdentity, Harness, check_places};
+use protocol::injection::FaultMode;
 use protocol::message::Identity;
 use serde::{Deserialize, Serialize};
 
@@ -135,11 +136,7 @@ impl BenchChoice {
         let by_numbers = self.signals == Signals::Values
             && self.harness != Harness::None
             && self.places.is_empty();
-        if let Some(fault) = faults.iter().find(|fault| fault.place.on_bench())
-            && !by_numbers
-        {
-            return Err(Failure::usage(RunTrouble::BenchFault(fault.id.clone())));
-        }
+        check_bench_faults(&faults, by_numbers)?;
         let serial = Some(self.serial.clone()).filter(|serial| !serial.is_empty());
         if let Some(serial) = &serial {
             check_serial(serial)?;
@@ -224,6 +221,17 @@ pub fn check_serial(serial: &str) -> Result<(), Failure> {
         return Err(Failure::usage(RunTrouble::SerialNumber(longest)));
     }
     Ok(())
+}
+
+/// Faults of the simulated bench act on numbers in frames between bench and unit, and on nothing where there are none.
+///
+/// # Errors
+/// Such a fault where there are none.
+pub fn check_bench_faults(faults: &[FaultMode], by_numbers: bool) -> Result<(), Failure> {
+    match faults.iter().find(|fault| fault.place.on_bench()) {
+        Some(fault) if !by_numbers => Err(Failure::usage(RunTrouble::BenchFault(fault.id.clone()))),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]

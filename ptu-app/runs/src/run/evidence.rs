@@ -2,6 +2,7 @@
 
 use fault_db::Instrument;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::bench_contents::BenchContents;
 use super::plan::MeasuringRules;
@@ -30,12 +31,27 @@ pub struct Evidence {
 
 /// An instrument that a run used.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "serde_json::Value")]
 pub struct InstrumentEvidence {
     /// As it was registered.
     #[serde(flatten)]
     pub of: Instrument,
     /// Its calibration held.
     pub is_calibrated: bool,
+}
+
+/// By hand: what serde flattens loses the numbers that serde_json keeps with all their digits.
+impl TryFrom<Value> for InstrumentEvidence {
+    type Error = serde_json::Error;
+
+    fn try_from(mut kept: Value) -> Result<Self, Self::Error> {
+        let mut is_calibrated = || kept.as_object_mut()?.remove("is_calibrated");
+        let is_calibrated = is_calibrated().unwrap_or_default();
+        Ok(Self {
+            is_calibrated: serde_json::from_value(is_calibrated)?,
+            of: serde_json::from_value(kept)?,
+        })
+    }
 }
 
 /// The computer's clock at the beginning of a run.
@@ -94,5 +110,21 @@ impl Evidence {
     /// As a run has kept it.
     pub fn of(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_instrument_with_an_uncertainty_is_read_as_it_was_kept() {
+        let kept = r#"{"kind":"bench","serial_no":"B-0031","uncertainty":{"ms":2.5},"at_us":1,"who":"","is_calibrated":true}"#;
+        let read: InstrumentEvidence = serde_json::from_str(kept).expect("an instrument");
+        assert_eq!(read.of.uncertainty["ms"], 2.5);
+        assert!(read.is_calibrated);
+        assert_eq!(serde_json::to_string(&read).expect("text"), kept);
+        let without = kept.replace(r#","is_calibrated":true"#, "");
+        assert!(serde_json::from_str::<InstrumentEvidence>(&without).is_err());
     }
 }

@@ -212,7 +212,7 @@ impl<L: UnitLink> Session<L> {
         let late = self.bench.link_mut().take_late();
         let behind = self.behind().max(late);
         let is_late = late > Duration::ZERO || self.max_lag.is_some_and(|at_most| behind > at_most);
-        // What broke took its time, and no attempt at a step makes it good.
+        // A link that broke is late, too, and to repeat the step does not repair it.
         if is_late && self.link_error.is_none() {
             self.stalled = self.stalled.max(Some(behind));
             let now = self.bench.now();

@@ -15,8 +15,8 @@ use crate::failure::Failure;
 
 /// A period that is so much longer than the one before it lacks a tooth, at a speed that changes gently.
 const GAP: std::ops::RangeInclusive<f64> = 1.6..=2.4;
-/// A period over the one before it, of a wheel that turns; and the share of all that may be another, as at a turn back: of more
-/// the lines are noise.
+/// Ratio of a period to the one before it while a wheel turns, and the greatest share of other ratios, as at a turn back. With
+/// more of them the lines are noise.
 const EVEN: std::ops::RangeInclusive<f64> = 0.6..=1.6;
 const MOST_UNEVEN: f64 = 0.2;
 
@@ -54,9 +54,14 @@ struct Sensor {
     /// Since the last pulse: samples for which each line was high, and when B rose.
     high: [u64; 2],
     b_rose: Option<f64>,
-    /// Periods that lack a tooth, and which tooth of the wheel that is.
+    /// Periods that lack a tooth, and which teeth of the wheel these are.
     gaps: u64,
     missing: BTreeSet<i64>,
+    /// By how much the tooth that passed last is further on than the pulses forward less those backward.
+    ahead: i64,
+    /// Way at the last pulse, and at the last fall of line A.
+    backward: Option<bool>,
+    fell_backward: bool,
     /// Periods that are much longer or shorter than the one before, and all.
     uneven: (u64, u64),
     /// Sums over whole periods: their length, what was high of them, and the phase, as a sum of shares and how many.
@@ -76,6 +81,9 @@ impl Sensor {
         if self.input.count() != before && self.samples > 1 {
             self.pulse(self.samples as f64 - f64::from(self.input.since()), teeth);
         }
+        if self.was_high[0] && !high[0] {
+            self.fell_backward = !high[1];
+        }
         if high[1] && !self.was_high[1] {
             self.b_rose = Some(self.samples as f64 - f64::from(self.input.since_b()));
         }
@@ -86,9 +94,16 @@ impl Sensor {
     }
 
     fn pulse(&mut self, at: f64, teeth: u32) {
-        match self.input.backward() {
+        let backward = self.input.backward();
+        let way = if backward { -1 } else { 1 };
+        match backward {
             true => self.told.backward += 1,
             false => self.told.forward += 1,
+        }
+        let turned = self.backward.replace(backward) == Some(!backward);
+        // It turned behind a tooth, which passes once more.
+        if turned && self.fell_backward != backward {
+            self.ahead -= way;
         }
         let high = std::mem::take(&mut self.high);
         let b_rose = self.b_rose.take();
@@ -98,16 +113,13 @@ impl Sensor {
         };
         let period = at - last;
         let is_gap = (self.period).is_some_and(|before| GAP.contains(&(period / before)));
-        if is_gap {
+        if is_gap && !turned {
             self.gaps += 1;
-            let way = match self.input.backward() {
-                true => -1,
-                false => 1,
-            };
-            let turned = self.told.forward as i64 - self.told.backward as i64;
-            let tooth = turned + way * self.gaps as i64;
+            let pulses = self.told.forward as i64 - self.told.backward as i64;
+            let tooth = pulses + self.ahead;
             self.missing
                 .insert(tooth.rem_euclid(i64::from(teeth.max(1))));
+            self.ahead += way;
             self.period = None;
             return;
         }
@@ -115,6 +127,9 @@ impl Sensor {
             let is_uneven = !EVEN.contains(&(period / before));
             self.uneven.0 += u64::from(is_uneven);
             self.uneven.1 += 1;
+        }
+        if turned {
+            self.period = None;
         }
         self.longest = self.longest.max(period);
         self.shortest = match self.shortest {
@@ -210,4 +225,31 @@ pub fn read_tacho(path: &Path, unit: &UnitConfig, full_scale_mv: f64) -> Result<
         }
     }
     Ok(reading)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: a tooth that lacks is one, on the way forward and on the way back. Method: a wheel that turns back upon a tooth,
+    /// and one that turns back between two.
+    #[test]
+    fn a_missing_tooth_is_the_same_one_on_the_way_back() {
+        const TEETH: u32 = 20;
+        for turns_at in [6_225, 6_275] {
+            let mut sensor = Sensor::default();
+            let there = 60..turns_at;
+            for place in there.clone().chain(there.rev()) {
+                // Hundredths of a tooth; line B is a quarter behind.
+                let line = |place: u32| match place % 100 < 50 && place / 100 % TEETH != 7 {
+                    true => 1_000.0,
+                    false => -1_000.0,
+                };
+                sensor.take([line(place), line(place - 25)], TEETH);
+            }
+            let told = (sensor.told.forward, sensor.told.backward, sensor.gaps);
+            assert!(told.0 > 50 && told.1 > 50 && told.2 == 6, "{told:?}");
+            assert_eq!(sensor.missing.len(), 1, "{turns_at}: {:?}", sensor.missing);
+        }
+    }
 }

@@ -30,6 +30,12 @@ impl Carried {
     /// Starts it. When `stop` is pressed it is ended at once, whatever this thread waits for.
     pub(super) fn start(command: &mut Command, plays: bool, stop: &Stop) -> Result<Self, Failure> {
         let name = command.get_program().to_string_lossy().into_owned();
+        Self::spawn(command, plays, stop)
+            .map_err(|error| Failure::bench(RunTrouble::NotStarted(name, error.to_string())))
+    }
+
+    /// The same; else what the system says.
+    pub(super) fn spawn(command: &mut Command, plays: bool, stop: &Stop) -> std::io::Result<Self> {
         let pipe = |wanted: bool| {
             if wanted {
                 Stdio::piped()
@@ -41,8 +47,7 @@ impl Carried {
             .stdin(pipe(plays))
             .stdout(pipe(!plays))
             .stderr(Stdio::piped())
-            .spawn()
-            .map_err(|error| Failure::bench(RunTrouble::NotStarted(name, error.to_string())))?;
+            .spawn()?;
         let (input, output) = (child.stdin.take(), child.stdout.take());
         if let Some(input) = &input {
             shorten_pipe(input);
@@ -86,17 +91,18 @@ impl Carried {
         }
     }
 
+    /// What it said last, once it has ended.
+    pub(super) fn last_words(&mut self) -> Option<String> {
+        self.wait();
+        // It may still be on its way.
+        std::thread::sleep(4 * LOOK);
+        let words = self.last_words.lock().ok()?;
+        Some(words.clone()).filter(|words| !words.is_empty())
+    }
+
     /// Why it ended, in its own words.
     pub(super) fn failed(&mut self, what: &'static str, device: &str) -> Failure {
-        self.wait();
-        // What it said last may still be on its way.
-        std::thread::sleep(4 * LOOK);
-        let words = self.last_words.lock().map(|words| words.clone());
-        let words = words.unwrap_or_default();
-        let why = match words.is_empty() {
-            true => Why::ProgramEnded,
-            false => Why::Said(words),
-        };
+        let why = self.last_words().map_or(Why::ProgramEnded, Why::Said);
         Failure::bench(SoundTrouble::Device(what, device.to_owned(), why))
     }
 }

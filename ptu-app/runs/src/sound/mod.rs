@@ -20,7 +20,7 @@ pub use calibration::{Calibration, Calibrations, Direction};
 pub use play::{Lead, Played, play};
 pub use programs::{DeviceFound, devices};
 pub use record::{MOST_RECORDED_S, Recorded, Take, record, record_to_file};
-pub use stream::{ON_THE_WAY_MS, Stream};
+pub use stream::{Stream, TAKES_MS};
 
 /// Channels of a card that are used.
 pub const CHANNELS: usize = 2;

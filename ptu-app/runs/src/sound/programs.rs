@@ -25,10 +25,18 @@ pub struct DeviceFound {
 /// # Errors
 /// There is no such program here.
 pub(super) fn carrier(direction: Direction, device: &str) -> Result<Command, Failure> {
+    found(direction, device)
+        .map_err(|(one, other)| Failure::bench(SoundTrouble::NoProgram(one, other)))
+}
+
+/// The same to play; else the names of the programs that are missing.
+pub(super) fn player(device: &str) -> Result<Command, (&'static str, &'static str)> {
+    found(Direction::Output, device)
+}
+
+fn found(direction: Direction, device: &str) -> Result<Command, (&'static str, &'static str)> {
     let plays = direction == Direction::Output;
-    let found = ato_under_test::serve::carrier(plays, device, LATENCY_MS);
-    let mut command =
-        found.map_err(|(one, other)| Failure::bench(SoundTrouble::NoProgram(one, other)))?;
+    let mut command = ato_under_test::serve::carrier(plays, device, LATENCY_MS)?;
     without_window(&mut command);
     Ok(command)
 }

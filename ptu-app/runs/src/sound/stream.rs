@@ -4,27 +4,32 @@ use std::io::Write;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
-use ato_under_test::serve::{Pair, Steady};
+use ato_under_test::serve::{Pair, Steady, TAPS};
+use btu_rig::rig::InstrumentFault;
 
 use super::carried::Carried;
-use super::{CHANNELS, Direction, programs};
-use crate::failure::Failure;
+use super::{CHANNELS, SAMPLE_HZ, programs};
 use crate::stop::Stop;
 
 /// Samples that are written together, and those that wait besides: 10 and 20 ms.
 const TOGETHER: usize = 480;
 const WAITING: usize = 960;
-/// Samples of the filter between two clocks, and one more.
-const BESIDES: usize = 40;
+/// Samples beyond those that are given: the filter between two clocks reaches over so many, and takes one more where this
+/// computer's clock is the slower one.
+const BESIDES: usize = TAPS + 1;
+/// Samples that wait where the device takes none: those of a second [default: a sound server that starts takes less].
+const STUCK: usize = SAMPLE_HZ as usize;
 /// What is on its way to the card: in its sound server and in the pipe, ms.
 pub const ON_THE_WAY_MS: u64 = programs::LATENCY_MS as u64 + 21;
+/// The same, and what waits here at most while all is well, ms.
+pub const TAKES_MS: u64 = ON_THE_WAY_MS + ((WAITING + TOGETHER) / 48) as u64;
 
 struct State {
     steady: Steady,
     ends: bool,
     /// Samples beyond what the device can make, since this was asked last.
     clipped: u64,
-    ended: Option<String>,
+    ended: Option<InstrumentFault>,
 }
 
 /// Plays what it is fed, until it is dropped; what is not fed is silence.
@@ -39,10 +44,18 @@ impl Stream {
     ///
     /// # Errors
     /// Nothing here carries sound.
-    pub fn start(device: &str, full_scale_mv: [f64; CHANNELS]) -> Result<Self, Failure> {
+    pub fn start(device: &str, full_scale_mv: [f64; CHANNELS]) -> Result<Self, InstrumentFault> {
         let stop = Stop::default();
-        let mut command = programs::carrier(Direction::Output, device)?;
-        let mut carried = Carried::start(&mut command, true, &stop)?;
+        let mut command =
+            programs::player(device).map_err(|(server, alsa)| InstrumentFault::NoPlayer {
+                server: server.to_owned(),
+                alsa: alsa.to_owned(),
+            })?;
+        let started = Carried::spawn(&mut command, true, &stop);
+        let mut carried = started.map_err(|error| InstrumentFault::NotThere {
+            at: device.to_owned(),
+            why: error.to_string(),
+        })?;
         let state = State {
             steady: Steady::new(WAITING),
             ends: false,
@@ -50,7 +63,7 @@ impl Stream {
             ended: None,
         };
         let shared = Arc::new((Mutex::new(state), Condvar::new()));
-        let (played, device) = (shared.clone(), device.to_owned());
+        let played = shared.clone();
         let thread = std::thread::spawn(move || {
             while let Some(samples) = next(&played) {
                 let mut bytes = Vec::with_capacity(TOGETHER * CHANNELS * 2);
@@ -66,8 +79,10 @@ impl Stream {
                 lock(&played.0).clipped += clipped;
                 let written = carried.input.as_mut().map(|input| input.write_all(&bytes));
                 if !matches!(written, Some(Ok(()))) {
-                    let why = carried.failed("play on", &device).to_string();
-                    lock(&played.0).ended = Some(why);
+                    let said = carried.last_words();
+                    let why =
+                        said.map_or(InstrumentFault::PlayerEnded, InstrumentFault::Disconnected);
+                    lock(&played.0).ended.get_or_insert(why);
                     return;
                 }
             }
@@ -79,9 +94,15 @@ impl Stream {
         })
     }
 
-    /// Takes the samples of a scan, mV.
+    /// Takes the samples of a scan, mV, unless too many wait.
     pub fn feed(&self, samples: &[Pair]) {
-        lock(&self.shared.0).steady.push(samples.iter().copied());
+        let mut state = lock(&self.shared.0);
+        if state.steady.waiting() > STUCK {
+            state.ended.get_or_insert(InstrumentFault::TakesNoSamples);
+        } else {
+            state.steady.push(samples.iter().copied());
+        }
+        drop(state);
         self.shared.1.notify_all();
     }
 
@@ -91,7 +112,7 @@ impl Stream {
     }
 
     /// Samples that were cut off since this was asked last; else why nothing is played any more.
-    pub fn clipped(&self) -> Result<u64, String> {
+    pub fn clipped(&self) -> Result<u64, InstrumentFault> {
         let mut state = lock(&self.shared.0);
         match &state.ended {
             Some(why) => Err(why.clone()),
@@ -128,4 +149,31 @@ fn next((shared, changed): &(Mutex<State>, Condvar)) -> Option<[Pair; TOGETHER]>
 
 fn lock(state: &Mutex<State>) -> MutexGuard<'_, State> {
     state.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_device_that_takes_nothing_is_told_and_no_more_is_kept_for_it() {
+        let state = State {
+            steady: Steady::new(WAITING),
+            ends: false,
+            clipped: 0,
+            ended: None,
+        };
+        let stream = Stream {
+            shared: Arc::new((Mutex::new(state), Condvar::new())),
+            stop: Stop::default(),
+            thread: None,
+        };
+        let half = vec![Pair::default(); STUCK / 2];
+        stream.feed(&half);
+        stream.feed(&half);
+        assert_eq!(stream.clipped(), Ok(0));
+        (0..9).for_each(|_| stream.feed(&half));
+        assert_eq!(stream.clipped(), Err(InstrumentFault::TakesNoSamples));
+        assert!(lock(&stream.shared.0).steady.waiting() < 2 * STUCK);
+    }
 }

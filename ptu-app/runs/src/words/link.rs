@@ -89,6 +89,12 @@ fn of_instrument(fault: &InstrumentFault) -> String {
         }
         F::Taken => "이 컴퓨터의 다른 프로그램이 사용 중".to_owned(),
         F::NoUnmodulated => "드라이버에 무변조 반송파 명령이 없음".to_owned(),
+        F::TooLoud => "파형이 음향 장치의 최대 출력을 넘음".to_owned(),
+        F::TakesNoSamples => "음향 장치가 샘플을 받지 않음".to_owned(),
+        F::NoPlayer { server, alsa } => {
+            format!("음향을 전달할 프로그램이 없음: {server}와(과) {alsa} 모두 설치되지 않음")
+        }
+        F::PlayerEnded => "음향을 전달하는 프로그램이 종료됨".to_owned(),
         F::Refused { command, error } => format!("명령 {command}을(를) 거부함: {error}"),
         F::QueueFull(error) => format!("오류 대기열이 가득 참: {error}"),
         F::OutOfRange {
@@ -133,6 +139,10 @@ mod tests {
         {"instrument": {"instrument": "io51", "fault": {"other_serial": {"found": "52", "expected": "53"}}}},
         {"instrument": {"instrument": "io54", "fault": "taken"}},
         {"instrument": {"instrument": "io55", "fault": "no_unmodulated"}},
+        {"instrument": {"instrument": "io56", "fault": "too_loud"}},
+        {"instrument": {"instrument": "io57", "fault": "takes_no_samples"}},
+        {"instrument": {"instrument": "io58", "fault": {"no_player": {"server": "p59", "alsa": "p60"}}}},
+        {"instrument": {"instrument": "io61", "fault": "player_ended"}},
         {"instrument": {"instrument": "io6", "fault": {"refused": {"command": "30", "error": "-222"}}}},
         {"instrument": {"instrument": "io7", "fault": {"queue_full": "-350"}}},
         {"instrument": {"instrument": "io8", "fault": {"out_of_range": {"what": "p1", "value": "81", "low": "2", "high": "3"}}}},

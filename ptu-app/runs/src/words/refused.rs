@@ -162,7 +162,7 @@ sentences! {
         PortsNotListed(why: String): "cannot list serial ports: {why}", "직렬 포트 목록을 읽을 수 없습니다: {why}";
         PortGone: "the unit on the port is gone", "포트의 장치가 없어졌습니다";
         InjectElsewhere: "" ["--inject puts faults of a unit into the embedded one only; inject into a served one with `ato-under-test --inject`" "faults of a unit can be injected into the embedded one only"], "장치의 고장 모드는 모의 장치에만 주입할 수 있습니다" [" (--inject). 서비스하는 장치에는 `ato-under-test --inject`로 주입합니다"];
-        BenchFault(fault: String): "{fault} is a fault of the simulated bench: it acts on numbers in frames between bench and unit" ["; leave --signals, --bench and --harness out"], "{fault}은(는) 모의 시험대의 고장 모드이며, 시험대와 장치 사이 전문의 수치에만 작용합니다" [". --signals, --bench, --harness를 빼십시오"];
+        BenchFault(fault: String): "{fault} is a fault of the simulated bench: it acts on numbers in frames between bench and unit" ["; `ptu run` without --signals, --bench and --harness has them"], "{fault}은(는) 모의 시험대의 고장 모드이며, 시험대와 장치 사이 전문의 수치에만 작용합니다" [". --signals, --bench, --harness 없이 `ptu run`을 실행하십시오"];
         SampledOnSerial: "" ["--signals sampled needs 6 Mbit/s, more than a serial port: use sim, tcp:HOST:PORT or lockstep:PATH" "sampled waveforms need 6 Mbit/s, more than a serial port: use sim, tcp:HOST:PORT or lockstep:PATH"], "" ["--signals sampled에는 6 Mbit/s가 필요하여 직렬 포트로는 보낼 수 없습니다. sim, tcp:HOST:PORT 또는 lockstep:PATH를 쓰십시오" "파형 신호에는 6 Mbit/s가 필요하여 직렬 포트로는 보낼 수 없습니다. sim, tcp:HOST:PORT 또는 lockstep:PATH를 쓰십시오"];
         SerialNumber(longest: usize): "a serial number is 1 to {longest} ASCII characters", "일련번호는 ASCII 문자 1~{longest}자입니다";
         NoVersion(text: String): "\"{text}\" is not a version such as 0.1.0", "\"{text}\"은(는) 0.1.0과 같은 버전이 아닙니다";

@@ -14,7 +14,7 @@ sentences! {
     /// What a bench of instruments makes of a step.
     BenchNote {
         NoPlace(bench: String, what: String): "bench {bench} has no {what}", "시험대 {bench}에 {what} 없음";
-        Beyond(bench: String, instrument: String, why: btu_rig::rig::InstrumentFault): "bench {bench}: {instrument} cannot: {why}", "시험대 {bench}: 계측기 {instrument} 범위 밖 ({why})";
+        Beyond(bench: String, instrument: String, why: btu_rig::rig::InstrumentFault): "bench {bench}: {instrument} cannot: {why}", "시험대 {bench}: 계측기 {instrument} 불가 ({why})";
         Unread(bench: String, what: String): "bench {bench} does not read {what}", "시험대 {bench}에서 읽을 수 없음: {what}";
         Do(what: String): "Please do by hand: {what}. Done?", "손으로 조작하십시오: {what}. 완료했습니까?";
         See(what: String): "Please look: {what}. Is it so?", "확인하십시오: {what}. 맞습니까?";

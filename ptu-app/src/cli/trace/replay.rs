@@ -1,6 +1,6 @@
 //! `ptu trace replay`: repeats the recorded stimuli of a trace on a unit.
 
-use btu_rig::rig::check_places;
+use btu_rig::rig::{Harness, check_places};
 use clap::Args;
 use fault_db::limits;
 use ptu_report::words::{Words, fill};
@@ -12,6 +12,7 @@ use crate::cli::{Database, Json, ScriptsOption, answered};
 use ptu_runs::failure::{Exit, Failure, RunTrouble};
 use ptu_runs::link::Endpoint;
 use ptu_runs::replay::{Original, ReplayMatch, Rerun, Rerunning, rerun};
+use ptu_runs::run::check_bench_faults;
 use ptu_runs::stop::Stop;
 
 /// Repeat the stimuli of a trace on the simulated unit or one on a port, and compare the responses
@@ -59,8 +60,10 @@ impl ReplayArguments {
         let store = database.open_read_only()?;
         let original = Original::read(&store, store.resolve_trace(&self.id)?)?;
         drop(store);
-        let train = original.made.setup(&directory)?.train;
-        check_places(&faults, &train)
+        let setup = original.made.setup(&directory)?;
+        let by_numbers = setup.waveforms.is_none() && setup.harness != Harness::None;
+        check_bench_faults(&faults, by_numbers)?;
+        check_places(&faults, &setup.train)
             .map_err(|wrong| Failure::usage(RunTrouble::Misplaced(wrong.to_string())))?;
         let store = database.open()?;
         let stop = Stop::default();

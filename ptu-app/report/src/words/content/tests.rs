@@ -101,3 +101,15 @@ fn parameters_of_events_are_korean() {
         );
     }
 }
+
+#[test]
+fn every_input_of_the_unit_that_a_bench_file_places_is_named() {
+    let is_named = |name: &str| CONTENT.texts.contains_key(name);
+    let inputs = ptu_runs::places::UnitInput::ALL.iter();
+    let missing: Vec<_> = inputs.filter(|input| !is_named(input.name())).collect();
+    assert!(
+        missing.is_empty(),
+        "not in scripts/korean.toml: {missing:?}"
+    );
+    assert_eq!(korean("reverser to -1"), "역전기 후진 위치로");
+}

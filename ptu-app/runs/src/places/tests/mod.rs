@@ -240,6 +240,7 @@ by_hand = "switch off the generator"||10|killed
 ["gen", "io"]|["gen"]|2|see io
 model = "generator"|model = "oscillator"|10|oscillator
 modbus:127|modem:127|4|modbus:HOST:PORT
+scpi:127.0.0.1:2|scpi:127.0.0.1:1|4|alone may share
 scpi:127|sound:127|10|has a model
 ms = 800|ms = 10|4|longer than poll_ms
 uncertainty_ms = 150|uncertainty_ms = 18446744073709551|4|at most 500
