@@ -10,8 +10,11 @@ use std::process::{Command, Stdio};
 fn faults_that_are_not_the_units_are_refused_with_who_injects_them() {
     let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
     for (fault, words) in [
-        ("inverter.dead", "fault inverter.dead is on the train"),
-        ("tra.dead,tcms.silent", "fault tcms.silent is on the train"),
+        ("inverter.dead", "fault inverter.dead is around the unit"),
+        (
+            "tra.dead,tcms.silent",
+            "fault tcms.silent is around the unit",
+        ),
         ("tcms.silent", "`ptu run --inject`"),
         (
             "tra.daed",

@@ -178,7 +178,7 @@ fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Conclusion> {
     });
     let with = of_all.map(|group| (group, weights.any_failed(&group.parts)));
     let open = with.filter(|(group, probability)| {
-        let is_one = found.len() == 1 && tells_apart(belief, first, group);
+        let is_one = found.len() == 1 && tells_apart(belief, weights, first, group);
         *probability >= found_at && !is_one
     });
     let mut open: Vec<_> = open.collect();
@@ -208,14 +208,21 @@ fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Conclusion> {
     }
 }
 
-/// Whether what was seen tells a part from the others of a group.
-fn tells_apart(belief: &Belief<'_, '_>, part: &LruId, group: &Group) -> bool {
+/// Whether what was seen tells a part from the others of a group; a part of the bench that would not even be shown is none
+/// of them.
+fn tells_apart(belief: &Belief<'_, '_>, weights: &Weights, part: &LruId, group: &Group) -> bool {
     let relations = belief.model.relations;
     let is_of_bench = |part: &LruId| relations.of_bench.contains(part);
+    let told = weights.told();
+    let may_be = |part: &LruId| {
+        let least = belief.model.settings.conclusion.least_shown;
+        told.iter()
+            .any(|one| one.lru == *part && one.probability >= least)
+    };
     let bench: Vec<_> = group
         .parts
         .iter()
-        .filter(|part| is_of_bench(part))
+        .filter(|part| is_of_bench(part) && may_be(part))
         .collect();
     if !bench.is_empty() && deviates_at_one_of(belief, &bench) {
         // What comes from the bench cannot tell the bench from the part that it comes to.
