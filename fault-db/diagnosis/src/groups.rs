@@ -208,14 +208,14 @@ fn group(belief: &Belief<'_, '_>, weights: &Weights) -> Option<Conclusion> {
     }
 }
 
-/// Whether what was seen tells a part from the others of a group; a part of the bench that would not even be shown is none
+/// Whether what was seen tells a part from the others of a group; a part of the bench that would not be named is none
 /// of them.
 fn tells_apart(belief: &Belief<'_, '_>, weights: &Weights, part: &LruId, group: &Group) -> bool {
     let relations = belief.model.relations;
     let is_of_bench = |part: &LruId| relations.of_bench.contains(part);
     let told = weights.told();
     let may_be = |part: &LruId| {
-        let least = belief.model.settings.conclusion.least_shown;
+        let least = belief.model.settings.conclusion.named_at;
         told.iter()
             .any(|one| one.lru == *part && one.probability >= least)
     };

@@ -317,10 +317,6 @@ fn comparable(
     if !run.steps.is_empty() && run.run.line != basis.line {
         warnings.push(Warning::OtherLine(run.run.line.clone(), basis.line.clone()));
     }
-    if !run.run.train.is_empty() && run.run.train != basis.train {
-        let (train, of_dictionary) = (run.run.train.clone(), basis.train.clone());
-        warnings.push(Warning::OtherTrain(train, of_dictionary));
-    }
     let others = run.scripts.iter().filter(|script| {
         let name = script.path.trim_end_matches(".star");
         let sum = basis.procedures.get(name);

@@ -201,11 +201,10 @@ fn signed_sheet(mut counted: Counted) {
     counted.look("why");
     // Where the part is on the way of the signal, and what a good unit did.
     counted.press(case.way);
-    let suspected = format!("{relay} · ");
     counted.window.until("the marked part", |window| {
         let shown = window.shown().into_iter();
         shown
-            .filter(|said| said.starts_with(&suspected))
+            .filter(|said| said.starts_with(relay))
             .any(|said| said.ends_with(case.suspected))
     });
     counted.look("way");
