@@ -239,9 +239,11 @@ fn a_bench_that_is_not_reached_is_reported_like_any_error() {
     let place = Place::new();
     let unit = Unit::on_tcp(&[]);
     let example = std::fs::read_to_string(scripts().join("benches/example.toml")).expect("it");
-    let nowhere = ADDRESSES.iter().fold(example, |text, address| {
-        text.replace(address.trim_end_matches('"'), "127.0.0.1:1")
-    });
+    let nowhere = (1..)
+        .zip(&ADDRESSES)
+        .fold(example, |text, (port, address)| {
+            text.replace(address.trim_end_matches('"'), &format!("127.0.0.1:{port}"))
+        });
     let file = place.write("bench.toml", &nowhere);
     let (sheet, junit) = (place.path("run.html"), place.path("run.junit.xml"));
     let ran = place.ptu(&format!(

@@ -11,7 +11,7 @@ use crate::common::{Place, Said, list, text};
 const BENCH: &str = r#"
 safe = ["coil"]
 [instruments.coil]
-at = "sound:coil"
+at = "sound:DEVICE"
 serial = "7"
 uncertainty_ms = 250
 [stimuli]
@@ -20,11 +20,14 @@ twc = { at = "coil" }
 marker = { at = "coil" }
 "#;
 
-/// The stand-ins: what is played is heard, until `ends`.
-struct SoundCard(Place);
+/// The stand-ins: what is played is heard. Each test has a device of its own, which one tester at a time uses.
+struct SoundCard {
+    place: Place,
+    device: &'static str,
+}
 
 impl SoundCard {
-    fn new(plays: &str) -> Self {
+    fn new(device: &'static str, plays: &str) -> Self {
         let place = Place::new();
         std::fs::create_dir(place.path("bin")).expect("a folder");
         let pipe = place.text_path("card");
@@ -38,16 +41,16 @@ impl SoundCard {
             let all = std::fs::Permissions::from_mode(0o755);
             std::fs::set_permissions(Path::new(&file), all).expect("it can be run");
         }
-        place.write("sound.toml", BENCH);
-        Self(place)
+        place.write("sound.toml", &BENCH.replace("DEVICE", device));
+        Self { place, device }
     }
 
     fn run(&self, asked: &str) -> Said {
-        let bin = self.0.text_path("bin");
-        let unit = Unit::with_programs(&bin, &["--signals", "sound:coil"]);
-        let bench = self.0.text_path("sound.toml");
+        let bin = self.place.text_path("bin");
+        let unit = Unit::with_programs(&bin, &["--signals", &format!("sound:{}", self.device)]);
+        let bench = self.place.text_path("sound.toml");
         let run = format!("run {asked} --unit {} --bench {bench}", unit.address);
-        let mut command = self.0.command(&run);
+        let mut command = self.place.command(&run);
         command.env("PATH", format!("{bin}:/usr/bin:/bin"));
         Said::from(command.output().expect("ptu starts"))
     }
@@ -56,9 +59,9 @@ impl SoundCard {
 /// Goal: what passes by frames passes by sound, and each limit of a time says by how much sound made it wider.
 #[test]
 fn tester_and_unit_joined_by_sound_pass() {
-    let card = SoundCard::new("cat");
+    let card = SoundCard::new("heard", "cat");
     card.run("atp/limit_speed").exits(0);
-    let run = card.0.json("runs show latest --json");
+    let run = card.place.json("runs show latest --json");
     let steps = list(&run["steps"]).iter();
     let all = steps.flat_map(|step| list(&step["measurements"]));
     let times = all.filter(|of| text(&of["name"]).contains("_time"));
@@ -73,7 +76,10 @@ fn tester_and_unit_joined_by_sound_pass() {
 /// Goal: a sound card that is gone is the bench's fault. Method: the program that plays ends in the middle of a procedure.
 #[test]
 fn a_card_that_is_gone_blames_no_part_of_the_unit() {
-    let card = SoundCard::new("head -c 2000000");
+    let card = SoundCard::new("gone", "head -c 2000000");
     let said = card.run("atp/limit_speed").exits(3);
-    said.prints(&["disconnected", "0 faults: error"]);
+    said.prints(&[
+        "instrument coil of the bench: the program that plays on it has ended",
+        "0 faults: error",
+    ]);
 }

@@ -1,6 +1,6 @@
 //! Ambiguity groups: one part of a group is named only where what was seen tells it from the others.
 
-use diagnosis::{Group, Measure, Relations, Shared};
+use diagnosis::{ConclusionSettings, Group, Measure, Relations, Shared};
 
 use super::*;
 
@@ -120,32 +120,39 @@ fn a_sign_that_only_one_part_of_a_group_shows_names_it() {
 
 /// Goal: a part of the unit and the part of the bench that feeds it are named together, though the run is as counted under
 /// one of them, unless a step that judges the part failed without the bench. Method: the sensor as counted, whose cable is
-/// the bench's; then the script of a step without the bench suspects the sensor.
+/// the bench's; then no part of the bench is likely enough to be named; then the script of a step without the bench
+/// suspects the sensor.
 #[test]
 fn a_part_of_the_bench_is_told_from_the_units_by_a_step_without_the_bench_alone() {
     let mut dictionary = dictionary();
     let seen = run(&["a.s2", "b.s1"], Some(240.0));
-    let settings = Settings {
+    let named_at = |named_at| Settings {
         found_at: 0.7,
+        conclusion: ConclusionSettings {
+            named_at,
+            ..ConclusionSettings::default()
+        },
         ..settings()
     };
+    let (any, likely) = (named_at(0.0), named_at(0.5));
     let relations = Relations {
         groups: vec![group(["sensor", "cable"])],
         of_bench: ["cable".parse().expect("a part")].into(),
         without_bench: vec!["b".into()],
         ..Relations::default()
     };
-    let finding = |dictionary: &Dictionary| {
-        let model = Model::new(dictionary, &settings, &BTreeMap::new()).with_relations(&relations);
+    let finding = |dictionary: &Dictionary, settings: &Settings| {
+        let model = Model::new(dictionary, settings, &BTreeMap::new()).with_relations(&relations);
         Diagnosis::of(&model, &seen).conclusion.finding()
     };
-    assert_eq!(finding(&dictionary), Finding::OneOf);
+    assert_eq!(finding(&dictionary, &any), Finding::OneOf);
+    assert_eq!(finding(&dictionary, &likely), Finding::Found);
     let judges = |check: &CheckName| {
         let judged = check.procedure == "b" && check.step == "s1";
         judged.then(|| "sensor".parse().expect("a part"))
     };
     dictionary.suspects = dictionary.checks.iter().map(judges).collect();
-    assert_eq!(finding(&dictionary), Finding::Found);
+    assert_eq!(finding(&dictionary, &any), Finding::Found);
 }
 
 /// Goal: two parts that are found to have failed and share something are told as one cause, with what they share; one alone
