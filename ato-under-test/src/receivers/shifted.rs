@@ -39,6 +39,7 @@ impl CodeReceiver {
         let power = power_around(values, mean_hz);
         let carrier_hz = self.reception.carrier_hz + on.offset_hz + mean_hz;
         let snr_db = Some(10.0 * libm::log10f(square / noise.max(1e-6)));
+        let is_clear = noise < CLEAR * square;
         let heard = |rate_hz, validity, snr_db, goes_on| Heard {
             carrier_hz,
             rate_hz,
@@ -46,30 +47,28 @@ impl CodeReceiver {
             validity,
             snr_db,
             goes_on,
-            is_clear: noise < CLEAR * square,
+            is_clear,
             spell_s: None,
         };
         if libm::sqrtf(power) < FLAT * shift_hz {
             return Some(heard(0.0, 1.0, None, true));
         }
-        let is_clear = noise < CLEAR * square;
-        let Some((tone, rate_hz, [is_whole, goes_on])) = self.rate(&on, mean_hz, rates_hz) else {
+        let read = self.rate(&on, mean_hz, rates_hz);
+        let code = read.and_then(|(tone, rate_hz, [is_whole, goes_on])| {
+            let over_s = TURNS_OVER as f32 / self.downmix.envelope_hz();
+            let angle = PI * rate_hz * over_s;
+            let depth = tone.amplitude / (4.0 / PI * shift_hz * libm::sinf(angle) / angle);
+            let share = tone.power() / power;
+            let is_code = is_whole && share >= LEAST_SHARE && DEPTH.contains(&depth);
+            is_code.then(|| heard(rate_hz, share.min(1.0), snr_db, goes_on))
+        });
+        code.or_else(|| {
             let rate_hz = self.slow_rate(values).filter(|_| is_clear)?;
-            return Some(heard(rate_hz, 0.0, snr_db, true));
-        };
-        let over_s = TURNS_OVER as f32 / self.downmix.envelope_hz();
-        let angle = PI * rate_hz * over_s;
-        let depth = tone.amplitude / (4.0 / PI * shift_hz * libm::sinf(angle) / angle);
-        let share = tone.power() / power;
-        let is_code = is_whole && share >= LEAST_SHARE && DEPTH.contains(&depth);
-        if is_code {
-            return Some(heard(rate_hz, share.min(1.0), snr_db, goes_on));
-        }
-        let rate_hz = self.slow_rate(values).filter(|_| is_clear)?;
-        Some(heard(rate_hz, 0.0, snr_db, true))
+            Some(heard(rate_hz, 0.0, snr_db, true))
+        })
     }
 
-    /// A rate that is too slow for the window, which is none of a code: from the times between its edges.
+    /// A rate that is too slow for the window, and so belongs to no code: from the times between its edges.
     fn slow_rate(&self, values: &[f32]) -> Option<f32> {
         let (low, high) = (values.iter()).fold((f32::MAX, f32::MIN), |(low, high), value| {
             (low.min(*value), high.max(*value))

@@ -14,7 +14,7 @@ const PLACES: usize = 512;
 const MOST: f64 = 5e-4;
 /// Weight of the newest block in the mean number of samples that wait: the mean is over about 5 s.
 const FOLLOWS: f64 = 0.002;
-/// What waits longer than so many times its aim is passed over.
+/// Samples that wait longer than this multiple of the aim are passed over.
 const TOO_MUCH: usize = 4;
 
 /// Takes samples as they come and gives as many as are asked for, a little more or less than came, so that about as many
@@ -56,7 +56,7 @@ impl Steady {
         }
     }
 
-    /// Takes samples.
+    /// Adds samples that came from the sound card.
     pub fn push(&mut self, samples: impl Iterator<Item = Pair>) {
         self.waiting.extend(samples);
     }

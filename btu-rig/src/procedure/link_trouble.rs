@@ -222,7 +222,7 @@ pub enum InstrumentFault {
     /// No program of the system plays.
     #[error("no program carries sound here: neither {server} nor {alsa} is installed")]
     NoPlayer {
-        /// That of the sound server.
+        /// Error of the sound server.
         server: String,
         /// That of ALSA.
         alsa: String,

@@ -137,7 +137,7 @@ impl<'a> Model<'a> {
             outlooks: outlooks(dictionary, columns.clone()),
             signs: columns.map(shown_signs).collect(),
             suspects: Suspects::new(dictionary, &parts),
-            residuals: Residuals::new(dictionary, &parts, &NO_RELATIONS, settings),
+            residuals: Residuals::default(),
             resemblance: resemblance(dictionary, &parts, settings.other_part),
             hypotheses,
             relations: &NO_RELATIONS,
@@ -149,7 +149,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// With how parts depend on each other.
+    /// With how parts depend on each other; without that, traces are no evidence.
     pub fn with_relations(self, relations: &'a Relations) -> Self {
         let residuals = Residuals::new(self.dictionary, &self.parts, relations, self.settings);
         Self {

@@ -106,7 +106,7 @@ impl Residuals {
         self.of_parts[part][signal]
     }
 
-    /// The same under any fault.
+    /// Share of all traces in which a signal is the first to deviate, whatever the fault.
     pub fn of_any(&self, signal: usize) -> f64 {
         self.of_any[signal]
     }

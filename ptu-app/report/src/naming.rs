@@ -117,7 +117,7 @@ pub fn measurement(name: &str, words: &Words) -> String {
     spoken(name)
 }
 
-/// What a signal is called.
+/// Name of a signal for people.
 pub fn signal(name: &str, words: &Words) -> String {
     match words.language {
         Language::English => spoken(name),

@@ -80,7 +80,7 @@ impl BenchFaults {
         (outputs | self.read_closed) - self.read_open
     }
 
-    /// What comes of a second code.
+    /// The second code as it leaves the bench.
     pub fn second(&self, second: Crosstalk) -> Crosstalk {
         Crosstalk {
             carrier_hz: self.carrier_hz(second.carrier_hz),

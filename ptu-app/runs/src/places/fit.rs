@@ -9,7 +9,8 @@ use btu_rig::stimulus::{DoorLine, Stimulus};
 use protocol::Duration;
 use protocol::signal::Signal;
 
-use super::file::{InstrumentEntry, Place, Places, Point};
+use super::file::{Place, Places, Point};
+use super::instrument::InstrumentEntry;
 use super::model::code_values;
 use super::points::UnitInput;
 use super::widen::{Motion, READ_ANY};
@@ -118,11 +119,11 @@ pub(super) fn inner_mut(action: &mut Action) -> &mut Action {
 pub struct Teller<'a> {
     /// A note.
     pub note: &'a dyn Fn(BenchNote) -> String,
-    /// What a signal is called.
+    /// Name of a signal for people.
     pub signal: &'a dyn Fn(Signal) -> String,
     /// What a person is to do, and the key of an input.
     pub text: &'a dyn Fn(&str) -> String,
-    /// What a person is to see.
+    /// Question whether a signal has the value that a step expects.
     pub condition: &'a dyn Fn(&Condition) -> String,
 }
 

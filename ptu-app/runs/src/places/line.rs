@@ -12,7 +12,8 @@ use std::time::{Duration, Instant};
 use btu_rig::rig::InstrumentFault;
 use serialport::{ClearBuffer, SerialPort};
 
-use super::file::{Places, Reach};
+use super::file::Places;
+use super::instrument::Reach;
 use super::worker::{ANSWERS_WITHIN, span};
 use crate::platform;
 

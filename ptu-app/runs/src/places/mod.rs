@@ -7,21 +7,25 @@
 //!
 //! Terms: a *point* is one stimulus or one reading; an *act* is what a SCPI instrument does for a point.
 
+mod by_sound;
 mod file;
 mod fit;
+mod instrument;
 mod line;
 mod modbus;
 mod model;
 mod placed;
 mod points;
+mod relay;
 mod scpi;
 #[cfg(test)]
 mod tests;
 mod widen;
 mod worker;
 
-pub use file::{InstrumentEntry, Place, Places, PlacesError, Point, Written};
+pub use file::{Place, Places, PlacesError, Point, Written};
 pub use fit::Teller;
+pub use instrument::InstrumentEntry;
 pub use model::Model;
 pub use placed::{Checked, Placed};
 pub use points::UnitInput;

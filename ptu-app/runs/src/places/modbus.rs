@@ -10,7 +10,8 @@ use rmodbus::client::ModbusRequest;
 use rmodbus::guess_response_frame_len;
 use rmodbus::{ErrorKind, ModbusProto};
 
-use super::file::{Places, Point, Reach, Watchdog};
+use super::file::{Places, Point};
+use super::instrument::{Reach, Watchdog};
 use super::line::{SharedLine, io_fault, locked};
 use super::points::UnitInput;
 use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted};

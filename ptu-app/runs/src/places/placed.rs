@@ -4,20 +4,19 @@ use std::sync::Arc;
 use std::time::{Duration, Instant as Clock};
 
 use btu_rig::rig::{InstrumentFault, LinkTrouble};
-use protocol::frame::{Decoder, FLAG, Header, MAX_PENDING, encode};
 use protocol::link::{End, Link};
-use protocol::message::{
-    COIL_PART, COIL_SAMPLES, COIL_STEP_MV, Channel, Coil, CoilSamples, IoInput, IoOutput, Message,
-    ModeSwitch, Outputs,
-};
+use protocol::message::{Channel, IoInput, IoOutput, Message, ModeSwitch, Outputs};
 use protocol::signal::Signal;
 use protocol::{Instant, Speed};
 
-use super::file::{Kind, Place, Places, Point, READINGS};
+use super::by_sound::{BySound, try_sound};
+use super::file::{Place, Places, Point, READINGS};
+use super::instrument::Kind;
 use super::line::Lines;
 use super::modbus::Module;
 use super::model::code_values;
 use super::points::UnitInput;
+use super::relay::{Relay, send};
 use super::scpi::Scpi;
 use super::worker::{Instrument, Timing, Values, Wanted, Worker, span};
 use crate::sound::Stream;
@@ -49,7 +48,7 @@ pub struct Placed {
 /// An instrument that was tried: its name, and how long it takes to act and to read, ms, or what is wrong.
 pub type Checked = (String, Result<f64, InstrumentFault>);
 
-fn trouble(instrument: &str, fault: InstrumentFault) -> LinkTrouble {
+pub(super) fn trouble(instrument: &str, fault: InstrumentFault) -> LinkTrouble {
     LinkTrouble::Instrument {
         instrument: instrument.to_owned(),
         fault: Box::new(fault),
@@ -67,69 +66,6 @@ fn open(
         Kind::Modbus => Box::new(Module::open(places, name, line)?),
         Kind::Scpi | Kind::Sound => Box::new(Scpi::open(places, name, line)?),
     })
-}
-
-/// The sound card at work.
-struct BySound {
-    name: String,
-    stream: Stream,
-    coils: Vec<Coil>,
-    /// How late it may be heard.
-    uncertainty: Duration,
-    late: Duration,
-    /// This scan's samples: codes; TWC and markers.
-    samples: [[f32; 2]; COIL_SAMPLES],
-    /// Frames that were played and not sent: the numbers of later frames are lower by so many.
-    left_out: u16,
-}
-
-impl BySound {
-    fn open(places: &Places) -> Result<Option<Self>, LinkTrouble> {
-        let Some((name, device)) = places.sound_card() else {
-            return Ok(None);
-        };
-        let stream = Stream::start(&device, places.full_scale_mv);
-        let stream = stream.map_err(|fault| trouble(name, fault))?;
-        Ok(Some(Self {
-            name: name.clone(),
-            stream,
-            coils: places.coils_by_sound(),
-            uncertainty: Duration::from_millis(places.instruments[name].uncertainty_ms),
-            late: Duration::ZERO,
-            samples: [[0.0; 2]; COIL_SAMPLES],
-            left_out: 0,
-        }))
-    }
-
-    fn carries(&self, coil: Coil) -> bool {
-        self.coils.contains(&coil)
-    }
-
-    fn take(&mut self, part: &CoilSamples) {
-        let channel = usize::from(part.coil != Coil::AtpAntenna);
-        let from = usize::from(part.part) * COIL_PART;
-        let slots = self.samples.iter_mut().skip(from);
-        for (slot, sample) in slots.zip(part.samples.0) {
-            slot[channel] += f32::from(sample) * COIL_STEP_MV;
-        }
-        self.left_out = self.left_out.wrapping_add(1);
-    }
-
-    /// The end of a scan.
-    fn play(&mut self) {
-        self.stream.feed(&self.samples);
-        self.samples.fill([0.0; 2]);
-        let takes = Duration::from_millis(self.stream.takes_ms());
-        self.late = self.late.max(takes.saturating_sub(self.uncertainty));
-    }
-
-    fn fault(&self) -> Option<InstrumentFault> {
-        match self.stream.clipped() {
-            Ok(0) => None,
-            Ok(_) => Some(InstrumentFault::TooLoud),
-            Err(fault) => Some(fault),
-        }
-    }
 }
 
 impl Placed {
@@ -406,56 +342,6 @@ impl Drop for Placed {
     fn drop(&mut self) {
         self.release();
     }
-}
-
-/// How long sound is on its way, ms: half a second of silence is played, as fast as it comes.
-fn try_sound(stream: &Stream) -> Result<f64, InstrumentFault> {
-    let mut takes_ms = 0;
-    for _ in 0..50 {
-        stream.feed(&[[0.0; 2]; COIL_SAMPLES]);
-        std::thread::sleep(Duration::from_millis(10));
-        takes_ms = takes_ms.max(stream.takes_ms());
-    }
-    stream.clipped().map(|_| takes_ms as f64)
-}
-
-/// Frames that pass by; what is no frame, as one that is damaged on purpose, goes on as it came.
-#[derive(Default)]
-struct Relay {
-    decoder: Decoder,
-    came: Vec<u8>,
-}
-
-impl Relay {
-    fn push(&mut self, bytes: &[u8]) {
-        self.decoder.push(bytes);
-        self.came.extend_from_slice(bytes);
-    }
-
-    fn next(&mut self, out: &mut Vec<u8>) -> Option<(Header, Message)> {
-        while let Some(read) = self.decoder.next_frame() {
-            let read = read.ok().and_then(|(header, payload)| {
-                Some((header, Message::decode(header.channel, payload).ok()?))
-            });
-            let seen = self.came.len() - self.decoder.pending_len();
-            if read.is_some() {
-                self.came.drain(..seen);
-                return read;
-            }
-            out.push(FLAG);
-            out.extend(self.came.drain(..seen));
-        }
-        if self.came.len() > MAX_PENDING {
-            out.append(&mut self.came);
-        }
-        None
-    }
-}
-
-fn send(header: &Header, message: &Message, out: &mut Vec<u8>) {
-    let mut payload = Vec::new();
-    message.encode(&mut payload);
-    encode(header, &payload, out);
 }
 
 fn set(output: &mut IoOutput, signal: Signal, value: f64) {

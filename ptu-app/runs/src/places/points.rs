@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use protocol::message::{ModeSwitch, TrainLines};
 use protocol::signal::Signal;
 
-use super::file::{InstrumentEntry, Kind, Place, Places, Point};
+use super::file::{Place, Places, Point};
+use super::instrument::{InstrumentEntry, Kind};
 use super::model::Model;
 
 /// The instrument at which a point is, and its driver.
