@@ -8,7 +8,6 @@ use super::cell::StepOutcome;
 use super::model::{FIRST_EFFECT, Hypothesis, Model, NO_FAULT, StepLikelihoods};
 use super::observation::{Observation, ObservedStep};
 use super::signs::SignsSeen;
-use super::spells::{RATES, over_rates};
 use super::suspects::Suspicion;
 
 /// What the evidence has settled.
@@ -26,9 +25,7 @@ pub struct Belief<'m, 'd> {
     pub model: &'m Model<'d>,
     /// Logarithms of the likelihood of all steps, without their signs, under each effect.
     effects: Vec<f64>,
-    /// The same under a fault that acts more or less like each effect, at each rate of spells.
-    at_rates: [Vec<f64>; RATES],
-    /// And over all rates.
+    /// The same under a fault that acts more or less like each effect.
     like_effects: Vec<f64>,
     /// The same on a healthy unit, with their signs.
     healthy: f64,
@@ -58,7 +55,6 @@ impl<'m, 'd> Belief<'m, 'd> {
         Self {
             model,
             effects: vec![0.0; model.effects().len()],
-            at_rates: std::array::from_fn(|_| vec![0.0; model.effects().len()]),
             like_effects: vec![0.0; model.effects().len()],
             healthy: 0.0,
             signs: SignsSeen::default(),
@@ -95,14 +91,8 @@ impl<'m, 'd> Belief<'m, 'd> {
         for (sum, ln) in self.effects.iter_mut().zip(&ln.effects) {
             *sum += ln;
         }
-        for (sums, ln) in self.at_rates.iter_mut().zip(&ln.like_effects) {
-            for (sum, ln) in sums.iter_mut().zip(ln) {
-                *sum += ln;
-            }
-        }
-        for (effect, like) in self.like_effects.iter_mut().enumerate() {
-            let at_rates = self.at_rates.each_ref().map(|sums| sums[effect]);
-            *like = over_rates(at_rates, self.model.settings);
+        for (sum, ln) in self.like_effects.iter_mut().zip(&ln.like_effects) {
+            *sum += ln;
         }
         self.signs.made.insert(place);
         self.suspicion.see(self.model.dictionary, place, step);
@@ -141,9 +131,6 @@ impl<'m, 'd> Belief<'m, 'd> {
         let of = hypotheses.map(|(i, hypothesis)| {
             let steps = match *hypothesis {
                 Hypothesis::NoFault => self.healthy,
-                Hypothesis::Mode { .. } if model.is_intermittent(*hypothesis) => {
-                    self.like_effects[i - FIRST_EFFECT]
-                }
                 Hypothesis::Mode { .. } => self.effects[i - FIRST_EFFECT],
                 Hypothesis::Unseen { part } => {
                     ln_sum(self.like_effects(part)) + model.settings.suspect * suspicion[part]
@@ -167,6 +154,11 @@ impl<'m, 'd> Belief<'m, 'd> {
     /// Logarithm of the likelihood of what deviated first, each caused by one of these effects.
     pub(super) fn ln_residuals(&self, effects: &[usize]) -> f64 {
         self.model.residuals.ln_under(effects, &self.residuals)
+    }
+
+    /// Logarithm of the likelihood of all steps, without their signs, under an effect.
+    pub(super) fn ln_of_effect(&self, effect: usize) -> f64 {
+        self.effects[effect]
     }
 
     /// The same as far as it tells what the checks to come will show: a mode that was not seen yet is no twin of

@@ -3,7 +3,7 @@
 use protocol::LruId;
 use serde::Serialize;
 
-use super::groups::{Group, Shared};
+use super::groups::Group;
 use super::verdict::{Finding, PartProbability};
 
 /// The answer of a diagnosis. Every probability is the one that the answer tells.
@@ -21,43 +21,11 @@ pub enum Conclusion {
         /// How likely that is.
         probability: f64,
     },
-    /// Two parts have failed.
-    TwoFound {
-        parts: [LruId; 2],
-        /// How likely it is that both have.
-        probability: f64,
-    },
-    /// One of the parts of a group has failed.
+    /// One of these parts has failed.
     OneOf {
         group: Group,
         /// How likely it is that one of them has.
         probability: f64,
-    },
-    /// One cause at two parts that share something, or a fault of each.
-    Common {
-        /// The part that both share, such as a supply or a link.
-        cause: Shared,
-        parts: [LruId; 2],
-        /// How likely it is that both show a fault.
-        probability: f64,
-    },
-    /// A part has failed, or something that it shares with another part that a sign names.
-    OneOrCommon {
-        /// The part that both share, such as a supply or a link.
-        cause: Shared,
-        part: LruId,
-        /// How likely it is that it has failed.
-        probability: f64,
-        /// The part that the sign names.
-        other: LruId,
-    },
-    /// A part is likely, and a sign that none of its faults shows names another, with which it shares nothing.
-    NotAlone {
-        part: LruId,
-        /// How likely it is that it has failed.
-        probability: f64,
-        /// The part that the sign names.
-        other: LruId,
     },
     NoFault {
         /// How likely that is.
@@ -74,6 +42,8 @@ pub enum Conclusion {
     CannotTell {
         /// The likely parts, the likeliest first.
         likely: Vec<PartProbability>,
+        /// What was seen is like nothing that was counted.
+        is_unlike_any: bool,
     },
     /// The run was broken off before anything was seen to be wrong.
     BrokenOff,
@@ -86,32 +56,27 @@ impl Conclusion {
         match self {
             Self::Found { .. } => Finding::Found,
             Self::OfBench { .. } => Finding::OfBench,
-            Self::TwoFound { .. } => Finding::TwoFound,
-            Self::OneOf { .. } | Self::Common { .. } | Self::OneOrCommon { .. } => Finding::OneOf,
+            Self::OneOf { .. } => Finding::OneOf,
             Self::NoFault { .. } => Finding::NoFault,
             Self::NothingSeen { .. } | Self::BrokenOff => Finding::NotEnough,
-            Self::NotAlone { .. } | Self::CannotTell { .. } | Self::NotWeighed => {
-                Finding::CannotTell
-            }
+            Self::CannotTell { .. } | Self::NotWeighed => Finding::CannotTell,
+        }
+    }
+
+    /// The parts that it names: those for certain, or those that are likely.
+    pub fn parts(&self) -> Vec<LruId> {
+        match self {
+            Self::Found { part, .. } | Self::OfBench { part, .. } => vec![part.clone()],
+            Self::OneOf { group, .. } => group.parts.clone(),
+            Self::CannotTell { likely, .. } => likely.iter().map(|part| part.lru.clone()).collect(),
+            _ => Vec::new(),
         }
     }
 
     /// The parts that were not told apart, and what tells which has failed.
-    pub fn group(&self) -> Option<Group> {
-        let of_shared = |cause: &Shared, parts: [&LruId; 2]| Group {
-            parts: [&cause.part].into_iter().chain(parts).cloned().collect(),
-            measure: cause.measure.clone(),
-        };
+    pub fn group(&self) -> Option<&Group> {
         match self {
-            Self::OneOf { group, .. } => Some(group.clone()),
-            Self::Common {
-                cause,
-                parts: [one, other],
-                ..
-            } => Some(of_shared(cause, [one, other])),
-            Self::OneOrCommon {
-                cause, part, other, ..
-            } => Some(of_shared(cause, [part, other])),
+            Self::OneOf { group, .. } => Some(group),
             _ => None,
         }
     }

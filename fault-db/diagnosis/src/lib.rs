@@ -1,10 +1,9 @@
 //! Diagnosis: from test results to the replaceable part (LRU) that failed.
 //!
-//! [`matrix`] works on any dependency matrix of states and tests and builds the cheapest decision tree. The
-//! other modules compare one run with a dictionary that holds the effect of each fault mode on each check,
-//! in this order: [`Observation`] (what the run showed) → [`Dictionary`] (counts from campaigns, one `cell`
-//! for each mode and check) → `likelihood` → [`Model`] (hypotheses and priors) → [`Belief`] (Bayes' rule,
-//! step by step) → [`NextCheck`] and [`Diagnosis`].
+//! One run is compared with a dictionary that holds the effect of each fault mode on each check, in this
+//! order: [`Observation`] (what the run showed) → [`Dictionary`] (counts from campaigns, one `cell` for each
+//! mode and check) → `likelihood` → [`Model`] (hypotheses and priors) → [`Belief`] (Bayes' rule,
+//! step by step) → `pool` (all evidence for each part) → [`NextCheck`] and [`Diagnosis`].
 //!
 //! [`process`] is statistical process control of measured values over time, and forecasts.
 //!
@@ -13,25 +12,24 @@
 
 mod belief;
 mod cell;
+mod common;
 mod conclusion;
 mod dictionary;
 mod explained;
 mod groups;
 mod hidden;
 mod likelihood;
-pub mod matrix;
 mod model;
 mod next_check;
 mod observation;
 mod outlook;
-mod pairs;
+mod pool;
 pub mod process;
 mod proof;
 mod reasons;
 mod residuals;
 mod settings;
 mod signs;
-mod spells;
 mod strategy;
 mod suspects;
 mod unseen;
@@ -49,7 +47,7 @@ pub use next_check::NextCheck;
 pub use observation::{CLOCK_WRONG, CheckName, Observation, ObservedStep, Sign, is_observed};
 pub use proof::Proof;
 pub use reasons::{Known, Reason, Repaired, StepReason, ValueReason};
-pub use settings::{ConclusionSettings, LikelihoodSettings, LogSettings, Settings};
+pub use settings::{ConclusionSettings, LikelihoodSettings, LogSettings, PoolSettings, Settings};
 pub use strategy::{Strategy, suite_s};
-pub use verdict::{Assessment, Candidate, Diagnosis, Finding, PartProbability, TwoFaults};
+pub use verdict::{Assessment, Candidate, Diagnosis, Finding, PartProbability};
 pub use weights::FaultText;

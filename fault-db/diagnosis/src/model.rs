@@ -21,7 +21,6 @@ use super::outlook::{Outlook, outlooks};
 use super::residuals::Residuals;
 use super::settings::Settings;
 use super::signs::{ShownSign, shown_signs};
-use super::spells::{self, AS_COUNTED, RATES};
 use super::suspects::Suspects;
 use super::unseen::resemblance;
 
@@ -52,9 +51,8 @@ pub struct StepLikelihoods {
     pub healthy: f64,
     /// Under each effect, without its signs, which count once in a run.
     pub effects: Vec<f64>,
-    /// Under a fault that acts more or less like each effect, at each rate of spells: one that is not in the dictionary,
-    /// or comes and goes.
-    pub like_effects: [Vec<f64>; RATES],
+    /// Under a fault that acts more or less like each effect: one that is not in the dictionary, or comes and goes.
+    pub like_effects: Vec<f64>,
 }
 
 /// A dictionary prepared for diagnosis.
@@ -218,25 +216,6 @@ impl<'a> Model<'a> {
         Some([own, table.of_any(place)])
     }
 
-    /// Whether a signal is the first to deviate under a fault of a part: it makes the signal, or a fault of it was counted so.
-    pub fn deviates_with(&self, part: &LruId, signal: &str) -> bool {
-        let makers = self.relations.makers.get(signal);
-        let modes = self.dictionary.modes.iter();
-        let own = modes.filter(|mode| mode.name.lru == *part);
-        makers.is_none_or(|makers| makers.contains(part))
-            || own
-                .flat_map(|mode| &mode.columns)
-                .any(|column| column.residuals.contains_key(signal))
-    }
-
-    /// The part whose faults show most at a signal.
-    pub fn likeliest_of(&self, signal: &str) -> Option<&'a LruId> {
-        let place = self.residuals.place(signal)?;
-        let share = |part: &usize| self.residuals.of_part(*part, place);
-        let likeliest = (0..self.parts.len()).max_by(|a, b| share(a).total_cmp(&share(b)))?;
-        Some(self.parts[likeliest])
-    }
-
     /// Counts of a mode's level; a healthy unit's under the other hypotheses.
     fn column(&self, hypothesis: Hypothesis) -> &'a Column {
         match hypothesis {
@@ -290,21 +269,17 @@ impl<'a> Model<'a> {
                 });
         let counted: Vec<f64> = counted.collect();
         let weight = settings.weight_of_step;
-        let rates = spells::rates(settings);
         let mut effects = counted.clone();
-        let mut like_effects = rates.map(|_| counted.clone());
+        let mut like_effects = counted.clone();
         for part in &self.effects_of_parts {
             let of_part: f64 = part.iter().map(|effect| counted[*effect]).sum();
             let same_part = of_part / part.len().max(1) as f64;
             let otherwise = mixed(same_part, anything, settings.anything);
             for effect in part.iter().copied() {
                 let ln = |counted, share: f64| weight * mixed(counted, otherwise, share).ln();
-                for (like, rate) in like_effects.iter_mut().zip(rates) {
-                    let at_rate = counted[effect] * self.factor(effect, place, step, rate);
-                    like[effect] = ln(at_rate, settings.otherwise_unseen);
-                }
+                like_effects[effect] = ln(counted[effect], settings.otherwise_unseen);
                 effects[effect] = match self.is_intermittent(self.effects()[effect]) {
-                    true => like_effects[AS_COUNTED][effect],
+                    true => like_effects[effect],
                     false => ln(counted[effect], settings.otherwise),
                 };
             }
@@ -318,17 +293,6 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Factor on a step's likelihood under an effect whose spells come `rate` times as often as counted; 1 where it has
-    /// none, or none that hits the check.
-    fn factor(&self, effect: usize, place: usize, step: &ObservedStep, rate: f64) -> f64 {
-        let hypothesis = self.effects()[effect];
-        if !self.is_intermittent(hypothesis) || self.is_like_healthy(hypothesis, place) {
-            return 1.0;
-        }
-        let passes = self.expected(hypothesis, place).result(Verdict::Passed);
-        spells::factor(step.result, passes, rate)
-    }
-
     /// Likelihood of a step's measured values under an effect.
     pub fn likelihood_of_values(&self, effect: usize, place: usize, step: &ObservedStep) -> f64 {
         let expected = self.expected(self.effects()[effect], place);
@@ -339,11 +303,6 @@ impl<'a> Model<'a> {
     pub fn healthy_time_s(&self, place: usize) -> f64 {
         let cell = self.dictionary.healthy.cells.get(&place);
         cell.map_or(0.0, |cell| cell.time_s)
-    }
-
-    /// Whether the hypothesis is a mode that acts as it was counted.
-    pub fn is_lasting(&self, hypothesis: Hypothesis) -> bool {
-        matches!(hypothesis, Hypothesis::Mode { .. }) && !self.is_intermittent(hypothesis)
     }
 
     /// Whether the hypothesis is an intermittent mode.

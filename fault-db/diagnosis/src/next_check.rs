@@ -16,6 +16,7 @@ use serde::Serialize;
 use super::belief::{Belief, normalised};
 use super::model::{FIRST_EFFECT, Hypothesis, Model};
 use super::observation::CheckName;
+use super::verdict::PartProbability;
 
 /// A part is told by a check that passes, or does not, with this probability if the part has failed.
 const MOSTLY: f64 = 0.7;
@@ -59,7 +60,7 @@ impl Belief<'_, '_> {
         under_way: Option<&str>,
         may: Option<&BTreeSet<String>>,
     ) -> Option<NextCheck> {
-        let classes = self.classes();
+        let classes = self.classes(&[]);
         let least = self.model.settings.least_gain_bits;
         let costs = costs(self.model, done, under_way, may, false);
         let worth_making = costs.filter_map(|(place, cost_s)| {
@@ -71,12 +72,17 @@ impl Belief<'_, '_> {
 
     /// The check that tells a person the most per second by passing or not. Where a run showed a fault, and several parts are
     /// likely, the check passes where some of them have failed and does not where others have; a single likely part decides it.
-    /// A check in `done` is made again only where no other is worth it.
-    pub fn told_check(&self, done: &BTreeSet<CheckName>, shows_a_fault: bool) -> Option<NextCheck> {
-        let classes = self.classes();
+    /// A check in `done` is made again only where no other is worth it. `failed` has the probabilities of the parts where a run
+    /// showed a fault.
+    pub fn told_check(
+        &self,
+        done: &BTreeSet<CheckName>,
+        failed: Option<&Vec<PartProbability>>,
+    ) -> Option<NextCheck> {
+        let classes = self.classes(failed.map_or(&[], Vec::as_slice));
         let named =
             (FIRST_EFFECT..classes.all.len()).filter(|class| self.is_likely(classes.all[*class]));
-        let named: Vec<_> = named.filter(|_| shows_a_fault).collect();
+        let named: Vec<_> = named.filter(|_| failed.is_some()).collect();
         let (least, columns) = match named.len() {
             0 => (
                 self.model.settings.least_gain_bits,
@@ -168,7 +174,8 @@ impl Belief<'_, '_> {
         parted
     }
 
-    fn classes(&self) -> Classes {
+    /// By Bayes' rule, or where the parts have these probabilities.
+    fn classes(&self, pooled: &[PartProbability]) -> Classes {
         let parts = self.model.parts();
         let classes = FIRST_EFFECT + parts.len();
         let mut all = vec![0.0; classes];
@@ -189,6 +196,15 @@ impl Belief<'_, '_> {
             };
             for (effect, share) in shares.into_iter().enumerate() {
                 with_effect[effect][class] += p * share;
+            }
+        }
+        for (class, part) in (FIRST_EFFECT..).zip(parts) {
+            if let Some(pooled) = pooled.iter().find(|pooled| pooled.lru == **part) {
+                let factor = pooled.probability / all[class];
+                all[class] = pooled.probability;
+                with_effect
+                    .iter_mut()
+                    .for_each(|classes| classes[class] *= factor);
             }
         }
         Classes { all, with_effect }

@@ -8,11 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Settings {
     /// Prior probability that a unit brought to the bench has no fault.
     pub no_fault: f64,
-    /// Probability of a second fault given a first, relative to its own prior.
-    pub second_fault: f64,
-    /// The same of a second part that shares something with the first, such as the supply: one cause may act at both.
-    pub common_cause: f64,
-    /// A part is found at this probability.
+    /// An adaptive run ends when a part has this probability by Bayes' rule.
     pub found_at: f64,
     /// A unit counts as healthy at this probability of no fault.
     pub healthy_at: f64,
@@ -33,10 +29,6 @@ pub struct Settings {
     /// Least likeness of two parts, beside 1 of a part and itself: a mode that was not seen yet may act like a mode
     /// of any part.
     pub other_part: f64,
-    /// Share of intermittent faults whose spells come less or more often than counted.
-    pub other_spells: f64,
-    /// How much less or more.
-    pub spell_rate: f64,
     /// Weight of the steps so far in what a fault that is not in the dictionary will do in others.
     pub foresight: f64,
     /// Weight of whom the failed checks suspect.
@@ -68,9 +60,38 @@ pub struct Settings {
     /// Weights of the signs in a unit's own log.
     #[serde(default)]
     pub log: LogSettings,
+    /// Weights of all evidence for a part.
+    #[serde(default)]
+    pub pool: PoolSettings,
     /// What a conclusion says and shows.
     #[serde(default)]
     pub conclusion: ConclusionSettings,
+}
+
+/// Weights of what speaks for a part.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct PoolSettings {
+    /// Of the logarithm of its posterior, where the run is as counted under the likeliest fault.
+    pub counted: f64,
+    /// The same where it is not.
+    pub otherwise: f64,
+    /// And no further below certainty than this.
+    pub limit: f64,
+    /// A step is not as counted under a fault that shows its result in a lesser share of runs.
+    pub seldom: f64,
+    /// Of the share of traces that deviate first at a signal which the part makes.
+    pub deviates: f64,
+    /// Of the share of signs that name it.
+    pub signs: f64,
+    /// Of the share of failed checks that suspect it.
+    pub suspects: f64,
+    /// Of being the likeliest by Bayes' rule, or of a group with that.
+    pub near: f64,
+    /// What two parts share may be the cause where both explain a run so much better than one: logarithm of the likelihoods' ratio.
+    pub common: f64,
+    /// How much less likely than the likeliest part such a cause is at least: logarithm of the ratio.
+    pub below_first: f64,
 }
 
 /// Probabilities where nothing was counted, and how far counts and measured values are trusted.
@@ -135,8 +156,14 @@ pub struct ConclusionSettings {
     pub most_shown: usize,
     /// A sign or failed check is a consequence of a fault that shows it in this share of runs.
     pub explained_at: f64,
-    /// A sign tells a part from the others of its group if so many modes of the part show it, and none of theirs.
-    pub modes_with_sign: usize,
+    /// A part less likely than this is none of those of which one has failed for certain.
+    pub least_of_set: f64,
+    /// The same where the run is as counted under the likeliest fault.
+    pub least_as_counted: f64,
+    /// Nothing is certain where more parts than this are left, and one more where that may be the cause at the others.
+    pub most_of_set: usize,
+    /// A run with more steps that are not as counted under the likeliest fault is like nothing that was counted.
+    pub most_strange: usize,
 }
 
 impl Settings {
@@ -146,10 +173,9 @@ impl Settings {
     /// The key, its value and its range.
     pub fn check(&self) -> Result<(), String> {
         let (likelihood, signs) = (&self.likelihood, &self.signs);
-        let (log, conclusion) = (&self.log, &self.conclusion);
+        let (log, pool, conclusion) = (&self.log, &self.pool, &self.conclusion);
         let shares = [
             ("no_fault", self.no_fault),
-            ("second_fault", self.second_fault),
             ("found_at", self.found_at),
             ("healthy_at", self.healthy_at),
             ("hidden_fault", self.hidden_fault),
@@ -158,8 +184,6 @@ impl Settings {
             ("otherwise_unseen", self.otherwise_unseen),
             ("anything", self.anything),
             ("unseen_mode", self.unseen_mode),
-            ("common_cause", self.common_cause),
-            ("other_spells", self.other_spells),
             ("other_part", self.other_part),
             ("weight_of_step", self.weight_of_step),
             ("weight_of_residual", self.weight_of_residual),
@@ -180,6 +204,9 @@ impl Settings {
             ("conclusion.named_at", conclusion.named_at),
             ("conclusion.least_shown", conclusion.least_shown),
             ("conclusion.explained_at", conclusion.explained_at),
+            ("conclusion.least_of_set", conclusion.least_of_set),
+            ("conclusion.least_as_counted", conclusion.least_as_counted),
+            ("pool.seldom", pool.seldom),
         ];
         for (key, value) in shares {
             if !(value > 0.0 && value < 1.0) {
@@ -192,13 +219,19 @@ impl Settings {
         let positive = [
             ("likelihood.most_runs", likelihood.most_runs),
             ("conclusion.most_shown", conclusion.most_shown as f64),
-            (
-                "conclusion.modes_with_sign",
-                conclusion.modes_with_sign as f64,
-            ),
+            ("conclusion.most_of_set", conclusion.most_of_set as f64),
+            ("conclusion.most_strange", conclusion.most_strange as f64),
+            ("pool.counted", pool.counted),
+            ("pool.otherwise", pool.otherwise),
+            ("pool.limit", pool.limit),
+            ("pool.deviates", pool.deviates),
+            ("pool.signs", pool.signs),
+            ("pool.suspects", pool.suspects),
+            ("pool.near", pool.near),
+            ("pool.common", pool.common),
+            ("pool.below_first", pool.below_first),
             ("least_gain_bits", self.least_gain_bits),
             ("told_gain_bits", self.told_gain_bits),
-            ("spell_rate", self.spell_rate),
             ("doubt_runs", self.doubt_runs),
             ("suspect", self.suspect),
             ("bring_up_s", self.bring_up_s),
@@ -220,7 +253,6 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             no_fault: 0.5,
-            second_fault: 1e-4,
             found_at: 0.95,
             healthy_at: 0.99,
             hidden_fault: 0.05,
@@ -231,10 +263,7 @@ impl Default for Settings {
             otherwise_unseen: 0.1,
             anything: 0.1,
             unseen_mode: 0.045,
-            common_cause: 0.001,
             other_part: 0.02,
-            other_spells: 0.8,
-            spell_rate: 5.0,
             foresight: 0.15,
             suspect: 2.0,
             weight_of_step: 0.6,
@@ -248,6 +277,7 @@ impl Default for Settings {
             likelihood: LikelihoodSettings::default(),
             signs: SignSettings::default(),
             log: LogSettings::default(),
+            pool: PoolSettings::default(),
             conclusion: ConclusionSettings::default(),
         }
     }
@@ -289,6 +319,23 @@ impl Default for LogSettings {
     }
 }
 
+impl Default for PoolSettings {
+    fn default() -> Self {
+        Self {
+            counted: 0.24,
+            otherwise: 0.61,
+            limit: 4.0,
+            seldom: 0.25,
+            deviates: 1.31,
+            signs: 0.98,
+            suspects: 0.92,
+            near: 1.58,
+            common: 2.0,
+            below_first: 1.0,
+        }
+    }
+}
+
 impl Default for ConclusionSettings {
     fn default() -> Self {
         Self {
@@ -296,7 +343,10 @@ impl Default for ConclusionSettings {
             least_shown: 0.005,
             most_shown: 10,
             explained_at: 0.1,
-            modes_with_sign: 2,
+            least_of_set: 0.007,
+            least_as_counted: 0.03,
+            most_of_set: 5,
+            most_strange: 36,
         }
     }
 }

@@ -19,6 +19,11 @@ pub struct SignsSeen {
 }
 
 impl SignsSeen {
+    /// All signs, each once.
+    pub fn all(&self) -> impl Iterator<Item = &Sign> {
+        self.in_steps.union(&self.in_log)
+    }
+
     /// Logarithm of their likelihood under a hypothesis. Steps of no fault have theirs, but for what the tester measures.
     pub fn ln(&self, model: &Model<'_>, hypothesis: Hypothesis) -> f64 {
         match hypothesis {

@@ -8,12 +8,10 @@ use serde::Serialize;
 
 use super::belief::Belief;
 use super::conclusion::Conclusion;
-use super::explained::{Cause, causes};
-use super::groups;
+use super::explained::{Cause, cause};
 use super::model::Model;
 use super::next_check::NextCheck;
 use super::observation::Observation;
-use super::pairs::{Pair, pairs};
 use super::reasons::{Reason, reasons};
 use super::settings::ConclusionSettings;
 use super::weights::{Fault, FaultText, Weights, name};
@@ -26,7 +24,7 @@ pub struct Candidate {
     /// Fault mode.
     pub fault: String,
     pub text: FaultText,
-    /// Probability of the mode, alone or beside another.
+    /// Probability of the mode.
     pub probability: f64,
     #[serde(rename = "for")]
     pub for_it: Vec<Reason>,
@@ -36,15 +34,7 @@ pub struct Candidate {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartProbability {
     pub lru: LruId,
-    /// Of [`Diagnosis::lrus`] its share, of [`Diagnosis::parts`] the probability that it has failed.
-    pub probability: f64,
-}
-
-/// Two fault modes at once.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TwoFaults {
-    pub faults: [String; 2],
-    /// Probability of both.
+    /// That it has failed.
     pub probability: f64,
 }
 
@@ -54,9 +44,7 @@ pub enum Finding {
     Found,
     /// A part of the bench is found, none of the unit.
     OfBench,
-    /// Two parts are found.
-    TwoFound,
-    /// One of the parts of a group, which a measurement tells apart.
+    /// One of few parts.
     OneOf,
     NoFault,
     /// One of several parts, and it cannot be told which.
@@ -70,8 +58,7 @@ impl Finding {
         match self {
             Self::Found => "found",
             Self::OfBench => "of the bench",
-            Self::TwoFound => "two found",
-            Self::OneOf => "one of a group",
+            Self::OneOf => "one of a few",
             Self::NoFault => "no fault",
             Self::CannotTell => "cannot tell",
             Self::NotEnough => "not enough was run",
@@ -86,14 +73,8 @@ pub struct Diagnosis {
     /// The check to make next; none when the question is settled or nothing would tell.
     pub next_check: Option<NextCheck>,
     pub conclusion: Conclusion,
-    /// Parts, the likeliest first, with their shares, which are 1 together with that of no fault: of two at once each has
-    /// half.
-    pub lrus: Vec<PartProbability>,
-    /// Parts with the probability that each has failed, alone or beside another, the likeliest first: what people are told.
-    /// The probabilities of its faults add up to it.
+    /// Parts, the likeliest first; together 1 with no fault. The probabilities of its faults add up to a part's.
     pub parts: Vec<PartProbability>,
-    /// Two faults at once, the likeliest first.
-    pub two_faults: Vec<TwoFaults>,
     /// Probability that nothing is wrong.
     pub no_fault: f64,
 }
@@ -103,60 +84,32 @@ pub struct Assessment<'m, 'd, 's> {
     belief: Belief<'m, 'd>,
     seen: &'s Observation,
     weights: Weights,
-    pairs: Vec<Pair>,
-    /// The answer, where it names no part for certain.
-    answer: Option<Conclusion>,
 }
 
 impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
     pub fn of(model: &'m Model<'d>, seen: &'s Observation) -> Self {
         let belief = Belief::after(model, seen);
-        let (weights, pairs) = Weights::after(&belief, seen);
         Self {
-            answer: groups::answer(&belief, &weights),
+            weights: Weights::after(&belief, seen),
             belief,
             seen,
-            weights,
-            pairs,
         }
     }
 
     pub fn diagnosis(&self) -> Diagnosis {
         let (belief, weights) = (&self.belief, &self.weights);
-        let settings = &belief.model.settings.conclusion;
-        let next_check = weights.next_check(belief, self.seen);
-        let parts = weights.told();
-        let own = || weights.conclusion(belief.model, self.seen, &parts);
-        let conclusion = self.answer.clone().unwrap_or_else(own);
-        let is_shown = |pair: &&Pair| pair.probability >= settings.least_shown;
-        let shown = self.pairs.iter().filter(is_shown);
         Diagnosis {
-            candidates: weights.candidates(belief, self.seen, &parts),
-            next_check,
-            conclusion,
-            two_faults: shown
-                .map(|pair| TwoFaults {
-                    faults: pair.both.map(|hypothesis| name(belief, hypothesis).0),
-                    probability: pair.probability,
-                })
-                .collect(),
+            candidates: weights.candidates(belief, self.seen),
+            next_check: weights.next_check(belief, self.seen),
+            conclusion: weights.conclusion(belief.model, self.seen),
             no_fault: weights.no_fault,
-            lrus: weights.lrus.clone(),
-            parts,
+            parts: weights.parts.clone(),
         }
     }
 
-    /// The parts that are found, each with what it explains.
-    pub fn causes(&self) -> Vec<Cause> {
-        match self.answer {
-            Some(_) => Vec::new(),
-            None => causes(&self.belief, &self.weights, self.seen),
-        }
-    }
-
-    /// Least set of parts, the likeliest first, one of which has failed with probability `sure`.
-    pub fn credible_parts(&self, sure: f64) -> Vec<&LruId> {
-        self.weights.credible_parts(sure)
+    /// The part that is found, with what it explains.
+    pub fn cause(&self) -> Option<Cause> {
+        cause(&self.belief, &self.weights, self.seen)
     }
 
     /// The likeliest fault mode of a part, however unlikely, with what speaks for it and against it; a fault that is not
@@ -196,23 +149,8 @@ fn candidate(belief: &Belief<'_, '_>, seen: &Observation, fault: &Fault) -> Opti
 }
 
 impl Weights {
-    /// Of all evidence, with the pairs of faults that explain it.
-    fn after(belief: &Belief<'_, '_>, seen: &Observation) -> (Self, Vec<Pair>) {
-        let (pairs, single) = if seen.shows_a_fault() {
-            pairs(belief, seen)
-        } else {
-            (Vec::new(), belief.probabilities())
-        };
-        (Self::new(belief.model, &pairs, &single), pairs)
-    }
-
-    /// In the order of `parts`.
-    fn candidates(
-        &self,
-        belief: &Belief<'_, '_>,
-        seen: &Observation,
-        parts: &[PartProbability],
-    ) -> Vec<Candidate> {
+    /// In the order of the parts.
+    fn candidates(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Vec<Candidate> {
         let model = belief.model;
         let ConclusionSettings {
             least_shown,
@@ -221,7 +159,8 @@ impl Weights {
         } = model.settings.conclusion;
         let rank = |fault: &Fault| {
             let lru = model.lru(fault.hypothesis);
-            parts.iter().position(|part| Some(&part.lru) == lru)
+            let mut parts = self.parts.iter();
+            parts.position(|part| Some(&part.lru) == lru)
         };
         let mut faults: Vec<&Fault> = self.faults.iter().collect();
         faults.sort_by(|a, b| {
@@ -242,34 +181,29 @@ impl Weights {
 
     fn next_check(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Option<NextCheck> {
         let settings = belief.model.settings;
-        if !self.failed(settings.found_at).is_empty() || self.no_fault >= settings.healthy_at {
+        if self.set(settings).len() == 1 || self.no_fault >= settings.healthy_at {
             return None;
         }
         let done: BTreeSet<_> = seen.steps.iter().map(|step| step.check.clone()).collect();
-        belief.told_check(&done, seen.shows_a_fault())
+        belief.told_check(&done, seen.shows_a_fault().then_some(&self.parts))
     }
 
-    /// `parts` are told with these probabilities.
-    fn conclusion(
-        &self,
-        model: &Model<'_>,
-        seen: &Observation,
-        parts: &[PartProbability],
-    ) -> Conclusion {
+    fn conclusion(&self, model: &Model<'_>, seen: &Observation) -> Conclusion {
         let settings = model.settings;
-        match self.failed(settings.found_at)[..] {
+        match self.set(settings) {
             [] => {}
-            [(part, probability)] => {
-                let part = part.clone();
+            [one] => {
+                let (part, probability) = (one.lru.clone(), one.probability);
                 return match model.relations.of_bench.contains(&part) {
                     true => Conclusion::OfBench { part, probability },
                     false => Conclusion::Found { part, probability },
                 };
             }
-            [(one, _), (other, _), ..] => {
-                return Conclusion::TwoFound {
-                    parts: [one.clone(), other.clone()],
-                    probability: self.both_failed(one, other),
+            several => {
+                let parts = several.iter().map(|part| part.lru.clone());
+                return Conclusion::OneOf {
+                    group: model.relations.group(parts.collect()),
+                    probability: several.iter().map(|part| part.probability).sum(),
                 };
             }
         }
@@ -290,9 +224,13 @@ impl Weights {
             };
         }
         let named_at = settings.conclusion.named_at;
-        let likely = parts.iter().filter(|part| part.probability >= named_at);
+        let likely = self
+            .parts
+            .iter()
+            .filter(|part| part.probability >= named_at);
         Conclusion::CannotTell {
             likely: likely.cloned().collect(),
+            is_unlike_any: self.strange > settings.conclusion.most_strange,
         }
     }
 }

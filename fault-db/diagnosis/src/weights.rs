@@ -1,14 +1,16 @@
-//! The probabilities of an answer: one distribution over no fault, each part alone and each two parts.
+//! The probabilities of an answer: one distribution over no fault and each part.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use protocol::LruId;
 use serde::Serialize;
 
 use super::belief::Belief;
 use super::dictionary::ModeName;
-use super::model::{Hypothesis, Model};
-use super::pairs::Pair;
+use super::model::Hypothesis;
+use super::observation::Observation;
+use super::pool::Pooled;
+use super::settings::Settings;
 use super::verdict::PartProbability;
 
 /// Word for a fault of a part that is not in the dictionary, in place of a mode's.
@@ -18,7 +20,7 @@ const UNSEEN: &str = "unseen";
 #[derive(Clone, Copy, Debug)]
 pub struct Fault {
     pub hypothesis: Hypothesis,
-    /// Of all its levels, alone or beside another.
+    /// Of all its levels.
     pub probability: f64,
     pub of_level: f64,
 }
@@ -65,7 +67,7 @@ pub fn name(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> (String, FaultTe
 }
 
 impl Fault {
-    /// Takes in another level of the same fault, or the same in another company.
+    /// Takes in another level of the same fault.
     fn take(&mut self, other: Self) {
         self.probability += other.probability;
         if other.of_level > self.of_level {
@@ -84,161 +86,86 @@ fn is_same_fault(one: Hypothesis, other: Hypothesis) -> bool {
     }
 }
 
-/// The probabilities. A part's share of two is half of it.
+/// The probabilities.
 pub struct Weights {
-    pub lrus: Vec<PartProbability>,
-    /// Two parts at once, the likeliest first.
-    pub both: Vec<([LruId; 2], f64)>,
+    /// The likeliest first; together 1 with that of no fault.
+    pub parts: Vec<PartProbability>,
     pub faults: Vec<Fault>,
     pub no_fault: f64,
+    /// Steps that are not as counted under the likeliest fault.
+    pub strange: usize,
+    /// Parts that may be the cause at several others.
+    causes: BTreeSet<LruId>,
 }
 
 impl Weights {
-    /// Of the probabilities of single hypotheses, in the model's order, and of the pairs beside them.
-    pub fn new(model: &Model<'_>, pairs: &[Pair], single: &[f64]) -> Self {
+    /// Of all evidence; where nothing wrong was seen, by Bayes' rule alone.
+    pub fn after(belief: &Belief<'_, '_>, seen: &Observation) -> Self {
+        let model = belief.model;
         let mut faults: Vec<Fault> = Vec::new();
-        let mut parts: BTreeMap<&LruId, f64> = BTreeMap::new();
+        let mut parts = vec![0.0; model.parts().len()];
         let mut no_fault = 0.0;
-        for (hypothesis, p) in model.hypotheses.iter().zip(single) {
-            let of_level = *p;
-            match *hypothesis {
-                Hypothesis::NoFault => no_fault = of_level,
-                Hypothesis::Mode { .. } | Hypothesis::Unseen { .. } => {
-                    let fault = Fault {
-                        hypothesis: *hypothesis,
-                        probability: of_level,
-                        of_level,
-                    };
-                    match faults
-                        .last_mut()
-                        .filter(|last| is_same_fault(last.hypothesis, *hypothesis))
-                    {
-                        Some(last) => last.take(fault),
-                        None => faults.push(fault),
-                    }
-                }
-            }
-            if let Some(lru) = model.lru(*hypothesis) {
-                *parts.entry(lru).or_default() += of_level;
+        for (hypothesis, p) in model.hypotheses.iter().zip(belief.probabilities()) {
+            let Some(part) = model.part(*hypothesis) else {
+                no_fault = p;
+                continue;
+            };
+            parts[part] += p;
+            let fault = Fault {
+                hypothesis: *hypothesis,
+                probability: p,
+                of_level: p,
+            };
+            let last = faults.last_mut();
+            match last.filter(|last| is_same_fault(last.hypothesis, *hypothesis)) {
+                Some(last) => last.take(fault),
+                None => faults.push(fault),
             }
         }
-        let mut both: BTreeMap<[&LruId; 2], f64> = BTreeMap::new();
-        for pair in pairs {
-            for hypothesis in pair.both {
-                let of_pair = faults
-                    .iter_mut()
-                    .find(|fault| is_same_fault(fault.hypothesis, hypothesis));
-                if let Some(fault) = of_pair {
-                    let (probability, of_level) = (pair.probability, pair.probability);
-                    fault.take(Fault {
-                        hypothesis,
-                        probability,
-                        of_level,
-                    });
-                }
-                if let Some(lru) = model.lru(hypothesis) {
-                    *parts.entry(lru).or_default() += pair.probability / 2.0;
+        let (mut strange, mut causes) = (0, BTreeSet::new());
+        if seen.shows_a_fault() {
+            let pooled = Pooled::of(belief, seen);
+            let shares = pooled.shares.iter().map(|share| share * (1.0 - no_fault));
+            let shares: Vec<f64> = shares.collect();
+            for fault in &mut faults {
+                if let Some(part) = model.part(fault.hypothesis) {
+                    fault.probability *= shares[part] / parts[part];
                 }
             }
-            if let [Some(one), Some(other)] = pair.both.map(|hypothesis| model.lru(hypothesis)) {
-                *both.entry([one.min(other), one.max(other)]).or_default() += pair.probability;
-            }
+            parts = shares;
+            (strange, causes) = (pooled.strange, pooled.causes);
         }
-        let mut lrus: Vec<_> = parts
-            .into_iter()
-            .map(|(lru, probability)| PartProbability {
-                lru: lru.clone(),
-                probability,
-            })
-            .collect();
-        lrus.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        let both = both
-            .into_iter()
-            .map(|(parts, p)| (parts.map(LruId::clone), p));
-        let mut both: Vec<_> = both.collect();
-        both.sort_by(|a, b| b.1.total_cmp(&a.1));
-        Self {
-            lrus,
-            both,
-            faults,
-            no_fault,
-        }
-    }
-
-    /// The parts that have failed, alone or beside another, with probability `sure` at least, each with that
-    /// probability.
-    pub fn failed(&self, sure: f64) -> Vec<(&LruId, f64)> {
-        let failed = self.lrus.iter().map(|part| {
-            let beside: f64 = self.pairs_of(&part.lru).map(|(_, both)| both).sum();
-            (&part.lru, part.probability + beside / 2.0)
-        });
-        failed.filter(|(_, p)| *p >= sure).collect()
-    }
-
-    /// All parts with the probability that each has failed, alone or beside another, the likeliest first.
-    pub fn told(&self) -> Vec<PartProbability> {
-        let all = self.failed(0.0).into_iter();
-        let told = all.map(|(lru, probability)| PartProbability {
-            lru: lru.clone(),
+        let parts = model.parts().iter().zip(parts);
+        let parts = parts.map(|(lru, probability)| PartProbability {
+            lru: (*lru).clone(),
             probability,
         });
-        let mut told: Vec<_> = told.collect();
-        told.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        told
-    }
-
-    /// Probability that both of two parts have failed.
-    pub fn both_failed(&self, one: &LruId, other: &LruId) -> f64 {
-        let of_pair = self.pairs_of(one).filter(|(beside, _)| *beside == other);
-        of_pair.map(|(_, both)| both).sum()
-    }
-
-    /// Least set of parts, the likeliest first, one of which has failed with probability `sure`.
-    pub fn credible_parts(&self, sure: f64) -> Vec<&LruId> {
-        let mut sum = 0.0;
-        let mut parts: Vec<&LruId> = Vec::new();
-        for part in &self.lrus {
-            if sum >= sure {
-                break;
-            }
-            sum += self.failed_without(part, &parts);
-            parts.push(&part.lru);
+        let mut parts: Vec<_> = parts.collect();
+        parts.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        Self {
+            parts,
+            faults,
+            no_fault,
+            strange,
+            causes,
         }
-        parts
     }
 
-    /// Probability that one of these parts has failed, alone or beside another.
-    pub fn any_failed(&self, parts: &[LruId]) -> f64 {
-        let of_group = self.lrus.iter().filter(|part| parts.contains(&part.lru));
-        let mut before: Vec<&LruId> = Vec::new();
-        let each = of_group.map(|part| {
-            let more = self.failed_without(part, &before);
-            before.push(&part.lru);
-            more
-        });
-        each.sum()
-    }
-
-    /// Probability that a part has failed and none of those `before`: two parts that have failed at once count with the
-    /// first of them.
-    fn failed_without(&self, part: &PartProbability, before: &[&LruId]) -> f64 {
-        let beside = self
-            .pairs_of(&part.lru)
-            .map(|(other, both)| match before.contains(&other) {
-                true => -both / 2.0,
-                false => both / 2.0,
-            });
-        part.probability + beside.sum::<f64>()
-    }
-
-    /// The parts that may have failed beside one, each with the probability of both.
-    fn pairs_of<'a>(&'a self, lru: &'a LruId) -> impl Iterator<Item = (&'a LruId, f64)> {
-        self.both
-            .iter()
-            .filter_map(move |([one, other], both)| match lru {
-                _ if lru == one => Some((other, *both)),
-                _ if lru == other => Some((one, *both)),
-                _ => None,
-            })
+    /// The parts one of which has failed for certain, the likeliest first; empty where those are more than a person can be told,
+    /// or none may have failed.
+    pub fn set(&self, settings: &Settings) -> &[PartProbability] {
+        let settings = settings.conclusion;
+        let least = match self.strange {
+            0 => settings.least_as_counted,
+            _ => settings.least_of_set,
+        };
+        let size = self.parts.partition_point(|part| part.probability >= least);
+        let set = &self.parts[..size];
+        let cause = set.iter().any(|part| self.causes.contains(&part.lru));
+        let is_told = size <= settings.most_of_set + usize::from(cause);
+        match self.no_fault < least && is_told {
+            true => set,
+            false => &[],
+        }
     }
 }

@@ -55,13 +55,9 @@ pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
         "left_out": outcome.left_out.as_ref().map(left_out_json),
         "off_way": outcome.off_way.iter().map(|off| json!({ "fault": off.fault, "step": off.step.to_string() })).collect::<Vec<_>>(),
         "pairs": outcome.pairs.as_ref().map(pairs_json),
-        "other_spells": outcome.other_spells.as_ref().map(other_faults_json),
         "common_causes": outcome.common.as_ref().map(other_faults_json),
     })
 }
-
-/// What faults at another rate of spells are.
-const OTHER_SPELLS: &str = "faults that come and go a quarter of and four times as often";
 
 /// Fault modes that no held-out run on the maintenance port alone detected: they need the bench.
 fn need_bench(outcome: &Outcome) -> Vec<&str> {
@@ -178,9 +174,6 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
     }
     if let Some(pairs) = &outcome.pairs {
         text += &pairs_text(pairs);
-    }
-    if let Some(spells) = &outcome.other_spells {
-        text += &other_faults_text(OTHER_SPELLS, spells);
     }
     if let Some(common) = &outcome.common {
         text += &other_faults_text("one cause at several parts", common);

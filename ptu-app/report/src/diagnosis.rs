@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use diagnosis::{Candidate, Conclusion, Diagnosis, PartProbability, Reason, TwoFaults};
+use diagnosis::{Candidate, Conclusion, Diagnosis, PartProbability, Reason};
 use fault_db::Id;
 use protocol::display_text;
 use serde_json::{Value, json};
@@ -50,7 +50,6 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
             "parts": group.parts, "measure": group.measure.english, "measure_ko": group.measure.korean,
         })),
         "parts": d.parts.iter().filter(|part| part.probability >= 0.001).map(share).collect::<Vec<_>>(),
-        "two_faults": d.two_faults,
         "no_fault": d.no_fault,
         "warnings": answer.warnings.iter().map(|warning| words.told(warning)).collect::<Vec<_>>(),
         "dictionary": words.report.origin(answer.dictionary_from),
@@ -101,11 +100,6 @@ pub fn diagnosis_text(answer: &Answer, all: bool, words: &Words) -> String {
     for (probability, possible) in ranked(d, if all { usize::MAX } else { MOST_PARTS }) {
         let percent = 100.0 * probability;
         let _ = match possible {
-            Possible::Both(two) => {
-                let both = [("faults", &two.faults.join(terminal.and) as _)];
-                let both = fill(words.diagnosis.both, &both);
-                writeln!(text, "\n{percent:5.1} %  {both}")
-            }
             Possible::NoFault => {
                 writeln!(text, "\n{percent:5.1} %  {}", words.diagnosis.no_fault)
             }
@@ -145,15 +139,13 @@ pub fn diagnosis_text(answer: &Answer, all: bool, words: &Words) -> String {
 pub enum Possible<'a> {
     /// A part, by its likeliest fault.
     Part(&'a Candidate),
-    /// Two faults at once.
-    Both(&'a TwoFaults),
     NoFault,
 }
 
 /// Less likely than this reads 0.0 %, and is not told.
 const LEAST_TOLD: f64 = 0.0005;
 
-/// What may be the cause, `most` parts and `most` pairs of faults, each with its probability, the likeliest first. The
+/// What may be the cause, `most` parts, each with its probability, the likeliest first. The
 /// probability of a part is the one that the conclusion tells.
 pub fn ranked(of: &Diagnosis, most: usize) -> Vec<(f64, Possible<'_>)> {
     if matches!(of.conclusion, Conclusion::NothingSeen { made: 0, .. }) {
@@ -165,10 +157,8 @@ pub fn ranked(of: &Diagnosis, most: usize) -> Vec<(f64, Possible<'_>)> {
     let parts = first
         .take(most)
         .map(|c| (probability_of(of, c), Possible::Part(c)));
-    let pairs = of.two_faults.iter().take(most);
-    let pairs = pairs.map(|two| (two.probability, Possible::Both(two)));
     let none = (of.no_fault, Possible::NoFault);
-    let mut all: Vec<_> = parts.chain(pairs).chain([none]).collect();
+    let mut all: Vec<_> = parts.chain([none]).collect();
     all.retain(|(probability, _)| *probability >= LEAST_TOLD);
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     all

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use ptu_runs::campaign::{LeftOut, OtherFaults, PairFigures, Share, UnseenFigures};
+use ptu_runs::campaign::{Baseline, LeftOut, OtherFaults, PairFigures, Share, UnseenFigures};
 
 use crate::campaign::{percent, share_json};
 
@@ -34,6 +34,9 @@ fn figures_json(figures: &UnseenFigures) -> Value {
         "wrong_answers": figures.wrong_answers.iter().map(|(fault, answer)| {
             json!({ "fault": fault, "answer": answer })
         }).collect::<Vec<_>>(),
+        "baselines": figures.baselines.map(|Baseline { first, wrong }| {
+            json!({ "first": share_json(first), "wrong": share_json(wrong) })
+        }),
     })
 }
 
@@ -48,6 +51,19 @@ pub fn left_out_text(left_out: &LeftOut) -> String {
     ] {
         let _ = writeln!(text, "\n{what}: {} runs detected", figures.first.all);
         figures_text(&mut text, figures);
+        for (way, Baseline { first, wrong }) in ["five nearest neighbours", "naive Bayes"]
+            .into_iter()
+            .zip(figures.baselines)
+        {
+            let _ = writeln!(text, "  {way}, by verdicts and signs alone:");
+            shares_text(
+                &mut text,
+                &[
+                    ("right part first", first),
+                    ("named for certain, a wrong one", wrong),
+                ],
+            );
+        }
     }
     text
 }

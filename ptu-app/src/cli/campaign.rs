@@ -37,7 +37,6 @@ use ptu_runs::stop::Stop;
 ///   ptu campaign --leave-out-modes 5         what it is worth for faults it does not know
 ///   ptu campaign --pairs 100                 what it is worth for two faults at once
 ///   ptu campaign --common-causes 100         what it is worth for one cause at several parts
-///   ptu campaign --other-spells              what it is worth for faults that come more or less often
 ///   ptu campaign --runs runs.zst             goes on where it was stopped
 ///   ptu campaign --shard 3/64 --runs shard-3.zst
 ///   ptu campaign merge shard-*.zst --out runs.zst
@@ -70,9 +69,6 @@ pub struct CampaignArguments {
     /// Units with one cause at several parts that share it, such as their supply, to assess it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
     common_causes: u32,
-    /// Faults that come and go, too, a quarter of and four times as often as the catalogue says, to assess it
-    #[arg(long)]
-    other_spells: bool,
     /// Lot of units: each number stands for other units, with other seeds for all of them
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     lot: u32,
@@ -125,7 +121,6 @@ impl CampaignArguments {
             leave_out: self.leave_out_modes,
             pairs: self.pairs,
             common: self.common_causes,
-            other_spells: self.other_spells,
             units: self.lot,
             keep: self.keep.keep()?,
             jobs: self.jobs.map_or_else(cores, |jobs| jobs as usize),

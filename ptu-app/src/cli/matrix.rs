@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use diagnosis::matrix::{
+use matrix::{
     DEFAULT_CONFIDENCE, Leaf, Matrix, MatrixError, Method, Node, Outcome, Plan, PlanOptions,
     Posterior, plan, read_outcomes,
 };

@@ -10,12 +10,12 @@ mod signed;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use ::matrix::{Matrix, read_outcomes};
 use btu_rig::bench_scatter::BenchScatter;
 use btu_rig::drive::Load;
 use btu_rig::drive::Scatter;
 use btu_rig::train::TrainData;
 use common::Place;
-use diagnosis::matrix::{Matrix, read_outcomes};
 use diagnosis::{Dictionary, Settings as DiagnosisSettings};
 use fault_db::trace::{ENCODING, Shape, TraceCodec};
 use fault_db::{

@@ -1,6 +1,6 @@
 //! A check that was made before in the same unit: what it shows again is no new evidence, and what it shows otherwise is.
 
-use super::{AS_COUNTED, Model, StepLikelihoods, mixed, spells};
+use super::{Model, StepLikelihoods, mixed};
 use crate::cell::StepOutcome;
 use crate::observation::ObservedStep;
 
@@ -29,12 +29,9 @@ impl Model<'_> {
             let expected = self.expected(*hypothesis, place);
             if acts && self.is_intermittent(*hypothesis) {
                 if same {
-                    for (like, rate) in ln.like_effects.iter_mut().zip(spells::rates(settings)) {
-                        let again =
-                            expected.result(step.result) * self.factor(effect, place, step, rate);
-                        like[effect] = weighed(again, settings.otherwise_unseen);
-                    }
-                    ln.effects[effect] = ln.like_effects[AS_COUNTED][effect];
+                    let again = expected.result(step.result);
+                    ln.like_effects[effect] = weighed(again, settings.otherwise_unseen);
+                    ln.effects[effect] = ln.like_effects[effect];
                 }
             } else if same || changed {
                 let lasting = match (same, acts) {
@@ -42,9 +39,7 @@ impl Model<'_> {
                     (false, true) => weighed(expected.counted(step.result), settings.otherwise),
                     (false, false) => weighed(0.0, settings.otherwise),
                 };
-                ln.like_effects
-                    .iter_mut()
-                    .for_each(|like| like[effect] = lasting);
+                ln.like_effects[effect] = lasting;
                 if same || acts {
                     ln.effects[effect] = lasting;
                 }

@@ -8,8 +8,8 @@ mod strategy;
 use std::collections::{BTreeMap, BTreeSet};
 
 use diagnosis::{
-    Assessment, Basis, CheckName, Conclusion, Diagnosis, Dictionary, FaultText, Finding, ModeName,
-    Model, Observation, ObservedStep, Settings,
+    Assessment, Basis, CheckName, ConclusionSettings, Diagnosis, Dictionary, FaultText, Finding,
+    ModeName, Model, Observation, ObservedStep, PoolSettings, Settings,
 };
 use protocol::lru::from_stored;
 use protocol::{LruId, Verdict};
@@ -94,14 +94,25 @@ fn dictionary() -> Dictionary {
 }
 
 /// Nine checks that are independent of each other, where a suite has hundreds that are not: each weighs
-/// more, and they cannot rule out a fault that nobody knows as far, which is rarer here.
+/// more, and they cannot rule out a fault that nobody knows as far, which is rarer here. The posterior counts in full, and an answer names
+/// two of the few parts at most.
 fn settings() -> Settings {
     Settings {
         healthy_at: 0.95,
         weight_of_step: 0.99,
-        second_fault: 0.02,
         unseen_mode: 0.08,
         foresight: 0.9,
+        pool: PoolSettings {
+            counted: 1.0,
+            otherwise: 1.0,
+            limit: 20.0,
+            near: 1e-6,
+            ..PoolSettings::default()
+        },
+        conclusion: ConclusionSettings {
+            most_of_set: 2,
+            ..ConclusionSettings::default()
+        },
         ..Settings::default()
     }
 }
@@ -164,51 +175,14 @@ fn modes_that_no_check_distinguishes_are_reported_as_ambiguous() {
     let seen = run(&["b.s1", "c.s1"], Some(240.0));
     let assessed = Assessment::of(&model, &seen);
     let found = assessed.diagnosis();
-    comes_to(&found, Finding::CannotTell);
-    let parts = assessed.credible_parts(0.9).into_iter();
-    let named: BTreeSet<_> = parts.map(|part| part.as_str()).collect();
-    assert_eq!(named, BTreeSet::from(["antenna", "cable"]));
+    comes_to(&found, Finding::OneOf);
+    let named: BTreeSet<_> = found.conclusion.parts().into_iter().collect();
+    assert_eq!(named, ["antenna", "cable"].map(LruId::from_static).into());
     assert_eq!(found.next_check, None, "nothing tells them apart");
 }
 
-#[test]
-fn two_faults_at_once_are_both_named() {
-    let found = diagnosed(&dictionary(), &run(&["a.s1", "a.s2", "b.s1"], Some(641.0)));
-    comes_to(&found, Finding::TwoFound);
-    let parts: BTreeSet<_> = found.lrus[..2].iter().map(|p| p.lru.as_str()).collect();
-    assert_eq!(parts, BTreeSet::from(["relay", "sensor"]));
-}
-
-/// Goal: a part that has failed whatever else has is named, and alone. Method: a slow relay, beside which one of two
-/// parts has failed that no check tells apart.
-#[test]
-fn a_part_that_has_failed_beside_one_of_two_others_is_found() {
-    let (dictionary, settings) = (dictionary(), settings());
-    let model = Model::new(&dictionary, &settings, &BTreeMap::new());
-    let seen = run(&["a.s1", "b.s1", "c.s1"], Some(643.0));
-    let assessed = Assessment::of(&model, &seen);
-    let found = assessed.diagnosis();
-    comes_to(&found, Finding::Found);
-    let is_relay = matches!(&found.conclusion, Conclusion::Found { part, .. } if *part == "relay");
-    assert!(is_relay, "{:?}", found.conclusion);
-    let parts: Vec<_> = assessed
-        .credible_parts(0.9)
-        .into_iter()
-        .map(LruId::to_string)
-        .collect();
-    assert_eq!(parts, ["relay"]);
-    let causes = assessed.causes().into_iter();
-    let parts: Vec<_> = causes.map(|cause| cause.lru.to_string()).collect();
-    assert_eq!(parts, ["relay"]);
-    // Half of each pair is the relay's: the shares are those of one whole.
-    let share = found.lrus[0].probability;
-    assert!((0.45..0.55).contains(&share), "{share}");
-    let all: f64 = found.lrus.iter().map(|part| part.probability).sum();
-    assert!((all + found.no_fault - 1.0).abs() < 1e-9, "{all}");
-}
-
 /// Goal: of what failed each part that was found has what its fault shows, and nothing that it does not.
-/// Method: one fault; two at once; and a dead relay beside a step that no fault of it acts on, where the relay is found.
+/// Method: one fault; two parts that act alike; and a good unit.
 #[test]
 fn what_failed_is_the_consequence_of_the_part_that_explains_it() {
     let explained = |fails: &[&str], t| {
@@ -216,15 +190,13 @@ fn what_failed_is_the_consequence_of_the_part_that_explains_it() {
         let model = Model::new(&dictionary, &settings, &BTreeMap::new());
         let seen = run(fails, t);
         let assessed = Assessment::of(&model, &seen);
-        let causes = assessed.causes();
-        let causes = causes.into_iter().map(|cause| {
+        assessed.cause().map(|cause| {
             let checks = cause
                 .checks
                 .iter()
                 .map(|check| format!("{}.{}", check.procedure, check.step));
             (cause.lru.to_string(), checks.collect::<Vec<_>>())
-        });
-        causes.collect::<Vec<_>>()
+        })
     };
     let of = |part: &str, checks: &[&str]| {
         (
@@ -235,24 +207,20 @@ fn what_failed_is_the_consequence_of_the_part_that_explains_it() {
                 .collect::<Vec<_>>(),
         )
     };
-    assert_eq!(explained(&["a.s1"], Some(643.0)), [of("relay", &["a.s1"])]);
     assert_eq!(
-        explained(&["a.s1", "a.s2", "b.s1"], Some(641.0)),
-        [of("relay", &["a.s1"]), of("sensor", &["a.s2", "b.s1"])]
+        explained(&["a.s1"], Some(643.0)),
+        Some(of("relay", &["a.s1"]))
     );
-    assert_eq!(
-        explained(&["b.s1", "c.s1"], Some(240.0)),
-        [],
-        "no part is found"
-    );
-    assert_eq!(explained(&[], Some(240.0)), []);
+    let none = explained(&["b.s1", "c.s1"], Some(240.0));
+    assert_eq!(none, None, "no part is found");
+    assert_eq!(explained(&[], Some(240.0)), None);
 }
 
 #[test]
 fn a_result_that_no_mode_explains_blames_no_part() {
     let found = diagnosed(&dictionary(), &run(&["c.s2", "c.s3", "b.s3"], Some(240.0)));
     comes_to(&found, Finding::CannotTell);
-    assert!(found.lrus[0].probability < 0.5);
+    assert!(found.parts[0].probability < 0.5);
 }
 
 /// Goal: a fault in a way that no dictionary has is found in the part whose checks fail, and is not named for certain.
@@ -274,6 +242,7 @@ fn a_fault_in_a_way_not_seen_yet_is_the_part_s_that_the_failed_checks_judge() {
             .collect();
         let settings = Settings {
             unseen_mode: 0.2,
+            pool: PoolSettings::default(),
             ..settings()
         };
         let model = Model::new(&dictionary, &settings, &BTreeMap::new());
@@ -304,12 +273,12 @@ fn the_shares_of_an_answer_add_up_to_one() {
             .map(|i| names[i].as_str())
             .collect();
         let found = diagnosed(&dictionary, &run(&fails, Some(240.0)));
-        let parts: f64 = found.lrus.iter().map(|part| part.probability).sum();
+        let parts: f64 = found.parts.iter().map(|part| part.probability).sum();
         let all = parts + found.no_fault;
         assert!((all - 1.0).abs() < 1e-9, "{fails:?}: {all}");
         assert!(
             found
-                .lrus
+                .parts
                 .is_sorted_by(|a, b| a.probability >= b.probability),
             "{fails:?}"
         );
@@ -343,44 +312,7 @@ fn contradicting_evidence_gives_no_certain_answer() {
     let found = diagnosed(&dictionary(), &seen);
     let said = &found.conclusion;
     assert_ne!(said.finding(), Finding::NoFault, "{said:?}");
-    assert!(found.lrus[0].probability < 0.95, "{said:?}");
-}
-
-/// Goal: a fault that comes more often than when it was counted is known by all that it hits.
-/// Method: the plug hit each of six checks in one of eight runs, the lamp five of them in every other run; all six fail.
-#[test]
-fn a_fault_that_comes_oftener_than_counted_is_known_by_all_that_it_hits() {
-    let mut dictionary = Dictionary::new(Basis::default(), vec![1], checks());
-    dictionary.set_healthy(&vec![run(&[], None); 24]);
-    let six = ["a.s2", "a.s3", "b.s1", "b.s2", "b.s3", "c.s1"];
-    let mut add = |id, fails: &dyn Fn(usize) -> Vec<&'static str>| {
-        let runs: Vec<_> = (0..24).map(|turn| run(&fails(turn), None)).collect();
-        let loose = ModeName {
-            kind: "intermittent".into(),
-            ..mode(id, 1.0)
-        };
-        dictionary.add(&loose, "nominal".into(), &runs);
-    };
-    add("plug.loose", &|turn| {
-        six.get(turn % 8).copied().into_iter().collect()
-    });
-    add("lamp.loose", &|turn| {
-        let hit = six.iter().enumerate().take(5);
-        hit.filter(|(n, _)| (turn >> n) % 2 == 0)
-            .map(|(_, check)| *check)
-            .collect()
-    });
-    let first = |other_spells| {
-        let settings = Settings {
-            other_spells,
-            ..settings()
-        };
-        let model = Model::new(&dictionary, &settings, &BTreeMap::new());
-        Diagnosis::of(&model, &run(&six, None)).lrus[0].lru.clone()
-    };
-    assert_eq!(first(Settings::default().other_spells), "plug");
-    // Counted spells alone speak for the lamp.
-    assert_eq!(first(1e-6), "lamp");
+    assert!(found.parts[0].probability < 0.95, "{said:?}");
 }
 
 /// Goal: to make a check again tells of what comes and goes, and of nothing that lasts.
@@ -397,7 +329,7 @@ fn a_check_made_again_tells_what_comes_and_goes_from_what_lasts() {
     let mut seen = run(&["b.s1", "c.s1"], Some(240.0));
     let share = |seen: &Observation, of: &str| {
         let found = diagnosed(&dictionary, seen);
-        let part = found.lrus.iter().find(|part| part.lru.as_str() == of);
+        let part = found.parts.iter().find(|part| part.lru.as_str() == of);
         part.map_or(0.0, |part| part.probability)
     };
     let once = ["plug", "antenna", "cable"].map(|part| share(&seen, part));

@@ -52,11 +52,10 @@ fn dictionary(dead: f64, fails: usize) -> Dictionary {
     dictionary
 }
 
-/// Spells as counted, so that shares can be worked out by hand.
+/// Nothing is smoothed, so that shares can be worked out by hand.
 fn settings() -> Settings {
     Settings {
         weight_of_step: 0.999,
-        other_spells: 1e-6,
         otherwise_unseen: 1e-6,
         unseen_mode: 1e-6,
         doubt_runs: 1e-3,

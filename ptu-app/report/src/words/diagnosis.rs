@@ -11,7 +11,6 @@ wordings! {
         no_answer: "This run cannot be diagnosed", "이 시험은 진단할 수 없습니다";
         speaks_for: "speaks for it", "근거";
         speaks_against: "speaks against it", "반대 근거";
-        both: "both {faults}", "동시 고장 {faults}";
         no_fault: "no fault", "고장 없음";
         next_check: "Next best check", "다음 권장 점검";
         gains: "{bits} bits for {time} of bench time", "시험대 시간 {time}에 {bits} bit";

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use diagnosis::{Dictionary, Finding, Model, PartProbability, Relations, Settings};
+use diagnosis::{Diagnosis, Dictionary, Finding, Model, PartProbability, Relations, Settings};
 use protocol::LruId;
 
 use super::samples::Sample;
@@ -10,8 +10,6 @@ use super::suite::SuiteRun;
 use crate::pool;
 use crate::stop::Stop;
 
-/// One of the parts a diagnosis names has failed with this probability.
-const SURE: f64 = 0.95;
 /// Beyond this many parts nothing is isolated.
 const MOST_PARTS: usize = 3;
 
@@ -31,7 +29,7 @@ pub struct Assessment {
     pub seed: u64,
     /// A step did not pass, or a fault was found.
     pub detected: bool,
-    /// Parts that diagnosis is sure are the one, the likeliest first.
+    /// Parts that are named, for certain or as likely.
     pub parts: Vec<LruId>,
     pub finding: Finding,
     /// All parts, the likeliest first.
@@ -41,10 +39,10 @@ pub struct Assessment {
 impl Assessment {
     /// Whether it is isolated to at most `parts` parts, the right one among them.
     pub fn isolated(&self, parts: usize) -> bool {
-        self.detected && self.parts.len() <= parts && self.parts.contains(&self.lru)
+        self.detected && self.parts.len() <= parts && self.is_found_or_group()
     }
 
-    /// One part, two or a group are named for certain, and not the right one alone or a group with it.
+    /// One part or a few are named for certain, and not the right one alone or a group with it.
     pub fn is_wrong(&self) -> bool {
         self.is_certain() && !self.names_the_part()
     }
@@ -72,10 +70,7 @@ impl Assessment {
     }
 
     fn names_the_part(&self) -> bool {
-        match self.finding {
-            Finding::OneOf => self.parts.contains(&self.lru),
-            _ => self.parts == [self.lru.clone()],
-        }
+        self.parts.contains(&self.lru)
     }
 
     /// Place of the right part among all.
@@ -113,17 +108,7 @@ pub fn not_passed(good: &[(&Sample, &SuiteRun)]) -> Vec<Vec<String>> {
 /// Diagnoses a run with a fault; none of a good unit.
 pub(super) fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Assessment> {
     let mode = sample.faults.first()?;
-    let assessed = diagnosis::Assessment::of(model, &run.seen);
-    let diagnosis = assessed.diagnosis();
-    let group = diagnosis.conclusion.group();
-    let parts: Vec<_> = match diagnosis.conclusion.finding() {
-        Finding::TwoFound => {
-            let found = diagnosis.lrus.iter().take(2);
-            found.map(|part| &part.lru).collect()
-        }
-        Finding::OneOf => group.iter().flat_map(|group| &group.parts).collect(),
-        _ => assessed.credible_parts(SURE),
-    };
+    let diagnosis = Diagnosis::of(model, &run.seen);
     Some(Assessment {
         fault: sample.modes(),
         lru: sample.cause.as_ref().unwrap_or(&mode.lru).clone(),
@@ -133,9 +118,9 @@ pub(super) fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> 
         level: sample.level,
         seed: sample.seed,
         detected: !run.passed,
-        parts: parts.into_iter().cloned().collect(),
+        parts: diagnosis.conclusion.parts(),
         finding: diagnosis.conclusion.finding(),
-        ranked: diagnosis.lrus,
+        ranked: diagnosis.parts,
     })
 }
 
@@ -270,11 +255,9 @@ fn shortfall(fault: &str, runs: &[&Assessment], has: &dyn Fn(&Assessment) -> boo
     let mut taken_for: BTreeMap<String, usize> = BTreeMap::new();
     for run in runs.iter().filter(|run| !has(run)) {
         let what = match run.finding {
-            Finding::Found
-            | Finding::OfBench
-            | Finding::TwoFound
-            | Finding::OneOf
-            | Finding::CannotTell => joined(&run.parts),
+            Finding::Found | Finding::OfBench | Finding::OneOf | Finding::CannotTell => {
+                joined(&run.parts)
+            }
             _ => run.finding.label().to_owned(),
         };
         *taken_for.entry(what).or_default() += 1;
@@ -288,7 +271,7 @@ fn shortfall(fault: &str, runs: &[&Assessment], has: &dyn Fn(&Assessment) -> boo
     }
 }
 
-fn joined(parts: &[LruId]) -> String {
+pub(super) fn joined(parts: &[LruId]) -> String {
     let parts: Vec<_> = parts.iter().map(LruId::as_str).collect();
     parts.join(" or ")
 }
@@ -298,7 +281,7 @@ fn ambiguous(assessments: &[Assessment]) -> Vec<Vec<String>> {
     let mut groups: Vec<BTreeSet<String>> = Vec::new();
     let open = assessments
         .iter()
-        .filter(|run| run.detected && run.parts.len() > 1);
+        .filter(|run| run.detected && run.finding == Finding::OneOf);
     for run in open.filter(|run| run.parts.len() <= MOST_PARTS) {
         let mut group: BTreeSet<_> = run.parts.iter().map(LruId::to_string).collect();
         let (touching, apart): (Vec<_>, Vec<_>) = groups

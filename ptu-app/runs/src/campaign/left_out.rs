@@ -9,9 +9,10 @@ use diagnosis::{Basis, Settings};
 use protocol::LruId;
 use protocol::injection::FaultMode;
 
+use super::baselines::{self, Baselines};
 use super::by_mode::interval;
 use super::dictionary;
-use super::evaluate::{Assessment, Share, assess};
+use super::evaluate::{Assessment, Share, assess, joined};
 use super::samples::{Purpose, Sample};
 use super::suite::{Suite, SuiteRun};
 
@@ -51,8 +52,10 @@ pub struct UnseenFigures {
     pub brier: f64,
     /// Part that failed, part taken for it, and in how many runs.
     pub confused: Vec<(LruId, LruId, usize)>,
-    /// Modes whose part was not named and another was, with the answer.
+    /// Modes whose part was not named and others were, with those.
     pub wrong_answers: Vec<(String, String)>,
+    /// What two simpler ways come to.
+    pub baselines: Baselines,
 }
 
 /// Figures over runs with faults that act otherwise than the dictionary counted.
@@ -137,9 +140,14 @@ impl UnseenFigures {
         left_out: impl Iterator<Item = BTreeSet<&'a str>>,
         evidence: &Evidence<'_>,
     ) -> Self {
-        let assessed = left_out.flat_map(|left_out| assess_without(&left_out, evidence));
+        let mut baselines = Baselines::default();
+        let assessed =
+            left_out.flat_map(|left_out| assess_without(&left_out, evidence, &mut baselines));
         let assessed: Vec<_> = assessed.filter(|run| run.detected).collect();
-        Self::of(assessed.iter())
+        Self {
+            baselines,
+            ..Self::of(assessed.iter())
+        }
     }
 
     fn of<'a>(runs: impl Iterator<Item = &'a Assessment>) -> Self {
@@ -174,14 +182,19 @@ impl UnseenFigures {
             wrong_answers: runs
                 .iter()
                 .filter(|run| run.is_wrong())
-                .map(|run| (run.fault.clone(), run.finding.label().to_owned()))
+                .map(|run| (run.fault.clone(), joined(&run.parts)))
                 .collect(),
+            baselines: Baselines::default(),
         }
     }
 }
 
 /// Diagnoses the held-out runs of these modes with a dictionary that does not know them.
-fn assess_without(left_out: &BTreeSet<&str>, evidence: &Evidence<'_>) -> Vec<Assessment> {
+fn assess_without(
+    left_out: &BTreeSet<&str>,
+    evidence: &Evidence<'_>,
+    baselines: &mut Baselines,
+) -> Vec<Assessment> {
     let is_left_out = |mode: &str| left_out.contains(mode);
     let known: Vec<_> = evidence
         .modes
@@ -201,12 +214,10 @@ fn assess_without(left_out: &BTreeSet<&str>, evidence: &Evidence<'_>) -> Vec<Ass
     let of_these = samples.iter().zip(runs).filter(|(sample, _)| {
         sample.purpose == Purpose::Assessment && sample.mode().is_some_and(is_left_out)
     });
-    assess(
-        &dictionary,
-        (settings, &suite.structure.relations),
-        &of_these.collect::<Vec<_>>(),
-        jobs,
-    )
+    let of_these: Vec<_> = of_these.collect();
+    baselines::judge(baselines, &dictionary, &of_these);
+    let judged_by = (settings, &suite.structure.relations);
+    assess(&dictionary, judged_by, &of_these, jobs)
 }
 
 fn confused(runs: &[&Assessment]) -> Vec<(LruId, LruId, usize)> {

@@ -7,6 +7,7 @@
 //! ```
 
 mod adaptive;
+mod baselines;
 mod by_mode;
 mod evaluate;
 mod left_out;
@@ -23,6 +24,7 @@ use glob::Pattern;
 use protocol::injection::{FaultCatalogue, FaultMode};
 
 pub use adaptive::{AdaptiveFigures, Effort};
+pub use baselines::Baseline;
 pub use evaluate::{Assessment, Figures, Share, Shortfall, figures};
 use left_out::Evidence;
 pub use left_out::{LeftOut, OtherFaults, UnseenFigures};
@@ -54,8 +56,6 @@ pub struct Request {
     pub pairs: u32,
     /// Runs of units with one cause at several parts to assess it.
     pub common: u32,
-    /// Faults that come and go less and more often than counted, too.
-    pub other_spells: bool,
     /// Which units: another number means other seeds for everything.
     pub units: u32,
     /// Embedded units to test side by side.
@@ -83,9 +83,6 @@ impl Request {
                 what += &format!(" {option} {count}");
             }
         }
-        if self.other_spells {
-            what += " --other-spells";
-        }
         what
     }
 }
@@ -99,8 +96,6 @@ pub struct Outcome {
     pub adaptive: Option<AdaptiveFigures>,
     /// What it is worth for two faults at once, if that was asked for.
     pub pairs: Option<PairFigures>,
-    /// What it is worth for faults that come and go less or more often than counted, if that was asked for.
-    pub other_spells: Option<OtherFaults>,
     /// What it is worth for one cause at several parts, if that was asked for.
     pub common: Option<OtherFaults>,
     /// Good runs, and what did not pass in those that did not.
@@ -212,14 +207,10 @@ fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
     };
     let single = of(Purpose::Assessment, 1);
     let pairs = of(Purpose::Assessment, 2);
-    let otherwise = |purpose: Purpose| {
-        let runs: Vec<_> = held_out
-            .clone()
-            .filter(|(sample, _)| sample.purpose == purpose)
-            .collect();
-        let assessed = || evaluate::assess(&dictionary, judged_by, &runs, jobs);
-        (!runs.is_empty()).then(|| OtherFaults::of(&assessed()))
-    };
+    let common: Vec<_> = held_out
+        .clone()
+        .filter(|(sample, _)| sample.purpose == Purpose::CommonCause)
+        .collect();
     Outcome {
         adaptive: (!single.is_empty()).then(|| {
             let units: Vec<_> = single.iter().map(|(sample, _)| *sample).collect();
@@ -227,8 +218,8 @@ fn conclude(evidence: &Evidence<'_>, leave_out: Option<u32>) -> Outcome {
         }),
         assessments: evaluate::assess(&dictionary, judged_by, &single, jobs),
         pairs: (!pairs.is_empty()).then(|| PairFigures::of(&dictionary, judged_by, &pairs)),
-        other_spells: otherwise(Purpose::OtherSpells),
-        common: otherwise(Purpose::CommonCause),
+        common: (!common.is_empty())
+            .then(|| OtherFaults::of(&evaluate::assess(&dictionary, judged_by, &common, jobs))),
         good: evaluate::not_passed(&of(Purpose::Assessment, 0)),
         left_out: leave_out.map(|folds| LeftOut::of(evidence, folds.max(2) as usize)),
         off_way: suite.off_way(&dictionary),

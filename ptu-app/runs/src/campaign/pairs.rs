@@ -19,7 +19,7 @@ pub struct PairFigures {
     pub both: Share,
     /// At least one of them is.
     pub one: Share,
-    /// Parts are named for certain, and one of them is sound.
+    /// Sound parts alone are named for certain.
     pub wrong: Share,
     /// Both faults, and the answer, of the runs in which not both parts are among the first three.
     pub not_both: Vec<(String, String)>,
@@ -37,25 +37,18 @@ impl PairFigures {
         for (sample, run) in runs.iter().filter(|(_, run)| !run.passed) {
             let diagnosis = Diagnosis::of(&model, &run.seen);
             let is_bad = |part: &LruId| sample.faults.iter().any(|fault| fault.lru == *part);
-            let first = diagnosis.lrus.iter().take(AMONG);
+            let first = diagnosis.parts.iter().take(AMONG);
             let found = first.filter(|part| is_bad(&part.lru)).count();
-            let sound = match diagnosis.conclusion.finding() {
-                Finding::Found | Finding::OfBench => !is_bad(&diagnosis.lrus[0].lru),
-                Finding::TwoFound => diagnosis.lrus.iter().take(2).any(|part| !is_bad(&part.lru)),
-                Finding::OneOf => !diagnosis
-                    .conclusion
-                    .group()
-                    .iter()
-                    .flat_map(|group| &group.parts)
-                    .any(is_bad),
-                _ => false,
-            };
+            let finding = diagnosis.conclusion.finding();
+            let is_certain = !matches!(finding, Finding::CannotTell | Finding::NotEnough);
+            let sound = is_certain && !diagnosis.conclusion.parts().iter().any(is_bad);
             figures.both.count(found == 2);
             figures.one.count(found > 0);
             figures.wrong.count(sound);
             if found < 2 {
-                let answer = diagnosis.conclusion.finding().label();
-                figures.not_both.push((sample.modes(), answer.to_owned()));
+                figures
+                    .not_both
+                    .push((sample.modes(), finding.label().to_owned()));
             }
         }
         figures

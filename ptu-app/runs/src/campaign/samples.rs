@@ -4,7 +4,7 @@
 use diagnosis::Shared;
 use protocol::LruId;
 use protocol::Random;
-use protocol::injection::{Effect, FaultKind, FaultMode, Occurrence};
+use protocol::injection::{Effect, FaultKind, FaultMode};
 
 use serde_json::json;
 
@@ -26,12 +26,8 @@ const LEVEL: u64 = 10_000;
 /// Seeds of good units begin here, those of units with two faults there, beyond those of all levels.
 const GOOD: u64 = APART / 2;
 const PAIRS: u64 = APART / 4 * 3;
-/// Seeds of faults whose spells are more or less frequent than the dictionary's.
-const OTHER_SPELLS: u64 = APART / 8 * 7;
 /// Seeds of units with one cause at several parts.
 const COMMON: u64 = APART / 16 * 15;
-/// So many times as often as the catalogue says they come.
-const SPELL_RATES: [f64; 2] = [0.25, 4.0];
 /// Two faults of different parts are found in far fewer tries than this.
 const MOST_TRIES: u32 = 1000;
 
@@ -42,8 +38,6 @@ pub enum Purpose {
     Dictionary,
     /// Kept out of it, to see what it is worth.
     Assessment,
-    /// The same for a fault that comes and goes less or more often than counted.
-    OtherSpells,
     /// The same for one cause at several parts.
     CommonCause,
 }
@@ -144,38 +138,11 @@ pub fn samples(modes: &[&FaultMode], shared: &[Shared], asked: &Request) -> Vec<
             }
         }
     }
-    if asked.other_spells {
-        let modes = SPELL_RATES
-            .iter()
-            .flat_map(|rate| modes.iter().filter_map(|mode| at_rate(mode, *rate)));
-        for (number, mode) in (0..).zip(modes) {
-            samples.extend((0..asked.held_out).map(|i| Sample {
-                purpose: Purpose::OtherSpells,
-                faults: vec![mode.clone()],
-                sets_in_s: 0.0,
-                cause: None,
-                level: 0,
-                seed: from + OTHER_SPELLS + LEVEL * number + u64::from(i),
-            }));
-        }
-    }
     samples.extend((0..asked.pairs).filter_map(|i| pair(modes, from + PAIRS + u64::from(i))));
     let common =
         (0..asked.common).filter_map(|i| common(modes, shared, from + COMMON + u64::from(i)));
     samples.extend(common);
     samples
-}
-
-/// A mode whose spells, as long as ever, come so many times as often; none of a mode without spells.
-fn at_rate(mode: &FaultMode, rate: f64) -> Option<FaultMode> {
-    let Occurrence::AtTimes { on_s, off_s } = mode.occurs else {
-        return None;
-    };
-    let off_s = off_s / rate;
-    Some(FaultMode {
-        occurs: Occurrence::AtTimes { on_s, off_s },
-        ..mode.clone()
-    })
 }
 
 /// A unit with two faults of different parts, drawn by its seed; none where the modes are of one part.

@@ -25,7 +25,6 @@ fn asked() -> Request {
         leave_out: None,
         pairs: 0,
         common: 0,
-        other_spells: false,
         units: 0,
         jobs: 2,
         keep: Keep::default(),
@@ -144,7 +143,6 @@ fn every_run_of_a_campaign_has_its_own_name_and_two_faults_are_of_two_parts() {
             held_out: 1,
             good: 2,
             pairs: 40,
-            other_spells: true,
             units,
             ..asked()
         };

@@ -44,8 +44,8 @@ pub struct Answer {
     pub diagnosis: Diagnosis,
     /// The likeliest fault of the part that was asked about, with what speaks for it and against it.
     pub why_not: Option<Candidate>,
-    /// The parts that were found, each with the run's faults that come from it.
-    pub causes: Vec<(Cause, Vec<Id>)>,
+    /// The part that was found, with the run's faults that come from it.
+    pub cause: Option<(Cause, Vec<Id>)>,
     /// Traces that show a part's faults, by part.
     pub traces: BTreeMap<String, Vec<Id>>,
     /// What to bear in mind.
@@ -146,7 +146,7 @@ pub fn diagnose(
     let model = Model::new(&dictionary, &settings, &history.factors).with_relations(&relations);
     let assessed = Assessment::of(&model, &seen);
     let mut diagnosis = assessed.diagnosis();
-    let causes = assessed.causes();
+    let cause = assessed.cause();
     let why_not = why_not.map(|part| {
         let fault = assessed.likeliest_of(part);
         fault.ok_or_else(|| no_such_part(part, &model))
@@ -160,7 +160,7 @@ pub fn diagnose(
         of_part.extend(occurrence.trace_id.filter(|id| !of_part.contains(id)));
     }
     Ok(Answer {
-        causes: with_faults(causes, &run, &occurrences),
+        cause: cause.map(|cause| with_faults(cause, &run, &occurrences)),
         run,
         diagnosis,
         why_not,

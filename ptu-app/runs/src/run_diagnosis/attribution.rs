@@ -21,7 +21,7 @@ impl Answer {
         if self.run.run.verdict != Some(Verdict::Failed) || !self.warnings.is_empty() {
             return Ok(());
         }
-        for (cause, faults) in &self.causes {
+        if let Some((cause, faults)) = &self.cause {
             let record = CauseRecord {
                 part: cause.lru.to_string(),
                 run: Some(self.run.run.id.to_string()),
@@ -34,34 +34,24 @@ impl Answer {
     }
 }
 
-/// Causes with the faults of a run that come from each: those that name its part, and those of which it explains all
-/// that the run saw.
+/// The cause with the faults of a run that come from it: those that name its part, and those of which it explains all that
+/// the run saw.
 pub(super) fn with_faults(
-    causes: Vec<Cause>,
+    cause: Cause,
     run: &RunDetail,
     occurrences: &[RunOccurrence],
-) -> Vec<(Cause, Vec<Id>)> {
+) -> (Cause, Vec<Id>) {
     let mut seen: BTreeMap<Id, Vec<&RunOccurrence>> = BTreeMap::new();
     for occurrence in occurrences {
         seen.entry(occurrence.fault).or_default().push(occurrence);
     }
-    let names = |cause: &Cause, seen: &[&RunOccurrence]| {
+    let is_of = |seen: &[&RunOccurrence]| {
         let lru = seen.first().and_then(|one| from_stored(&one.lru));
-        lru.as_ref() == Some(&cause.lru)
+        lru.as_ref() == Some(&cause.lru) || seen.iter().all(|one| explains(&cause, run, one))
     };
-    let of_cause = |cause: &Cause| {
-        let is_of = |seen: &[&RunOccurrence]| {
-            // What names a part that was found, too, is that part's.
-            match causes.iter().find(|cause| names(cause, seen)) {
-                Some(named) => named.lru == cause.lru,
-                None => seen.iter().all(|one| explains(cause, run, one)),
-            }
-        };
-        let faults = seen.iter().filter(|(_, seen)| is_of(seen));
-        faults.map(|(fault, _)| *fault).collect()
-    };
-    let faults: Vec<_> = causes.iter().map(of_cause).collect();
-    causes.into_iter().zip(faults).collect()
+    let faults = seen.iter().filter(|(_, seen)| is_of(seen));
+    let faults = faults.map(|(fault, _)| *fault).collect();
+    (cause, faults)
 }
 
 /// Whether the cause shows this: a check that failed by its step, anything else by the sign that it is.

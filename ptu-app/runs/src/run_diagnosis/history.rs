@@ -193,7 +193,7 @@ mod tests {
         let model = Model::new(&dictionary, &settings, &history.factors);
         let mut diagnosis = Diagnosis::of(&model, &came(Verdict::Failed));
         history.explain(&mut diagnosis);
-        let relay = diagnosis.lrus.iter().find(|part| part.lru == "eb_relay");
+        let relay = diagnosis.parts.iter().find(|part| part.lru == "eb_relay");
         let probability = relay.expect("the relay").probability;
         (history, diagnosis, probability)
     }

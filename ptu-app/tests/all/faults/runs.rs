@@ -110,7 +110,10 @@ impl TestBench {
             answer.attribute(&store).expect("attributed");
             let diagnosis = &answer.diagnosis;
             let first = || diagnosis.candidates.first().map(|first| first.lru.clone());
-            let group = diagnosis.conclusion.group().map(|group| group.parts);
+            let group = diagnosis
+                .conclusion
+                .group()
+                .map(|group| group.parts.clone());
             let parts = group.unwrap_or_else(|| first().into_iter().collect());
             named = parts.iter().map(ToString::to_string).collect();
         }

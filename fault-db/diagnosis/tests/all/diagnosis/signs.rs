@@ -54,7 +54,7 @@ fn what_the_tester_measures_names_the_part() {
         let named =
             |part: &diagnosis::PartProbability| part.lru == "clock" && part.probability > 0.9;
         let said = &found.conclusion;
-        assert_eq!(found.lrus.iter().any(named), decides, "{fault}: {said:?}");
+        assert_eq!(found.parts.iter().any(named), decides, "{fault}: {said:?}");
     }
 }
 

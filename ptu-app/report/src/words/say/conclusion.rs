@@ -19,15 +19,16 @@ pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names
     let then = match conclusion {
         Conclusion::Found { .. }
         | Conclusion::OfBench { .. }
-        | Conclusion::TwoFound { .. }
         | Conclusion::NoFault { .. }
         | Conclusion::NotWeighed => None,
         // A measurement tells which.
+        Conclusion::OneOf { group, .. } if !group.measure.english.is_empty() => {
+            next.map(|next| run_next(next, names))
+        }
         Conclusion::OneOf { .. }
-        | Conclusion::Common { .. }
-        | Conclusion::OneOrCommon { .. }
-        | Conclusion::NotAlone { .. } => next.map(|next| run_next(next, names)),
-        Conclusion::NothingSeen { .. } | Conclusion::CannotTell { .. } | Conclusion::BrokenOff => {
+        | Conclusion::NothingSeen { .. }
+        | Conclusion::CannotTell { .. }
+        | Conclusion::BrokenOff => {
             Some(next.map_or_else(|| swap(conclusion, names), |next| run_next(next, names)))
         }
     };
@@ -53,81 +54,18 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
                 ),
             ]
         }
-        Conclusion::TwoFound { parts, probability } => {
-            let sure = percent(*probability);
-            let [[one, one_ko], [other, other_ko]] =
-                parts.each_ref().map(|part| named(part, None, names));
-            [
-                format!(
-                    "perhaps two faults ({sure}): replace {one} and run again what failed; {other} if something still fails"
-                ),
-                format!(
-                    "복합 고장 추정 ({sure}): {one_ko} 교체 후 불합격 항목을 다시 시험하고, 다시 불합격하면 {other_ko} 교체"
-                ),
-            ]
-        }
         Conclusion::OneOf { group, probability } => {
             let sure = percent(*probability);
             let parts = group.parts.iter().map(|part| named(part, None, names));
             let [parts, parts_ko] = one_or_other(&parts.collect::<Vec<_>>());
             let measure = &group.measure;
-            [
-                format!("{parts} ({sure}); to tell which, {}", measure.english),
-                format!("{parts_ko} ({sure}); 판별 방법: {}", measure.korean),
-            ]
-        }
-        Conclusion::Common {
-            cause,
-            parts,
-            probability,
-        } => {
-            let sure = percent(*probability);
-            let places = parts.each_ref().map(|part| named(part, None, names));
-            let [places, places_ko] = joined(&places, [" and ", ", "]);
-            let [part, part_ko] = named(&cause.part, None, names);
-            let [measure, measure_ko] = [&cause.measure.english, &cause.measure.korean];
-            [
-                format!(
-                    "one cause at {places} ({sure}): {part}, its wiring, or a fault of each; to tell which, {measure}"
-                ),
-                format!(
-                    "{places_ko}에 공통된 원인 ({sure}): {part_ko}, 배선 또는 각각의 고장; 판별 방법: {measure_ko}"
-                ),
-            ]
-        }
-        Conclusion::OneOrCommon {
-            cause, part, other, ..
-        } => {
-            // The probability is that of the part alone, and so none of this sentence.
-            let [found, found_ko] = named(part, None, names);
-            let [of, of_ko] = named(&cause.part, None, names);
-            let [one, one_ko] = called(part, names);
-            let [other, other_ko] = named(other, None, names);
-            let [measure, measure_ko] = [&cause.measure.english, &cause.measure.korean];
-            [
-                format!(
-                    "{found}, or one cause at {one} and {other}: {of} or its wiring; to tell which, {measure}"
-                ),
-                format!(
-                    "{found_ko} 또는 {one_ko}, {other_ko}에 공통된 원인: {of_ko} 또는 배선; 판별 방법: {measure_ko}"
-                ),
-            ]
-        }
-        Conclusion::NotAlone {
-            part,
-            probability,
-            other,
-        } => {
-            let [found, found_ko] = named(part, Some(*probability), names);
-            let [other, other_ko] = named(other, None, names);
-            [
-                format!(
-                    "not certain yet: {found}; a sign of a fault in {other} does not come from it"
-                ),
-                format!(
-                    "아직 확실하지 않습니다: {found_ko}; {other_ko} 고장 징후는 이 고장으로 설명되지 않습니다"
-                ),
-            ]
+            match measure.english.is_empty() {
+                true => [format!("{parts} ({sure})"), format!("{parts_ko} ({sure})")],
+                false => [
+                    format!("{parts} ({sure}); to tell which, {}", measure.english),
+                    format!("{parts_ko} ({sure}); 판별 방법: {}", measure.korean),
+                ],
+            }
         }
         Conclusion::NoFault { probability } => {
             let sure = percent(*probability);
@@ -146,12 +84,19 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
                 "시험 범위가 부족하여 판별할 수 없습니다: 점검 {of}개 중 {made}개 수행, 이상이 발견되지 않음"
             ),
         ],
-        Conclusion::CannotTell { likely } => {
+        Conclusion::CannotTell {
+            likely,
+            is_unlike_any,
+        } => {
             let shown = likely.iter().take(MOST_NAMED);
             let shown: Vec<_> = shown
                 .map(|part| named(&part.lru, Some(part.probability), names))
                 .collect();
-            cannot_tell(&shown, likely.len() - shown.len(), can_go_on)
+            let said = cannot_tell(&shown, likely.len() - shown.len(), can_go_on);
+            match is_unlike_any {
+                true => unlike_any(&said),
+                false => said,
+            }
         }
         Conclusion::BrokenOff => {
             let [said] = both([(
@@ -200,18 +145,22 @@ fn cannot_tell(shown: &[Both], more: usize, can_go_on: bool) -> Both {
     }
 }
 
+fn unlike_any([said, said_ko]: &Both) -> Both {
+    [
+        format!("like no fault that is known: examine the bench and its harness first; {said}"),
+        format!("알려진 고장과 다릅니다. 시험대와 하네스를 먼저 점검하십시오; {said_ko}"),
+    ]
+}
+
 /// What is left where no check tells the likely parts apart.
 fn swap(conclusion: &Conclusion, names: &[Lru]) -> Both {
-    let likeliest = match conclusion {
-        Conclusion::CannotTell { likely } => likely.first(),
-        _ => None,
-    };
+    let likeliest = conclusion.parts().into_iter().next();
     let of_bench = |part: &LruId| {
         names
             .iter()
             .any(|known| known.of_bench && known.id == *part)
     };
-    match likeliest.map(|part| (of_bench(&part.lru), called(&part.lru, names))) {
+    match likeliest.map(|part| (of_bench(&part), called(&part, names))) {
         None => [
             "no check tells more".to_owned(),
             "더 알려 줄 점검이 없습니다".to_owned(),

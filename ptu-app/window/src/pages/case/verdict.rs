@@ -45,7 +45,7 @@ impl Told {
         match run {
             Verdict::Failed => match said {
                 Some(Conclusion::Found { .. }) => Self::Part,
-                Some(said) if !parts(said).is_empty() => Self::Unsure,
+                Some(said) if !said.parts().is_empty() => Self::Unsure,
                 _ => Self::NoPart,
             },
             Verdict::Inconclusive | Verdict::Skipped => Self::NotAll,
@@ -115,35 +115,17 @@ impl Told {
     }
 }
 
-/// The parts that a headline names: those to replace, or the likeliest.
+/// The part that a headline names: the one to replace, or the likeliest.
 pub fn named(diagnosis: &Diagnosis) -> Vec<LruId> {
-    let mut parts = parts(&diagnosis.conclusion);
-    if !matches!(diagnosis.conclusion, Conclusion::TwoFound { .. }) {
-        parts.truncate(1);
-    }
+    let mut parts = diagnosis.conclusion.parts();
+    parts.truncate(1);
     parts
-}
-
-fn parts(said: &Conclusion) -> Vec<LruId> {
-    match said {
-        Conclusion::Found { part, .. }
-        | Conclusion::OfBench { part, .. }
-        | Conclusion::OneOrCommon { part, .. }
-        | Conclusion::NotAlone { part, .. } => vec![part.clone()],
-        Conclusion::TwoFound { parts, .. } | Conclusion::Common { parts, .. } => parts.to_vec(),
-        Conclusion::OneOf { group, .. } => group.parts.clone(),
-        Conclusion::CannotTell { likely } => likely.iter().map(|part| part.lru.clone()).collect(),
-        Conclusion::NoFault { .. }
-        | Conclusion::NothingSeen { .. }
-        | Conclusion::BrokenOff
-        | Conclusion::NotWeighed => Vec::new(),
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use diagnosis::{Group, Measure, PartProbability, Shared};
+    use diagnosis::{Group, Measure, PartProbability};
     use ptu_report::words::Language;
 
     /// Goal: a diagnosis makes no failed run a sound unit, and no other run a part. Method: every pair of a run's verdict and what
@@ -153,18 +135,15 @@ mod tests {
         let words = &Language::English.words().case;
         let part: LruId = "eb_relay".parse().unwrap();
         let probability = 0.9;
-        let likely = |n| {
+        let cannot_tell = |n| {
             let lru = part.clone();
-            vec![PartProbability { lru, probability }; n]
-        };
-        let parts = [part.clone(), part.clone()];
-        let cause = || Shared {
-            part: part.clone(),
-            reaches: parts.to_vec(),
-            measure: Measure::default(),
+            Conclusion::CannotTell {
+                likely: vec![PartProbability { lru, probability }; n],
+                is_unlike_any: false,
+            }
         };
         let group = Group {
-            parts: parts.to_vec(),
+            parts: vec![part.clone(); 2],
             measure: Measure::default(),
         };
         let found = Conclusion::Found {
@@ -182,34 +161,8 @@ mod tests {
                 1,
             ),
             (Some(Conclusion::OneOf { group, probability }), 1),
-            (
-                Some(Conclusion::Common {
-                    cause: cause(),
-                    parts: parts.clone(),
-                    probability,
-                }),
-                1,
-            ),
-            (
-                Some(Conclusion::OneOrCommon {
-                    cause: cause(),
-                    part: part.clone(),
-                    probability,
-                    other: part.clone(),
-                }),
-                1,
-            ),
-            (Some(Conclusion::TwoFound { parts, probability }), 1),
-            (Some(Conclusion::CannotTell { likely: likely(3) }), 1),
-            (
-                Some(Conclusion::NotAlone {
-                    part: part.clone(),
-                    probability,
-                    other: part.clone(),
-                }),
-                1,
-            ),
-            (Some(Conclusion::CannotTell { likely: likely(0) }), 2),
+            (Some(cannot_tell(3)), 1),
+            (Some(cannot_tell(0)), 2),
             (Some(Conclusion::NoFault { probability }), 2),
             (Some(Conclusion::NothingSeen { made: 1, of: 2 }), 2),
             (Some(Conclusion::BrokenOff), 2),

@@ -30,10 +30,6 @@ pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &NamedAnswer) {
                 shown.push(candidate);
                 parts.insert(&candidate.lru);
             }
-            Possible::Both(two) => {
-                let said = fill(words.both, &[("faults", &two.faults.join(" + "))]);
-                likely(ui, probability, &said);
-            }
             Possible::NoFault => likely(ui, probability, words.no_fault),
         }
     }

@@ -9,14 +9,22 @@ fn no_more_parts_are_named_than_a_person_can_choose_from() {
         lru: name.parse().expect("a part"),
         probability: 0.2,
     };
-    let likely = ["a", "b", "c", "d", "e"].iter().map(part).collect();
-    let [english, korean] = concluded(&Conclusion::CannotTell { likely }, None, &[]);
+    let likely: Vec<_> = ["a", "b", "c", "d", "e"].iter().map(part).collect();
+    let cannot_tell = |is_unlike_any| Conclusion::CannotTell {
+        likely: likely.clone(),
+        is_unlike_any,
+    };
+    let [english, korean] = concluded(&cannot_tell(false), None, &[]);
     assert!(
         english.contains("c (20.0 %) or one of 2 more;"),
         "{english}"
     );
     assert!(korean.contains("c (20.0 %) 외 2개;"), "{korean}");
     assert!(!english.contains("d (") && !korean.contains("d ("));
+    let [unlike, unlike_ko] = concluded(&cannot_tell(true), None, &[]);
+    let examine = "like no fault that is known: examine the bench and its harness first; ";
+    assert_eq!(unlike, format!("{examine}{english}"));
+    assert!(unlike_ko.ends_with(&korean), "{unlike_ko}");
 }
 
 /// People know a part by its name, commands by its identifier.
@@ -41,15 +49,6 @@ fn a_part_is_called_by_its_name_with_its_identifier() {
     let [english, korean] = found("eb_relay", &names);
     assert_eq!(english, "replace the EB relay (eb_relay, 99.6 %)");
     assert_eq!(korean, "교체 대상: 비상제동 계전기 (eb_relay, 99.6 %)");
-    let two = Conclusion::TwoFound {
-        parts: [id("speed_sensor_1"), id("master_controller")],
-        probability: 0.96,
-    };
-    let [english, korean] = concluded(&two, None, &names);
-    let said = "perhaps two faults (96.0 %): replace speed sensor 1 (speed_sensor_1) and run again what failed; the master controller (master_controller) if something still fails";
-    assert_eq!(english, said);
-    let said = "복합 고장 추정 (96.0 %): 속도센서 1 (speed_sensor_1) 교체 후 불합격 항목을 다시 시험하고, 다시 불합격하면 주간제어기 (master_controller) 교체";
-    assert_eq!(korean, said);
     assert_eq!(found("relay", &names)[0], "replace relay (99.6 %)");
 }
 
@@ -57,58 +56,27 @@ fn a_part_is_called_by_its_name_with_its_identifier() {
 #[test]
 fn parts_that_are_not_told_apart_are_named_with_the_measurement() {
     let id = |id: &str| id.parse::<LruId>().expect("a part");
-    let measure = || diagnosis::Measure {
+    let measure = diagnosis::Measure {
         english: "record the frames".into(),
         korean: "전문을 기록합니다".into(),
     };
-    let cause = || diagnosis::Shared {
-        part: id("link"),
-        reaches: vec![id("sensor"), id("relay")],
-        measure: measure(),
+    let one_of = |measure| Conclusion::OneOf {
+        group: diagnosis::Group {
+            parts: vec![id("sensor"), id("relay")],
+            measure,
+        },
+        probability: 0.9,
     };
-    let group = diagnosis::Group {
-        parts: vec![id("sensor"), id("relay")],
-        measure: measure(),
-    };
-    let probability = 0.9;
-    let all = [
-        (
-            Conclusion::OneOf { group, probability },
-            "sensor or relay (90.0 %); to tell which, record the frames",
-            "sensor 또는 relay (90.0 %); 판별 방법: 전문을 기록합니다",
-        ),
-        (
-            Conclusion::Common {
-                cause: cause(),
-                parts: [id("sensor"), id("relay")],
-                probability,
-            },
-            "one cause at sensor and relay (90.0 %): link, its wiring, or a fault of each; to tell which, record the frames",
-            "sensor, relay에 공통된 원인 (90.0 %): link, 배선 또는 각각의 고장; 판별 방법: 전문을 기록합니다",
-        ),
-        (
-            Conclusion::OneOrCommon {
-                cause: cause(),
-                part: id("relay"),
-                probability,
-                other: id("sensor"),
-            },
-            "relay, or one cause at relay and sensor: link or its wiring; to tell which, record the frames",
-            "relay 또는 relay, sensor에 공통된 원인: link 또는 배선; 판별 방법: 전문을 기록합니다",
-        ),
-        (
-            Conclusion::NotAlone {
-                part: id("relay"),
-                probability,
-                other: id("antenna"),
-            },
-            "not certain yet: relay (90.0 %); a sign of a fault in antenna does not come from it",
-            "아직 확실하지 않습니다: relay (90.0 %); antenna 고장 징후는 이 고장으로 설명되지 않습니다",
-        ),
+    let said = concluded(&one_of(measure), None, &[]);
+    let expected = [
+        "sensor or relay (90.0 %); to tell which, record the frames",
+        "sensor 또는 relay (90.0 %); 판별 방법: 전문을 기록합니다",
     ];
-    for (conclusion, english, korean) in all {
-        assert_eq!(concluded(&conclusion, None, &[]), [english, korean]);
-    }
+    assert_eq!(said, expected);
+    let [swapped, _] = concluded(&one_of(diagnosis::Measure::default()), None, &[]);
+    let expected =
+        "sensor or relay (90.0 %); no check tells more: swap sensor and run again what failed";
+    assert_eq!(swapped, expected);
     let next = NextCheck {
         check: CheckName {
             procedure: "a/b".into(),

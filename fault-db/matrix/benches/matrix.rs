@@ -3,8 +3,8 @@
 //! At most 20 states × 20 tests the optimal one, 2 000 × 2 000 the greedy one; hard shapes beside
 //! random ones.
 
-use diagnosis::matrix::{Matrix, Method, PlanOptions, Posterior, State, Test, plan};
 use divan::Bencher;
+use matrix::{Matrix, Method, PlanOptions, Posterior, State, Test, plan};
 
 fn main() {
     divan::main();

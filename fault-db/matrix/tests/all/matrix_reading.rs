@@ -1,6 +1,6 @@
 //! Reading matrices and outcomes: what is wrong is named, and nothing that is read makes a panic.
 
-use diagnosis::matrix::{Matrix, Outcome, PlanOptions, Posterior, plan, read_outcomes};
+use ::matrix::{Matrix, Outcome, PlanOptions, Posterior, plan, read_outcomes};
 use proptest::prelude::*;
 
 const STATES: &str = r#"[{"id":"a","p":0.5},{"id":"b","p":0.5}]"#;

@@ -323,7 +323,7 @@ impl<'a> Grower<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::matrix::{Matrix, Posterior, State, Test};
+    use crate::{Matrix, Posterior, State, Test};
 
     /// 24 states × 24 tests, cells and costs from a seed.
     fn matrix(mut seed: u64) -> Matrix {

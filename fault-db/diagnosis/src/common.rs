@@ -1,75 +1,58 @@
-//! Two effects at once: of two faults, or of one cause at two parts that share something.
+//! One cause at several parts: a supply, a ground or a link that two of the parts which it reaches suffer from.
 //!
-//! A check passes under two effects only if it passes under each, and fails if either makes it fail. So a passed check
-//! has the lesser of the two likelihoods; any other result is that of one of them.
+//! A check passes under two effects only if it passes under each, and fails if either makes it fail (noisy-OR). So a passed
+//! check has the lesser of the two likelihoods; any other result is that of one of them.
 
-use protocol::Verdict;
+use std::collections::BTreeMap;
 
-use super::belief::{Belief, normalised};
-use super::model::{FIRST_EFFECT, Hypothesis, Model};
+use protocol::{LruId, Verdict};
+
+use super::belief::Belief;
+use super::model::{Hypothesis, Model};
 use super::observation::{Observation, ObservedStep};
 
 /// Number of best explaining modes, each of which is combined with all others.
 const MOST_EXPLAINING: usize = 12;
 
-/// Pairs that are less likely than this, beside the likeliest single fault, are nowhere seen.
-const LEAST_SHARE: f64 = 1e-12;
-
-/// Levels of two modes of different parts, and the probability of both.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair {
-    pub both: [Hypothesis; 2],
-    pub probability: f64,
-}
-
-/// The pairs worth reporting, the likeliest first, and the probabilities of the single hypotheses beside them.
-pub fn pairs(belief: &Belief<'_, '_>, seen: &Observation) -> (Vec<Pair>, Vec<f64>) {
+/// By how much two effects at once, of parts that a part reaches, explain a run better than any effect alone: logarithm of
+/// the likelihoods' ratio, by the part.
+pub fn gains<'m>(belief: &Belief<'m, '_>, seen: &Observation) -> BTreeMap<&'m LruId, f64> {
     let model = belief.model;
     let effects = model.effects();
-    let counted = Steps::new(belief, seen);
-    let mut ln = belief.ln();
-    let mut found = Vec::new();
-    let best = ln.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let worth_a_look = best + LEAST_SHARE.ln();
-    let explaining = counted.explaining(model);
+    let steps = Steps::new(belief, seen);
+    let evidence = |which: &[usize], ln_steps: f64| {
+        let modes: Vec<Hypothesis> = which.iter().map(|effect| effects[*effect]).collect();
+        ln_steps + belief.ln_residuals(which) + belief.signs().ln_under(model, &modes)
+    };
+    let alone = (0..effects.len()).map(|effect| evidence(&[effect], belief.ln_of_effect(effect)));
+    let alone = alone.fold(f64::NEG_INFINITY, f64::max);
+    let explaining = steps.explaining(model);
+    let mut gains: BTreeMap<&LruId, f64> = BTreeMap::new();
     for (i, first) in explaining.iter().enumerate().take(MOST_EXPLAINING) {
         for second in &explaining[i + 1..] {
-            let both = [effects[*first], effects[*second]];
-            // Two intermittent modes would explain any intermittent failure.
-            if both.iter().all(|mode| model.is_intermittent(*mode)) {
-                continue;
-            }
-            let [Some(one), Some(other)] = both.map(|mode| model.lru(mode)) else {
+            let parts = [first, second].map(|effect| model.lru(effects[*effect]));
+            let [Some(one), Some(other)] = parts else {
                 continue;
             };
-            if one == other {
+            let shared = model.relations.shared.iter();
+            let reach = shared.filter(|shared| {
+                one != other
+                    && [one, other]
+                        .iter()
+                        .all(|part| shared.reaches.contains(part))
+            });
+            let mut reach = reach.peekable();
+            if reach.peek().is_none() {
                 continue;
             }
-            let beside = match model.relations.shared_by([one, other]) {
-                Some(_) => model.settings.common_cause,
-                None => model.settings.second_fault,
-            };
-            let prior = model.ln_priors[FIRST_EFFECT + first]
-                + model.ln_priors[FIRST_EFFECT + second]
-                + beside.ln();
-            let ln = prior
-                + counted.ln_of_both(*first, *second)
-                + belief.ln_residuals(&[*first, *second]);
-            // Signs make nothing likelier.
-            if ln > worth_a_look {
-                found.push((both, ln + belief.signs().ln_under(model, &both)));
+            let gain = evidence(&[*first, *second], steps.ln_of_both(*first, *second)) - alone;
+            for shared in reach {
+                let best = gains.entry(&shared.part).or_default();
+                *best = best.max(gain);
             }
         }
     }
-    let singles = ln.len();
-    ln.extend(found.iter().map(|(_, ln)| ln));
-    let mut single = normalised(&ln);
-    let of_pairs = single.split_off(singles);
-    let found = found.into_iter().zip(of_pairs);
-    let pair = |((both, _), probability)| Pair { both, probability };
-    let mut found: Vec<Pair> = found.map(pair).collect();
-    found.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    (found, single)
+    gains
 }
 
 /// What the steps tell of each two effects.
@@ -87,7 +70,6 @@ struct StrangeStep<'b> {
     /// Probability of its result under each effect, and that times the likelihood.
     weighted: Vec<(f64, f64)>,
 }
-
 impl<'b> Steps<'b> {
     fn new(belief: &'b Belief<'_, '_>, seen: &Observation) -> Self {
         let model = belief.model;

@@ -1,6 +1,6 @@
 //! Decision trees against exhaustive search and against a walk of every state through them.
 
-use diagnosis::matrix::{
+use ::matrix::{
     Matrix, Method, Node, Outcome, Plan, PlanOptions, Posterior, State, Test, Tree, plan,
 };
 

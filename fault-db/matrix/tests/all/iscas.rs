@@ -3,7 +3,7 @@
 //!
 //! `tests/iscas/make.py` writes them from the circuits, and checks these against what is printed of them.
 
-use diagnosis::matrix::{Matrix, Method, Node, State, Test};
+use ::matrix::{Matrix, Method, Node, State, Test};
 
 use super::matrix::{Dice, near, planned, walked};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use diagnosis::matrix::{Matrix, Method, Node, Outcome, Posterior};
+use ::matrix::{Matrix, Method, Node, Outcome, Posterior};
 use diagnosis::{
     Basis, CheckName, Diagnosis, Dictionary, Finding, ModeName, Model, Observation, ObservedStep,
     Settings,
@@ -219,7 +219,7 @@ fn a_dictionary_counted_from_tests_that_err_is_not_surer_than_it_may_be() {
             let tests = some(count, matrix.tests().len(), &mut dice);
             let seen = run(&matrix, state, &tests, &mut dice);
             let answer = Diagnosis::of(&model, &seen);
-            let likeliest = &answer.lrus[0];
+            let likeliest = &answer.parts[0];
             let is_it = state != 0 && likeliest.lru == part(&matrix, state).as_str();
             match answer.no_fault > likeliest.probability {
                 true => bands.add(answer.no_fault, state == 0),

@@ -20,7 +20,7 @@ mod bits;
 mod crisp;
 mod error;
 mod greedy;
-pub(crate) mod information;
+mod information;
 mod model;
 mod noisy;
 mod plan;

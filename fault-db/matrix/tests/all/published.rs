@@ -6,7 +6,7 @@
 //! examples are written from memory, no result is quoted, and each expected value follows from the definition by
 //! trying everything.
 
-use diagnosis::matrix::{Matrix, Method, Outcome, Posterior, State, Test};
+use ::matrix::{Matrix, Method, Outcome, Posterior, State, Test};
 
 use super::matrix::{exhaustive_crisp, exhaustive_noisy, near, planned};
 
