@@ -3,7 +3,7 @@
 
 use protocol::injection::Place;
 
-use crate::front_end::Faults;
+use crate::faults::Faults;
 
 macro_rules! guards {
     ($($(#[$doc:meta])* $name:ident: $place:ident,)*) => {

@@ -17,7 +17,6 @@ mod jog_guard;
 mod mode;
 mod overspeed;
 mod sides;
-mod speedometer;
 mod stop_and_proceed;
 mod tachometers;
 mod yard;
@@ -49,7 +48,6 @@ pub use doors::{DoorInputs, Doors};
 pub use emergency::{BrakeInputs, EmergencyBrake};
 pub use mode::{ModeInputs, ModeSequence};
 pub use overspeed::{Overspeed, OverspeedSupervision, SupervisedMotion};
-pub use speedometer::Speedometer;
 pub use tachometers::Tachometers;
 
 /// What the other parts tell ATP for a scan.

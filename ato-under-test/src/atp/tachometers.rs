@@ -6,9 +6,9 @@ use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
 use crate::atp::belief::{Belief, Witness};
-use crate::atp::speedometer::Speedometer;
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
+use crate::speedometer::Speedometer;
 use crate::timer::{Edge, OnDelay};
 
 /// A channel slower than this beside a turning one counts as dead rather than as different.

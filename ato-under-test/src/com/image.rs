@@ -3,8 +3,8 @@
 use protocol::message::{Crosstalk, IoInput};
 use protocol::{Duration, Instant};
 
-use crate::front_end::at_rate;
 use crate::receivers::Sampled;
+use crate::timer::at_rate;
 
 /// Time without a frame after which a second code counts as gone: two are lost.
 const CROSSTALK_LASTS: Duration = Duration::from_ms(150);

@@ -4,7 +4,6 @@
 
 mod delay_queue;
 mod effort;
-mod faults;
 mod outputs;
 mod relay_watch;
 mod sensors;
@@ -13,20 +12,21 @@ mod supply;
 
 use protocol::injection::{Effect, Place};
 use protocol::message::{IoInput, ModeSwitch, TrainLines};
-use protocol::{Duration, Instant, SCAN};
+use protocol::{Duration, Instant};
 
 pub use delay_queue::DelayQueue;
 pub use effort::EffortOutput;
-pub use faults::Faults;
 pub use outputs::OutputStage;
 pub use relay_watch::RelayWatch;
 pub use sensors::PulseSensor;
 pub use stored_data::apply_stored_data_faults;
-pub use supply::{PowerAndClock, Supply, at_rate};
+pub use supply::{PowerAndClock, Supply};
 
 use crate::com::IoImage;
+use crate::faults::Faults;
 use crate::signals::{AntennaSignal, Inputs, MarkerPulse, Pulses};
 use crate::test_board::TestBoard;
+use crate::timer::at_rate;
 
 /// The inputs of one scan, with the test signals and without.
 #[derive(Clone, Copy, Debug, Default)]
@@ -332,9 +332,4 @@ fn lines(mut lines: TrainLines, faults: &Faults) -> TrainLines {
         }
     }
     lines
-}
-
-/// Events of a Poisson process of `per_s` in one scan, at most one.
-pub(crate) fn one_in_scan(per_s: f64) -> f64 {
-    per_s * SCAN.as_secs()
 }

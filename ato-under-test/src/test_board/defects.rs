@@ -2,7 +2,7 @@
 
 use protocol::injection::{Effect, Place};
 
-use crate::front_end::Faults;
+use crate::faults::Faults;
 use crate::signals::AntennaSignal;
 
 /// The board's faults of the present scan.

@@ -4,8 +4,8 @@
 use protocol::message::TestSpeed;
 use protocol::{Duration, Instant, SCAN, Speed};
 
-use crate::atp::Speedometer;
 use crate::signals::Pulses;
+use crate::speedometer::Speedometer;
 
 /// Acceleration when none is asked for, mm/s².
 const OWN_ACCEL_MMS2: u16 = 3000;

@@ -22,9 +22,10 @@ use protocol::{Duration, Instant};
 
 use crate::com::{IoImage, Maintenance, Port, Ports, RejectWatch, TcmsLink};
 use crate::driverless::Stabling;
+use crate::faults::Faults;
 use crate::flash::{BlockDevice, Memory, RamFlash};
 use crate::front_end::{
-    DelayQueue, Faults, FrontEnd, OutputStage, PowerAndClock, RelayWatch, ScannedInputs, Supply,
+    DelayQueue, FrontEnd, OutputStage, PowerAndClock, RelayWatch, ScannedInputs, Supply,
     apply_stored_data_faults, atp_gain,
 };
 use crate::guards::Guards;

@@ -4,12 +4,13 @@ use protocol::Instant;
 use protocol::event::Event;
 
 use super::Driver;
-use super::action_run::{Problem, Scan};
 use super::condition::{Answer, MissingData};
 use super::describe::bits_seen;
 use super::evidence::LogState;
 use super::finding::Finding;
 use super::plan::Expectation;
+use super::problem::Problem;
+use super::scan::Scan;
 
 /// What is known about an expectation so far.
 #[derive(Clone, Debug, Default)]

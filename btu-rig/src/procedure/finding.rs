@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 pub use super::condition::MissingData;
 use super::link_trouble::LinkTrouble;
-use super::plan::{Condition, Expectation};
+use super::plan::{Condition, Connection, Expectation};
 use super::{EventSource, UnitEvent};
 pub use list::{Findings, Found};
 
@@ -319,6 +319,14 @@ pub enum WaitedFor {
     /// The end of its actions.
     Actions,
     Expectation(Expectation),
+}
+
+impl Connection {
+    /// Why what needs this connection cannot be done on another, if so: the harness can do all that the
+    /// maintenance port can.
+    pub fn lacks(self, on: Self) -> Option<Finding> {
+        (self == Self::Btu && on == Self::Ptu).then_some(Finding::NeedsHarness)
+    }
 }
 
 impl Finding {

@@ -21,10 +21,13 @@ pub mod link_trouble;
 pub mod loader;
 mod measure_run;
 mod names;
+pub mod operator;
 pub mod origin;
 pub mod plan;
+mod problem;
 pub mod report;
 pub mod runner;
+mod scan;
 mod step_run;
 mod step_verdict;
 mod unit_clock;
@@ -41,10 +44,11 @@ pub use evidence::{Evidence, LineState, LogState, UnitTime, UnitTimeBounds};
 pub use finding::{Finding, Findings};
 pub use loader::{LoadError, Loaded, Scripts};
 pub use names::spoken;
+pub use operator::PromptPolicy;
 pub use plan::{Procedure, Step};
 pub use protocol::Verdict;
 pub use report::{Measurement, Outside, OutsideStep, ResultKind, RunEvent, StepResult};
-pub use runner::{Poll, PromptPolicy, RunOptions, Runner};
+pub use runner::{Poll, RunOptions, Runner};
 
 use crate::stimulus::Stimulus;
 

@@ -7,7 +7,6 @@ use protocol::{Duration, LruId};
 use serde::{Deserialize, Serialize};
 
 pub use super::condition::{Comparison, Condition, Operand};
-use super::finding::Finding;
 use super::origin::Origin;
 use crate::stimulus::Stimulus;
 
@@ -21,12 +20,6 @@ pub enum Connection {
 }
 
 impl Connection {
-    /// Why what needs this connection cannot be done on another, if so: the harness can do all that the
-    /// maintenance port can.
-    pub fn lacks(self, on: Self) -> Option<Finding> {
-        (self == Self::Btu && on == Self::Ptu).then_some(Finding::NeedsHarness)
-    }
-
     pub fn word(self) -> &'static str {
         match self {
             Self::Btu => "harness",

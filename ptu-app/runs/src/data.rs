@@ -7,6 +7,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use btu_rig::bench_scatter::BenchScatter;
+use btu_rig::train::TrainData;
 use fault_db::read_regular_file;
 use protocol::config::{UnitConfig, checksum};
 use protocol::injection::{FaultCatalogue, FaultMode};
@@ -14,7 +15,6 @@ use protocol::line::{self, Line};
 use script_files::{Found, Place, ScriptFiles};
 use sha2::{Digest, Sha256};
 
-use crate::drive::train::train;
 use crate::failure::{Failure, FileTrouble, Unknown, Why, did_you_mean};
 use crate::new_file::{Kind, NewFile, cannot_write, head, kind};
 use crate::owner_only;
@@ -183,6 +183,20 @@ impl ScriptsDirectory {
         })
     }
 
+    /// The train called `name` in `trains/`, or of a file.
+    ///
+    /// # Errors
+    /// There is none, or it is wrong.
+    pub fn train(&self, name: &str) -> Result<TrainData, Failure> {
+        if !name.ends_with(".toml") {
+            return Ok(self
+                .load("trains", name, "train", TrainData::from_toml)?
+                .content);
+        }
+        TrainData::from_toml(&read(Path::new(name))?)
+            .map_err(|error| Failure::usage(FileTrouble::wrong(name, error)))
+    }
+
     /// The bench file `benches/NAME.toml`, or a file ending in .toml, with the drivers of its instruments.
     ///
     /// # Errors
@@ -255,7 +269,7 @@ impl ScriptsDirectory {
             self.line(name)?;
         }
         for name in &trains {
-            train(self, name)?;
+            self.train(name)?;
         }
         let (benches, models) = (self.names("benches"), self.names(INSTRUMENTS));
         for name in &benches {

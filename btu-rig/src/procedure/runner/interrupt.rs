@@ -5,9 +5,9 @@ use protocol::signal::Sample;
 
 use super::{Phase, Runner, Stop};
 use crate::procedure::Verdict;
-use crate::procedure::action_run::Problem;
 use crate::procedure::finding::Finding;
 use crate::procedure::link_trouble::LinkTrouble;
+use crate::procedure::problem::Problem;
 use crate::procedure::report::Outside;
 
 impl Runner {

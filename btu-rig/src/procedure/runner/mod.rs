@@ -22,16 +22,18 @@ use protocol::{Duration, Instant, LruId};
 pub use attempts::{ATTEMPTS, Resume};
 pub use closing::{CLEANUP_WITHOUT_LINK, SAFE_WITHIN};
 use pause::Pause;
-pub use schedule::{PromptPolicy, RunOptions};
+pub use schedule::RunOptions;
 use schedule::{ScheduledStep, schedule};
 
-use super::action_run::{ActionRun, Operator, Progress, Scan};
+use super::action_run::{ActionRun, Progress};
 use super::event_set::EventSet;
 use super::evidence::Evidence;
 use super::finding::{Before, Finding, Findings};
 use super::link_trouble::LinkTrouble;
+use super::operator::Operator;
 use super::plan::{Procedure, Step};
 use super::report::{Outside, OutsideStep, RunEvent};
+use super::scan::Scan;
 use super::step_run::StepRun;
 use super::{Driver, UnitEvent, Verdict};
 

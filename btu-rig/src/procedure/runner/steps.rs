@@ -6,12 +6,14 @@ use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
 use super::schedule::ScheduledStep;
-use super::{Phase, PromptPolicy, Runner};
-use crate::procedure::action_run::{ActionRun, Scan};
+use super::{Phase, Runner};
+use crate::procedure::PromptPolicy;
+use crate::procedure::action_run::ActionRun;
 use crate::procedure::condition::Answer;
 use crate::procedure::finding::Finding;
 use crate::procedure::plan::{Action, OnFail, Step};
 use crate::procedure::report::{ResultKind, RunEvent, StepResult};
+use crate::procedure::scan::Scan;
 use crate::procedure::step_run::StepRun;
 use crate::procedure::{Driver, Verdict};
 

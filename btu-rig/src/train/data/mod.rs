@@ -1,13 +1,10 @@
-//! Train files (`scripts/trains/`): read, checked, and kept as data. A train is a point mass or a train of
-//! cars.
+//! Data of a train, a point mass or a train of cars, as in the files of `scripts/trains/`.
 
 mod cars;
 mod doors;
 
-use protocol::config::ConfigError;
 use serde::{Deserialize, Serialize};
 
-use super::check;
 use crate::tcms::TcmsData;
 
 pub use cars::{
@@ -68,35 +65,7 @@ pub struct IdealData {
     pub tcms: TcmsData,
 }
 
-/// The one key all models have.
-#[derive(Deserialize, schemars::JsonSchema)]
-struct Kind {
-    model: String,
-}
-
 impl TrainData {
-    /// Reads and checks a train file.
-    ///
-    /// # Errors
-    /// The first thing wrong: syntax with line and column, or a train that cannot be.
-    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
-        let Kind { model } = parse(text)?;
-        let data = match model.as_str() {
-            "ideal" => Self::Ideal(parse(text)?),
-            "cars" => Self::Cars(parse(text)?),
-            _ => {
-                return Err(ConfigError::Conflict(format!(
-                    "model \"{model}\" must be ideal or cars"
-                )));
-            }
-        };
-        match &data {
-            Self::Ideal(ideal) => check::ideal(ideal)?,
-            Self::Cars(cars) => check::cars(cars)?,
-        }
-        Ok(data)
-    }
-
     /// The train of eight cars of line 6 (S3).
     ///
     /// # Panics
@@ -165,10 +134,6 @@ impl TrainData {
             }
         }
     }
-}
-
-fn parse<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ConfigError> {
-    toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))
 }
 
 fn built_in(text: &str) -> TrainData {

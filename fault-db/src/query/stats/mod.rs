@@ -13,6 +13,7 @@ mod on_server;
 use serde::Serialize;
 
 pub(crate) use counts::Bins;
+pub use counts::StatKey;
 use counts::{Counts, CountsByKey, Key};
 use exposure::{Exposure, Observed};
 
@@ -20,26 +21,6 @@ use super::fault_filter::{FaultFilter, Resolved};
 use crate::backend::{Backend, values};
 use crate::error::StoreError;
 use crate::store::Store;
-
-/// Microseconds of an hour.
-const HOUR_US: f64 = 3.6e9;
-
-/// The key by which faults are counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum StatKey {
-    /// The fault's number.
-    Code,
-    /// The part it points at.
-    Lru,
-    /// The part it comes from; what one part explains is one case, and counted once.
-    Cause,
-    /// The unit that had it.
-    Unit,
-    /// The line its unit was on.
-    Line,
-    /// No key: all faults in one count.
-    All,
-}
 
 /// Selects the faults to count.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -72,7 +72,7 @@ impl Request {
     pub fn cases(&self, directory: &ScriptsDirectory) -> Result<Vec<Case>, Failure> {
         self.fixed.check()?;
         self.one_controller_setting()?;
-        let mut train = train::train(directory, &self.train)?;
+        let mut train = directory.train(&self.train)?;
         train::check_acts(&train, &self.fixed)?;
         let load_kg = train::load(&mut train, self.mass_kg, self.load)?;
         let fixed = Fixed {

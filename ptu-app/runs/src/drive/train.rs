@@ -1,15 +1,12 @@
 //! The train of a run: its file, its mass, and the parameters the unit is given for it.
 
-use std::path::Path;
-
 use btu_rig::conditions::Conditions;
 use btu_rig::drive::Load;
 use btu_rig::train::{IdealData, TrainData};
 use protocol::config::UnitConfig;
 
 use super::{Fixed, Setting};
-use crate::data::{ScriptsDirectory, read};
-use crate::failure::{DriveTrouble, Failure, FileTrouble};
+use crate::failure::{DriveTrouble, Failure};
 
 /// Least and greatest mass of an ideal train, kg.
 const IDEAL_KG: (f64, f64) = (1e4, 2e6);
@@ -17,20 +14,6 @@ const IDEAL_KG: (f64, f64) = (1e4, 2e6);
 const NO_BASE_SPEED_KMH: f64 = 130.0;
 /// Highest jerk a unit can be given, m/s³: none at all.
 const NO_JERK_LIMIT_MPS3: f64 = 100.0;
-
-/// The train called `name` in `trains/`, or of a file.
-///
-/// # Errors
-/// There is none, or it is wrong.
-pub fn train(directory: &ScriptsDirectory, name: &str) -> Result<TrainData, Failure> {
-    if !name.ends_with(".toml") {
-        return Ok(directory
-            .load("trains", name, "train", TrainData::from_toml)?
-            .content);
-    }
-    TrainData::from_toml(&read(Path::new(name))?)
-        .map_err(|error| Failure::usage(FileTrouble::wrong(name, error)))
-}
 
 /// Gives the train a total mass: an ideal train is built so heavy, a train of cars is loaded so
 /// far. The passengers aboard come back, if anything was said of them.

@@ -16,7 +16,6 @@ use serde::{Deserialize, Serialize};
 use super::bench_setup::BenchSetup;
 use super::event::RecordedStimuli;
 use crate::data::{ScriptsDirectory, sha256};
-use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
 use crate::failure::{Exit, Failure, RecordTrouble};
 use crate::fleet;
@@ -165,7 +164,7 @@ impl BenchContents {
             unit_config(directory, &self.unit_config.name, &settings),
         )?;
         let line = gone("line", &self.line, directory.line(&self.line.name))?;
-        let train = gone("train", &self.train, train(directory, &self.train.name))?;
+        let train = gone("train", &self.train, directory.train(&self.train.name))?;
         for (what, made, found) in [
             ("unit configuration", &self.unit_config, &config.sha256),
             ("line", &self.line, &line.sha256),

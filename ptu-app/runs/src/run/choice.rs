@@ -16,7 +16,6 @@ use serde::{Deserialize, Serialize};
 use super::bench_setup::BenchSetup;
 use super::signals::Signals;
 use crate::data::ScriptsDirectory;
-use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
 use crate::failure::{Asked, Failure, RunTrouble};
 use crate::fleet;
@@ -154,7 +153,7 @@ impl BenchChoice {
         };
         let config = unit_config(directory, &self.unit_config, &self.settings)?;
         let line = directory.line(&self.line)?;
-        let train = train(directory, &self.train)?;
+        let train = directory.train(&self.train)?;
         check_places(&faults, &train)
             .map_err(|wrong| Failure::usage(RunTrouble::Misplaced(wrong.to_string())))?;
         let scatter = match self.scatter {

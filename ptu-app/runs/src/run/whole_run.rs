@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{Finding, Outside, OutsideStep};
-use fault_db::{Instrument, RunEnd, RunRecord, StepCounter, Store, UnitRecord, Verdict};
+use fault_db::{Instrument, RunRecord, StepCounter, Store, UnitRecord, Verdict};
 use protocol::{Duration, Instant};
 
 use super::adaptive;
@@ -16,9 +16,9 @@ use super::first_failure::FirstFailure;
 use super::instruments;
 use super::plan::{Adaptive, ProcedureStream, RunPlan, Task, different_steps};
 use super::repaired::trace_repaired;
+use super::run_start::RunStart;
 use super::store_thread::RunStore;
 use super::workers;
-use crate::clock;
 use crate::failure::{Exit, Failure, RunTrouble, prevented_by};
 use crate::platform;
 use crate::stop::Stop;
@@ -278,40 +278,5 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
                 sha256: task.procedure.sha256.clone(),
             })
             .collect(),
-    }
-}
-
-/// When a run began. All dates of the run follow from this one and the time since, so that a clock that is set meanwhile
-/// changes none of them.
-#[derive(Clone, Copy)]
-pub struct RunStart {
-    at_us: i64,
-    at: std::time::Instant,
-}
-
-impl RunStart {
-    /// Now.
-    pub fn now() -> Self {
-        Self {
-            at_us: clock::now_us(),
-            at: std::time::Instant::now(),
-        }
-    }
-
-    /// The present time, microseconds since 1970.
-    pub(super) fn now_us(&self) -> i64 {
-        let since_us = i64::try_from(self.at.elapsed().as_micros()).unwrap_or(i64::MAX);
-        self.at_us.saturating_add(since_us)
-    }
-
-    /// The end of the run, now.
-    pub fn end(&self, verdict: Verdict, bench_time_us: i64) -> RunEnd {
-        let finished_at_us = self.now_us();
-        RunEnd {
-            verdict,
-            finished_at_us,
-            bench_time_us,
-            wall_time_us: finished_at_us - self.at_us,
-        }
     }
 }

@@ -5,14 +5,10 @@ use protocol::LruId;
 use protocol::injection::Lru;
 
 use super::super::names;
-use super::diagnosis::{Both, checked};
+use super::both::{Both, both, checked};
 
 /// Parts named at most where it cannot be told which one has failed.
 const MOST_NAMED: usize = 3;
-
-pub(super) fn both<const N: usize>(texts: [(&str, &str); N]) -> [Both; N] {
-    texts.map(|(english, korean)| [english.to_owned(), korean.to_owned()])
-}
 
 pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names: &[Lru]) -> Both {
     let [said, said_ko] = answered(conclusion, next.is_some(), names);

@@ -6,14 +6,12 @@ use protocol::LruId;
 use protocol::injection::Lru;
 use ptu_runs::run_diagnosis::Answer;
 
-use super::super::{Words, content};
+use super::super::Words;
+use super::both::checked;
 use super::conclusion::{all_called, concluded, tells};
 use super::reasons::{
     deviated, deviated_share, fault_text, logged, step_expected, step_found, told,
 };
-
-/// The same in English and in Korean.
-pub(super) type Both = [String; 2];
 
 impl Words {
     /// What a diagnosis comes to, and what to run next.
@@ -70,10 +68,4 @@ impl Words {
             Reason::Logged(_) | Reason::Known(_) => None,
         }
     }
-}
-
-/// Procedure and step.
-pub(super) fn checked(check: &CheckName) -> Both {
-    let korean = content::korean(&check.step);
-    [check.to_string(), format!("{}: {korean}", check.procedure)]
 }

@@ -1,5 +1,6 @@
 //! Sentences that are made of data, one match for each kind: what is added to the data does not compile without its words.
 
+mod both;
 mod conclusion;
 pub(super) mod condition;
 mod damage;

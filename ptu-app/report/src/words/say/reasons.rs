@@ -8,8 +8,7 @@ use ptu_runs::clock::local_day;
 use ptu_runs::stored::findings;
 
 use super::super::{Language, content, names};
-use super::conclusion::both;
-use super::diagnosis::{Both, checked};
+use super::both::{Both, both, checked};
 use super::finding;
 
 pub(super) fn fault_text(text: &FaultText) -> Both {

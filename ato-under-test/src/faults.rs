@@ -100,6 +100,11 @@ impl Faults {
     }
 }
 
+/// Events of a Poisson process of `per_s` in one scan, at most one.
+pub fn one_in_scan(per_s: f64) -> f64 {
+    per_s * SCAN.as_secs()
+}
+
 #[cfg(test)]
 mod tests {
     use protocol::injection::Occurrence;
