@@ -10,7 +10,7 @@ const DECEL_SCANS: usize = 50;
 
 /// What is known of the service brake in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Proof {
+pub struct BrakeState {
     /// Deceleration, negative while the train gains speed, mm/s².
     pub decel_mms2: i32,
     /// The train slows as a braked one.
@@ -58,7 +58,7 @@ impl BrakeProof {
         speed: Speed,
         demand: Demand,
         config: &OverspeedConfig,
-    ) -> Proof {
+    ) -> BrakeState {
         let before = core::mem::replace(&mut self.history[self.at], speed.mps());
         self.at = (self.at + 1) % DECEL_SCANS;
         let decel_mps2 = (before - speed.mps()) / (DECEL_SCANS as f64 * protocol::SCAN.as_secs());
@@ -73,7 +73,7 @@ impl BrakeProof {
         let measurable = self.measurable.update(now, demand.measurable, delay);
         let time = Duration::from_ms(u64::from(config.brake_proof_ms));
         let waited = self.demanded.update(now, demand.holds, time);
-        Proof {
+        BrakeState {
             decel_mms2: libm::round(decel_mps2 * 1000.0) as i32,
             proved,
             ineffective: waited && measurable && !self.effective,

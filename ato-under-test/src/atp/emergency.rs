@@ -7,7 +7,7 @@ use protocol::Instant;
 use protocol::event::Event;
 use protocol::message::EbCause;
 
-use super::Proof;
+use super::BrakeState;
 use crate::kernel::EventLog;
 use crate::timer::Edge;
 
@@ -18,7 +18,7 @@ pub struct BrakeInputs {
     pub cause: EbCause,
     /// Speed above the limit, cm/s.
     pub excess_cms: i32,
-    pub proof: Proof,
+    pub proof: BrakeState,
     pub standstill: bool,
     /// Standstill, and no pulse, or a lone one, for the time of standstill.
     pub still: bool,

@@ -40,7 +40,7 @@ use stop_and_proceed::{ProceedInputs, StopAndProceed};
 use yard::Yard;
 
 pub use belief::Witness;
-pub use brake_proof::{BrakeProof, Demand, Proof};
+pub use brake_proof::{BrakeProof, BrakeState, Demand};
 pub use causes::shown_cause;
 pub use code::{Code, CodeDecoder, lookup};
 pub use door_lines::DoorLines;

@@ -11,7 +11,7 @@ use protocol::config::{OverspeedConfig, UnitConfig};
 use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
-use super::Proof;
+use super::BrakeState;
 use crate::kernel::EventLog;
 use crate::timer::{Edge, OnDelay};
 
@@ -110,7 +110,7 @@ impl OverspeedSupervision {
         &mut self,
         now: Instant,
         motion: SupervisedMotion,
-        proof: Proof,
+        proof: BrakeState,
         margins: &OverspeedConfig,
     ) -> bool {
         let in_grace =
@@ -192,7 +192,7 @@ mod tests {
                 moves: true,
             };
             let found = one.step(now, motion, &config, &mut log);
-            let beyond = one.emergency(now, motion, Proof::default(), &config.overspeed);
+            let beyond = one.emergency(now, motion, BrakeState::default(), &config.overspeed);
             (found.service_brake, beyond)
         };
         assert_eq!(scan(40.0, 40.0), (false, false));

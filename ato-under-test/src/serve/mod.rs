@@ -26,7 +26,7 @@ pub use serial_end::{PORT_WAITS, SerialEnd};
 pub use sound::{DEFAULT, Listener, carrier, is_there};
 pub use steady::{Pair, Steady, TAPS};
 pub use tcp::{NO_AUTHENTICATION, check_exposed};
-pub use wire::{Place, Wire};
+pub use wire::{PortAddress, Wire};
 
 /// What is at the far end of a wire.
 pub trait Served {

@@ -5,7 +5,7 @@ use ptu_runs::signal::{
 };
 use ptu_runs::table::Table as TextTable;
 
-use crate::plot::{Place, Plot, Raster, Series, Style};
+use crate::plot::{AxisMark, Plot, Raster, Series, Style};
 use crate::run::block::{self, Align, Block, Column, Row, RowKind, Tone};
 use crate::run::{Paper, Printed};
 use crate::words::{Words, fill};
@@ -343,7 +343,7 @@ fn spectrogram(picture: &Picture, (reading, channel): (&Reading, usize), words: 
     let heard = heard.filter(|source| source.channel == channel + 1);
     let places = heard.take(MOST_NAMED).map(|source| {
         let [.., name, _, _, _, _] = row(source, words);
-        Place {
+        AxisMark {
             x: source.from_s,
             name,
         }

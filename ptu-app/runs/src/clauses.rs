@@ -39,7 +39,7 @@ pub(crate) struct Written {
 
 /// A clause with its proof.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Proof {
+pub struct ClauseProof {
     /// Its name.
     pub clause: String,
     /// Where it is from.
@@ -60,7 +60,7 @@ pub struct Proof {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Matrix {
     /// In the order of the file.
-    pub clauses: Vec<Proof>,
+    pub clauses: Vec<ClauseProof>,
     /// Clauses that no step of the suite proves.
     pub clauses_without_step: Vec<String>,
     /// Steps of the suite that cite no clause.
@@ -112,7 +112,7 @@ pub fn matrix(clauses: &[Clause], dictionary: &Dictionary) -> Matrix {
             .flat_map(|place| failing[*place].clone())
             .collect();
         let unproved = places.iter().filter(|place| failing[**place].is_empty());
-        proofs.push(Proof {
+        proofs.push(ClauseProof {
             clause: clause.id.clone(),
             source: clause.source.clone(),
             text: clause.text.clone(),

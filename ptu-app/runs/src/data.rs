@@ -12,7 +12,7 @@ use fault_db::read_regular_file;
 use protocol::config::{UnitConfig, checksum};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use protocol::line::{self, Line};
-use script_files::{Found, Place, ScriptFiles};
+use script_files::{Found, Layer, ScriptFiles};
 use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, FileTrouble, Unknown, Why, did_you_mean};
@@ -67,7 +67,7 @@ impl ScriptsDirectory {
     }
 
     /// The places it is found in, the first of which wins.
-    pub fn places(&self) -> &[Place] {
+    pub fn places(&self) -> &[Layer] {
         self.0.places()
     }
 

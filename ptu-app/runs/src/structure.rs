@@ -21,7 +21,7 @@ use serde::Deserialize;
 
 use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, FileTrouble};
-pub use chain::{Chain, Link, Made};
+pub use chain::{Chain, Link, LinkOutput};
 
 /// Where it stands in the scripts directory.
 pub const FILE: &str = "units/structure.toml";

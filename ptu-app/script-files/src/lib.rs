@@ -9,7 +9,7 @@ mod place;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-pub use place::{Found, Place, embed, own_folder};
+pub use place::{Found, Layer, embed, own_folder};
 
 /// Most files and folders in the places together.
 const MOST_ENTRIES: usize = 100_000;
@@ -43,7 +43,7 @@ impl ScriptsError {
 
 /// Where all procedures and data files are: a file is taken from the first place that has it.
 #[derive(Clone, Debug)]
-pub struct ScriptFiles(Vec<Place>);
+pub struct ScriptFiles(Vec<Layer>);
 
 impl ScriptFiles {
     /// The folder given, alone; else `./scripts` or `scripts` above the program, alone; else the user's own files over
@@ -54,7 +54,7 @@ impl ScriptFiles {
     pub fn find(given: Option<&Path>) -> Result<Self, ScriptsError> {
         if let Some(folder) = given {
             return match folder.is_dir() {
-                true => Ok(Self(vec![Place::Folder(folder.to_owned())])),
+                true => Ok(Self(vec![Layer::Folder(folder.to_owned())])),
                 false => Err(ScriptsError::NotADirectory(folder.to_owned())),
             };
         }
@@ -64,7 +64,7 @@ impl ScriptFiles {
             .map(|place| place.join("scripts"))
             .find(|folder| folder.join("units").is_dir());
         Ok(match beside {
-            Some(folder) => Self(vec![Place::Folder(folder)]),
+            Some(folder) => Self(vec![Layer::Folder(folder)]),
             None => Self::layered(own_folder().into_iter().chain(place::system_folders())),
         })
     }
@@ -74,14 +74,14 @@ impl ScriptFiles {
         let folders = folders.into_iter().filter(|folder| folder.is_dir());
         Self(
             folders
-                .map(Place::Folder)
-                .chain([Place::Embedded])
+                .map(Layer::Folder)
+                .chain([Layer::Embedded])
                 .collect(),
         )
     }
 
     /// The places, the first of which wins.
-    pub fn places(&self) -> &[Place] {
+    pub fn places(&self) -> &[Layer] {
         &self.0
     }
 

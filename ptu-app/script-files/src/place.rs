@@ -24,7 +24,7 @@ fn embedded() -> Embedded {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum Layer {
     /// A folder on the disk.
     Folder(PathBuf),
     /// What the program carries with it.
@@ -59,7 +59,7 @@ pub(crate) fn system_folders() -> Vec<PathBuf> {
         .into()
 }
 
-impl Place {
+impl Layer {
     pub(crate) fn file(&self, name: &str) -> Option<Found> {
         match self {
             Self::Folder(folder) => {
@@ -123,7 +123,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Layer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Folder(folder) => folder.display().fmt(f),
@@ -137,7 +137,7 @@ impl Found {
     pub fn shown(&self) -> String {
         match self {
             Self::File(path) => path.display().to_string(),
-            Self::Embedded(name, _) => Place::Embedded.shown(name),
+            Self::Embedded(name, _) => Layer::Embedded.shown(name),
         }
     }
 }

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::print_out;
+use ptu_runs::batch::{Keep, Shard};
 use ptu_runs::data::check_writable;
 use ptu_runs::failure::{Exit, Failure, KeepTrouble};
-use ptu_runs::kept::{Keep, Shard};
 use ptu_runs::new_file::kind;
 
 /// Where runs are kept, and which are made here.

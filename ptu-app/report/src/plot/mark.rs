@@ -11,7 +11,7 @@ pub enum Role {
     Tick,
     /// Name of a curve.
     Legend,
-    Place,
+    AxisMark,
     /// What a curve says at a point.
     Note,
     /// Line of the grid.

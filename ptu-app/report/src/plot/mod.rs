@@ -59,7 +59,7 @@ pub struct Series {
 
 /// A place on the horizontal axis.
 #[derive(Clone, Debug)]
-pub struct Place {
+pub struct AxisMark {
     pub x: f64,
     pub name: String,
 }
@@ -88,7 +88,7 @@ pub struct Plot {
     pub raster: Option<Raster>,
     /// Curves, the last on top.
     pub series: Vec<Series>,
-    pub places: Vec<Place>,
+    pub places: Vec<AxisMark>,
     /// Stretches of the horizontal axis that are shaded, each from its first end to its second.
     pub shaded: Vec<(f64, f64)>,
     /// Names at the vertical axis instead of values, each where it stands.
@@ -235,14 +235,14 @@ impl Plot {
         let mut marks = Vec::new();
         for place in self.places.iter().filter(|place| x.holds(place.x)) {
             let at = x.at(place.x);
-            marks.push(line(Role::Place, (at, edges.top), (at, edges.bottom)));
+            marks.push(line(Role::AxisMark, (at, edges.top), (at, edges.bottom)));
             let long = room(&place.name) + 4.0;
             // Within the drawing, also where a long name belongs to its edge.
             let begin = (at - long / 2.0).min(width - long).max(edges.left);
             if let Some(row) = ends.iter().position(|end| begin > *end) {
                 ends[row] = begin + long;
                 let above = edges.top - 4.0 - row as f64 * ROW;
-                marks.push(text(Role::Place, (begin, above), &place.name));
+                marks.push(text(Role::AxisMark, (begin, above), &place.name));
             }
         }
         marks

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use fault_db::{Channel, ChannelKind, TraceData};
 
-use crate::plot::{Note, Place, Plot, Series, Style};
+use crate::plot::{AxisMark, Note, Plot, Series, Style};
 use crate::words::Words;
 
 /// Speeds, as they are recorded, each with its colour; what is not known all the time is left out.
@@ -101,7 +101,7 @@ pub fn plots(trace: &TraceData, words: &Words) -> Vec<Plot> {
         x_label: report.from_trigger.into(),
         y_label: y_label.to_owned(),
         x_range: Some((time(0), time(rows - 1))),
-        places: vec![Place {
+        places: vec![AxisMark {
             x: 0.0,
             name: report.trigger.into(),
         }],

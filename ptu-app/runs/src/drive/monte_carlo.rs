@@ -5,8 +5,8 @@ use btu_rig::drive::{Ending, Metrics, Scatter, ScatterDraw};
 use serde::{Deserialize, Serialize};
 
 use super::Case;
+use crate::batch::{self, BatchResult, Head, Keep, Plan};
 use crate::failure::Failure;
-use crate::kept::{self, Head, Keep, Made, Plan};
 use crate::progress::Progress;
 use crate::stop::Stop;
 
@@ -91,7 +91,7 @@ pub fn run(
     };
     let ours = keep.ours(plan.len()).count();
     let mut progress = Progress::new(ours, plan.names.join(", "));
-    let made = kept::make(
+    let made = batch::make(
         keep,
         head,
         (jobs, stop),
@@ -99,9 +99,9 @@ pub fn run(
         one,
     )?;
     let trials: Vec<Option<KeptTrial>> = match made {
-        Made::All(trials) => trials.into_iter().map(Some).collect(),
-        Made::Part(runs) => return Ok(Ran::Part(runs)),
-        Made::Stopped(trials) => trials,
+        BatchResult::All(trials) => trials.into_iter().map(Some).collect(),
+        BatchResult::Part(runs) => return Ok(Ran::Part(runs)),
+        BatchResult::Stopped(trials) => trials,
     };
     let trial = |(i, trial): (usize, Option<KeptTrial>)| {
         let (trial, drawn) = (trial?, drawn(i));

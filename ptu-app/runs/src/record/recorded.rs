@@ -7,8 +7,8 @@ use protocol::message::{Message, StoredRow};
 use protocol::signal::Signal;
 use protocol::{CYCLE, Speed};
 
-use crate::field::StoredRead;
 use crate::run::channel;
+use crate::unit_log::StoredRead;
 
 /// Rows of the longest trace, 30 min: what follows a longer stand is left out.
 const MOST_ROWS: usize = 36_000;

@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 
 use super::{RecordedRun, Rest, recorded_runs};
 use crate::failure::{Failure, FieldTrouble};
-use crate::field::{Source, UnitReading, run_record};
+use crate::unit_log::{Source, UnitReading, run_record};
 
 /// What became of the runs of a record.
 #[derive(Clone, Debug, Default)]

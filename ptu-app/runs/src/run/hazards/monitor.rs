@@ -12,7 +12,7 @@ use super::authority::Authority;
 use super::memory::{Asleep, Blind};
 use super::observed::Observed;
 use super::permitted::{Limits, Permitted};
-use super::place::Place;
+use super::place::TrainPlace;
 
 /// Motion above this is no standstill, km/h: standstill tolerance and what wheels and windows make of it.
 pub(super) const MOVES_KMH: f64 = 1.08 + 0.4;
@@ -84,7 +84,7 @@ pub struct Monitor {
     margins_kmh: [f64; 2],
     limits: Limits,
     authority: Authority,
-    place: Place,
+    place: TrainPlace,
     asleep: Asleep,
     blind: Blind,
     rolled_m: f64,
@@ -111,7 +111,7 @@ impl Monitor {
             margins_kmh: [fsb_kmh, config.overspeed.eb_margin_kmh.unwrap_or(fsb_kmh)],
             limits: Limits::new(config),
             authority: Authority::default(),
-            place: Place::new(line),
+            place: TrainPlace::new(line),
             asleep: Asleep::default(),
             blind: Blind::default(),
             rolled_m: 0.0,

@@ -25,7 +25,7 @@ pub(super) struct Platform {
     pub sides: [bool; 2],
 }
 
-pub(super) struct Place {
+pub(super) struct TrainPlace {
     line: Line,
     section: u16,
     /// Its distance to run when the section was laid.
@@ -45,7 +45,7 @@ pub(super) struct Place {
     pulsed_before: usize,
 }
 
-impl Place {
+impl TrainPlace {
     pub fn new(line: &Line) -> Self {
         Self {
             line: line.clone(),

@@ -24,7 +24,7 @@ use crate::request::Request;
 use crate::units::Unit;
 use crate::{Destination, PageContext, Palette, Sizes};
 use known::KnownUnit;
-use prove::Proof;
+use prove::RepairProof;
 use ptu_runs::bench_worker::{Phase, Progress};
 use repair::Repair;
 use result::Found;
@@ -49,7 +49,7 @@ pub struct CasePage {
     seen: Option<Id>,
     found: Option<Found>,
     repair: Repair,
-    proof: Proof,
+    proof: RepairProof,
 }
 
 impl CasePage {
@@ -137,7 +137,7 @@ impl CasePage {
         if next == Stage::Result {
             self.found = Some(Found::of(outcome, run, said, context));
             // Another repair is to be fitted and proved.
-            self.proof = Proof::default();
+            self.proof = RepairProof::default();
         } else {
             self.proof.ran(said, (run, outcome, proven), context.words);
         }

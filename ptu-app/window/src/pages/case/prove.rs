@@ -26,7 +26,7 @@ use ptu_runs::run::Outcome;
 
 /// How far the proof is.
 #[derive(Default)]
-pub struct Proof {
+pub struct RepairProof {
     /// The part was fitted; the unit is connected again as soon as it is disconnected.
     reconnects: bool,
     fitted: bool,
@@ -43,7 +43,7 @@ pub struct Proof {
 /// Width of a field of the dialog, points.
 const FIELD: f32 = 300.0;
 
-impl Proof {
+impl RepairProof {
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         let locked = context.settings.locked;
         if locked || context.settings.page != Page::Case {

@@ -65,7 +65,7 @@ pub enum Order {
     Play,
 }
 
-pub struct Made {
+pub struct GeneratedSignal {
     pub wave: Wave,
     pub strength: Strength,
     pub order: Order,
@@ -73,7 +73,12 @@ pub struct Made {
 
 impl Generator {
     /// The orders, of which playing comes first; what is ordered.
-    pub fn orders(&self, ui: &mut Ui, why_not: Option<&str>, words: &Words) -> Option<Made> {
+    pub fn orders(
+        &self,
+        ui: &mut Ui,
+        why_not: Option<&str>,
+        words: &Words,
+    ) -> Option<GeneratedSignal> {
         let said = &words.signals;
         let wave = self.wave();
         let why_not = why_not.or_else(|| wave.is_none().then_some(said.bytes_hint));
@@ -92,7 +97,7 @@ impl Generator {
         if let Some(why) = why_not {
             caption(ui, why);
         }
-        Some(Made {
+        Some(GeneratedSignal {
             wave: wave?,
             strength: self.strength(),
             order: order?,

@@ -7,7 +7,7 @@ use eframe::egui::{RichText, Ui};
 use protocol::config::UnitConfig;
 
 use super::Slot;
-use super::generator::{Made, Order};
+use super::generator::{GeneratedSignal, Order};
 use super::seen::Seen;
 use crate::parts::{Done, Face, Job, Look, Told, caption, file_place, pick, usual_folder};
 use crate::{PageContext, Palette};
@@ -174,7 +174,7 @@ impl Source {
     /// Saves or plays what the generator makes.
     pub fn begin_made(
         &self,
-        made: Made,
+        made: GeneratedSignal,
         job: &mut Job,
         unit: Arc<UnitConfig>,
         context: &mut PageContext<'_>,
@@ -183,7 +183,7 @@ impl Source {
         let (file, device) = (PathBuf::from(self.file.trim()), self.output.clone());
         let told = (words.signals.playing.to_owned(), words.signals.not_done);
         job.begin(context, told, move |_, told| {
-            let Made {
+            let GeneratedSignal {
                 wave,
                 strength,
                 order,

@@ -20,7 +20,11 @@ fn result(number: usize) -> Vec<String> {
 }
 
 /// Makes the runs of a head into a file, by several threads that finish in any order.
-fn made(file: &Path, head: &Head, shard: Option<Shard>) -> Result<Made<Vec<String>>, Failure> {
+fn made(
+    file: &Path,
+    head: &Head,
+    shard: Option<Shard>,
+) -> Result<BatchResult<Vec<String>>, Failure> {
     let keep = Keep {
         file: Some(file.to_owned()),
         shard,
@@ -36,7 +40,7 @@ fn shards(folder: &Path, head: &Head, of: u32) -> Vec<PathBuf> {
     let one = |number| {
         let file = folder.join(format!("shard-{number}-{of}"));
         let made = made(&file, head, Some(Shard { number, of })).expect("a shard");
-        assert!(matches!(made, Made::Part(_)));
+        assert!(matches!(made, BatchResult::Part(_)));
         file
     };
     (1..=of).map(one).collect()
@@ -49,7 +53,7 @@ fn shards_in_any_order_are_the_file_of_one_process() {
     let folder = tempfile::tempdir().expect("a folder");
     let head = head("a", 40);
     let whole = folder.path().join("whole");
-    let Made::All(runs) = made(&whole, &head, None).expect("one process") else {
+    let BatchResult::All(runs) = made(&whole, &head, None).expect("one process") else {
         panic!("not all runs")
     };
     assert_eq!(runs, (0..40).map(result).collect::<Vec<_>>());
@@ -70,7 +74,7 @@ fn shards_in_any_order_are_the_file_of_one_process() {
     assert!(merge(&rest).expect("merged").bytes == whole, "in two steps");
     let file = folder.path().join("merged");
     std::fs::write(&file, merged.bytes).expect("written");
-    let Made::All(again) = made(&file, &head, None).expect("read") else {
+    let BatchResult::All(again) = made(&file, &head, None).expect("read") else {
         panic!("not all runs")
     };
     assert_eq!(again, runs);

@@ -44,7 +44,7 @@ impl Keep {
     }
 }
 
-pub enum Made<R> {
+pub enum BatchResult<R> {
     /// All runs, in the plan's order.
     All(Vec<R>),
     /// So many runs, those of the shard, made now or before.
@@ -64,7 +64,7 @@ pub fn make<R: Serialize + DeserializeOwned + Send + Sync>(
     (jobs, stop): (usize, &Stop),
     tell: &mut dyn FnMut(usize),
     run: impl Fn(usize) -> Option<R> + Sync,
-) -> Result<Made<R>, Failure> {
+) -> Result<BatchResult<R>, Failure> {
     head.shard = keep.shard;
     let mut known = match &keep.file {
         Some(file) => KeptRuns::open(file, &head)?,
@@ -108,11 +108,11 @@ pub fn make<R: Serialize + DeserializeOwned + Send + Sync>(
         file.put_in_order(&head)?;
     }
     if is_whole && keep.shard.is_some() {
-        return Ok(Made::Part(ours.len()));
+        return Ok(BatchResult::Part(ours.len()));
     }
     let runs: Vec<Option<R>> = (0..plan.len()).map(|i| known.take(&plan.name(i))).collect();
     if !is_whole {
-        return Ok(Made::Stopped(runs));
+        return Ok(BatchResult::Stopped(runs));
     }
-    Ok(Made::All(runs.into_iter().flatten().collect()))
+    Ok(BatchResult::All(runs.into_iter().flatten().collect()))
 }
