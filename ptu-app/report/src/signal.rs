@@ -245,7 +245,7 @@ fn table(sources: &[Source], words: &Words) -> block::Table {
 /// How a channel looks, and where what was heard on it begins.
 pub fn plots(picture: &Picture, of: (&Reading, usize), words: &Words) -> Vec<Plot> {
     let said = &words.signals;
-    let over_time = |title, unit, (columns, each_s): (&[Span], f64)| {
+    let over_time = |title: &str, unit, (columns, each_s): (&[Span], f64)| {
         let ends = (said.time, unit, of.0.duration_s);
         curve(title, ends, spans(columns, each_s))
     };
@@ -259,7 +259,11 @@ pub fn plots(picture: &Picture, of: (&Reading, usize), words: &Words) -> Vec<Plo
         plots.push(spectrogram(picture, of, words));
     }
     plots.extend([
-        over_time(said.envelope, said.millivolts_rms, picture.envelope()),
+        over_time(
+            &fill(said.envelope, &[("hz", &picture.carrier_hz())]),
+            said.millivolts_rms,
+            picture.envelope(),
+        ),
         curve(said.spectrum, ends, points.collect()),
     ]);
     plots.extend(eye(picture, words));
