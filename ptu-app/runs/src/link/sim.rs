@@ -51,7 +51,7 @@ impl SimLink {
     }
 
     /// Switches the supply off, or on if it was off: the unit is powered up again then.
-    pub(crate) fn set_power(&mut self, now: Instant, on: bool) {
+    pub fn set_power(&mut self, now: Instant, on: bool) {
         match (on, self.power_at) {
             (false, Some(_)) => {
                 self.power_at = None;

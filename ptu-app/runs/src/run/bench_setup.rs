@@ -188,8 +188,7 @@ impl BenchSetup {
     }
 
     /// The embedded unit on a bench, without a procedure.
-    #[cfg(test)]
-    pub(super) fn on_bench(&self, seed: u64, power_at: Instant) -> Bench<SimLink> {
+    pub fn on_bench(&self, seed: u64, power_at: Instant) -> Bench<SimLink> {
         Bench::new(self.rig(seed, power_at), self.unit(seed, power_at))
     }
 

@@ -19,8 +19,6 @@ mod event;
 mod evidence;
 mod fault_watch;
 mod first_failure;
-#[cfg(test)]
-mod hazards;
 mod instruments;
 #[cfg(test)]
 mod jogging_tests;
@@ -71,4 +69,5 @@ pub use suite::Suite;
 pub use trace_data::{channel, in_steps};
 pub use unfinished::{Unfinished, unfinished};
 pub use whole_run::{run, run_on, search};
-pub(crate) use workers::{TO_THE_END, run_on_fresh};
+pub(crate) use workers::TO_THE_END;
+pub use workers::run_on_fresh;

@@ -10,7 +10,7 @@ use protocol::message::ModeSwitch;
 use protocol::{Duration, Random};
 
 use super::acts::{KINDS, Kind};
-use crate::run::BenchSetup;
+use ptu_runs::run::BenchSetup;
 
 /// One thing that is done.
 #[derive(Clone, Copy, Debug)]

@@ -11,7 +11,7 @@ use super::acts::Kind;
 use super::plan::{Act, Plan, Scene};
 use super::play::limits;
 use super::{Search, sampled};
-use crate::test_support::setup;
+use crate::setup;
 
 /// Tolerance in time.
 const APART: Duration = Duration::from_ms(1_600);

@@ -14,8 +14,8 @@ use super::monitor::{Breach, MOVES_KMH, Monitor};
 use super::observed::Observed;
 use super::plan::{Act, Plan, Scene};
 use super::ride::Ride;
-use crate::link::SimLink;
-use crate::run::BenchSetup;
+use ptu_runs::link::SimLink;
+use ptu_runs::run::BenchSetup;
 
 /// The unit is powered up a second in, and starts up in three.
 const STARTED_MS: u32 = 4_000;

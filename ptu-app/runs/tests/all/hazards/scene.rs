@@ -317,10 +317,10 @@ mod tests {
     use protocol::Verdict;
 
     use super::*;
-    use crate::run::hazards::Search;
-    use crate::run::{RunPlan, SessionEvent, run_on_fresh};
-    use crate::stop::Stop;
-    use crate::test_support::setup;
+    use crate::hazards::Search;
+    use crate::setup;
+    use ptu_runs::run::{RunPlan, SessionEvent, run_on_fresh};
+    use ptu_runs::stop::Stop;
 
     /// Goal: a find is repeated by its procedure, which a sound unit passes. Method: finds with two fault modes, shortened.
     #[test]

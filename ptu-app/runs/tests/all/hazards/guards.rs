@@ -4,7 +4,7 @@ use protocol::injection::Effect;
 
 use super::acts::Kind;
 use super::{Search, play};
-use crate::test_support::setup;
+use crate::setup;
 
 /// All guards, as the unit has them: name and place of each.
 const GUARDS: &str = include_str!("../../../../../ato-under-test/src/guards.rs");

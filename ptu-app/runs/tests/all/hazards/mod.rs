@@ -3,6 +3,11 @@
 //! A breach is explained by a condition that `docs/protection.md` exports by name: one of the scene, or a failed part that
 //! the condition names. Any other is a gap of the unit. `HAZARD_SEEDS=17..18` shows one scene, shortened, and as a procedure.
 
+#![expect(
+    clippy::print_stdout,
+    reason = "what a search found is read by a person"
+)]
+
 mod acts;
 mod authority;
 mod find;
@@ -28,12 +33,12 @@ use self::find::Find;
 use self::monitor::{Invariant, UNDER_STOP};
 use self::plan::Plan;
 use self::play::play;
-use crate::pool;
-use crate::run::{BenchChoice, BenchSetup, Signals};
-use crate::stop::Stop;
-use crate::test_support::{scripts, setup};
+use crate::{scripts, setup};
 use fuzzing::draw;
 use protocol::injection::FaultMode;
+use ptu_runs::pool;
+use ptu_runs::run::{BenchChoice, BenchSetup, Signals};
+use ptu_runs::stop::Stop;
 
 const PROTECTION: &str = include_str!("../../../../../docs/protection.md");
 

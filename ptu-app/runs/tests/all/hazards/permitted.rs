@@ -222,7 +222,7 @@ mod tests {
     use protocol::signal::Sample;
 
     use super::*;
-    use crate::test_support::setup;
+    use crate::setup;
 
     /// What is permitted after two seconds of this antenna, desk and motion, each with the change that `see` makes.
     fn permitted(see: impl Fn(&mut Observed<'_>), antenna: [f64; 3], second_mv: f64) -> Permitted {
