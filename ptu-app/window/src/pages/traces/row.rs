@@ -6,7 +6,7 @@ use eframe::egui::{
     Align, Color32, Label, Layout, Rect, RichText, Stroke, Ui, UiBuilder, pos2, vec2,
 };
 
-use super::lanes::{LaneColumns, TICKS};
+use super::lane_columns::{LaneColumns, TICKS};
 use super::table;
 use crate::Palette;
 use crate::parts::lane;

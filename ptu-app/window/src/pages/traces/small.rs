@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eframe::egui::{Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::compared_trace::OverlayRequest;
-use super::lanes::LaneColumns;
+use super::lane_columns::LaneColumns;
 use super::row::{GAP, Scratch, Sheet};
 use crate::parts::lane::{self, AXIS_HEIGHT};
 use crate::{PageContext, Palette};
