@@ -39,7 +39,6 @@ mod server;
 mod sessions;
 mod shards;
 mod small_files;
-mod sound;
 mod suite;
 mod trace_files;
 mod train_faults;

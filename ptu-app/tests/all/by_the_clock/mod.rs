@@ -4,4 +4,5 @@ mod acceptance;
 mod bench;
 mod pace;
 mod sound;
+mod sound_server;
 mod standstill;
