@@ -1,11 +1,11 @@
 //! ATP: automatic train protection. [`Atp::scan`] runs every 10 ms, in order: speed code, speed, limit,
 //! overspeed, doors, direction of travel, brakes. The mode sequence runs with the 50 ms cycle.
 
-mod belief;
 mod brake_proof;
 mod causes;
 mod code;
 mod contacts;
+mod credible_speed;
 mod direction;
 mod door_lines;
 mod door_order;
@@ -39,10 +39,10 @@ use jog_guard::{JogGuard, JogInputs};
 use stop_and_proceed::{ProceedInputs, StopAndProceed};
 use yard::Yard;
 
-pub use belief::Witness;
 pub use brake_proof::{BrakeProof, BrakeState, Demand};
 pub use causes::shown_cause;
 pub use code::{Code, CodeDecoder, lookup};
+pub use credible_speed::Witness;
 pub use door_lines::DoorLines;
 pub use doors::{DoorInputs, Doors};
 pub use emergency::{BrakeInputs, EmergencyBrake};

@@ -58,7 +58,7 @@ impl Witness {
 
 /// Compares from scan to scan.
 #[derive(Clone, Debug, Default)]
-pub struct Belief {
+pub struct CredibleSpeed {
     /// Speed that follows the measured one as fast as adhesion lets a train, m/s.
     reference_mps: f64,
     /// The same for each tachometer.
@@ -80,7 +80,7 @@ pub struct Belief {
     clock_fast: f64,
 }
 
-impl Belief {
+impl CredibleSpeed {
     /// One scan with the speeds of both tachometers.
     pub fn step(
         &mut self,
@@ -242,7 +242,7 @@ mod tests {
     use protocol::config::UnitConfig;
 
     struct Train {
-        belief: Belief,
+        credible: CredibleSpeed,
         config: UnitConfig,
         log: EventLog,
         now: Instant,
@@ -253,7 +253,7 @@ mod tests {
         fn at(kmh: f64) -> Self {
             let text = include_str!("../../../scripts/units/sg100.toml");
             let mut train = Self {
-                belief: Belief::default(),
+                credible: CredibleSpeed::default(),
                 config: UnitConfig::from_toml(text).unwrap(),
                 log: EventLog::default(),
                 now: Instant::ZERO,
@@ -269,7 +269,7 @@ mod tests {
                 self.now += SCAN;
                 let speed = Speed::from_mps(self.speed);
                 let config = &self.config.tacho;
-                self.belief.step(
+                self.credible.step(
                     self.now,
                     [speed; 2],
                     self.speed > 0.0,
@@ -290,7 +290,7 @@ mod tests {
         }
 
         fn doubts(&self) -> bool {
-            self.belief.doubted().is_some()
+            self.credible.doubted().is_some()
         }
     }
 
@@ -326,7 +326,7 @@ mod tests {
             train.now += SCAN;
             let config = &train.config.tacho;
             let witness = Witness::default();
-            train.belief.step(
+            train.credible.step(
                 train.now,
                 speeds,
                 mps > 0.0,
@@ -363,7 +363,7 @@ mod tests {
         train.run(0.7, told(15.0));
         assert!(!train.doubts());
         train.run(0.2, told(15.0));
-        let doubted_kmh = train.belief.doubted().map(Speed::kmh);
+        let doubted_kmh = train.credible.doubted().map(Speed::kmh);
         assert!(
             doubted_kmh.is_some_and(|kmh| (kmh - 15.0).abs() < 0.1),
             "{doubted_kmh:?}"
@@ -397,11 +397,11 @@ mod tests {
         };
         let ms = f64::from(train.config.tacho.no_pulses_ms);
         train.run(ms / 1e3 - 0.1, powers);
-        assert!(!train.belief.cuts_power());
+        assert!(!train.credible.cuts_power());
         train.run(0.2, powers);
-        assert!(train.belief.cuts_power());
+        assert!(train.credible.cuts_power());
         train.run(1.0, Witness::default());
-        assert!(train.belief.cuts_power());
+        assert!(train.credible.cuts_power());
         train.run(
             0.1,
             Witness {
@@ -409,7 +409,7 @@ mod tests {
                 ..Witness::default()
             },
         );
-        assert!(!train.belief.cuts_power());
+        assert!(!train.credible.cuts_power());
     }
 
     #[test]
@@ -424,7 +424,7 @@ mod tests {
             };
             train.go(0.0, 100.0, witness);
             train.run(10.0, witness);
-            assert!(!train.doubts() && !train.belief.cuts_power());
+            assert!(!train.doubts() && !train.credible.cuts_power());
         }
     }
 }
