@@ -39,7 +39,8 @@ impl Coverage {
         Self::of(counts_of(&run.run), on_bench)
     }
 
-    /// Of these counts; `on_bench` = procedure and place of each step that was skipped because it needs the bench harness.
+    /// Coverage of a run with these counts; `on_bench` = procedure and place of each step that was skipped because
+    /// it needs the bench harness.
     pub fn of<'a>(
         steps: StepCounts,
         on_bench: impl Iterator<Item = (&'a str, Option<u32>)>,

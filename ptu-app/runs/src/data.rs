@@ -373,7 +373,7 @@ pub fn read(file: &Path) -> Result<String, Failure> {
     read_within(file, LONGEST_FILE)
 }
 
-/// The same of a file of up to `most` bytes.
+/// Reads a file of up to `most` bytes as [`read`] does.
 ///
 /// # Errors
 /// As [`read`].

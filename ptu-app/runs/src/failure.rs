@@ -51,14 +51,13 @@ pub enum Trouble {
     NotStored {
         run: Id,
         error: Arc<StoreError>,
-        /// Its last traces, which are lost.
+        /// Number of the run's last traces, which are lost.
         left_out: usize,
         /// The file that has it; none if it is lost.
         kept: Option<PathBuf>,
     },
     /// The history did not become free: what was measured since is kept in a file.
     RestKept {
-        /// Why the history cannot take it.
         error: Arc<StoreError>,
         rest: PathBuf,
     },
@@ -195,7 +194,7 @@ impl Failure {
 }
 
 impl Failure {
-    /// The same, with what happened before the reason for it.
+    /// This failure, caused by `what`.
     #[must_use]
     pub fn because_of(self, what: impl Into<Trouble>) -> Self {
         let message = Trouble::Because(Box::new([what.into(), self.message]));

@@ -16,8 +16,8 @@ const BESIDE: u32 = 1000;
 /// So many bytes tell what a file is.
 const HEAD: u64 = 64;
 
-/// What a file is written as: what files of this kind begin with, spaces aside. Only such a file is replaced by one of it,
-/// and an empty one.
+/// Beginnings of a file of a kind, spaces aside. A file of this kind replaces such a file or an empty one, and no
+/// other.
 pub type Kind<'a> = &'a [&'a str];
 
 /// The kinds of files that are written by their endings.
@@ -141,10 +141,10 @@ impl NewFile {
         })
     }
 
-    /// The same where nothing may stand yet.
+    /// As [`NewFile::begin`], where no file may exist yet.
     ///
     /// # Errors
-    /// As [`NewFile::begin`]; or something does.
+    /// As [`NewFile::begin`]; or a file exists.
     pub fn begin_new(place: &Path, kind: Kind<'_>) -> Result<Self, Failure> {
         if place.exists() {
             return Err(Failure::usage(FileTrouble::Exists(

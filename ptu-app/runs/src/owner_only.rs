@@ -13,10 +13,10 @@ pub fn folder(path: &Path) -> std::io::Result<()> {
     platform::make_folder(path)
 }
 
-/// The same of the folder a file is to lie in.
+/// Makes the folder in which a file is to lie, as [`folder`] does.
 ///
 /// # Errors
-/// It cannot be made.
+/// The folder cannot be made.
 pub fn folder_of(file: &Path) -> Result<(), Failure> {
     let Some(path) = file.parent().filter(|f| !f.as_os_str().is_empty()) else {
         return Ok(());

@@ -58,7 +58,7 @@ impl Stop {
         self.0.count.load(Ordering::Relaxed)
     }
 
-    /// Whether another procedure may begin.
+    /// Whether the next procedure may begin.
     pub fn may_begin(&self) -> bool {
         self.presses() == 0
     }
@@ -70,7 +70,7 @@ impl Stop {
         self.listen_and(|| {});
     }
 
-    /// The same, and does something at each signal.
+    /// As [`Self::listen`]; `then` runs at each signal.
     pub fn listen_and(&self, then: impl Fn() + Send + 'static) {
         let stop = self.clone();
         let (listens, heard) = std::sync::mpsc::sync_channel(1);

@@ -57,7 +57,7 @@ pub fn fault_record(
     }
 }
 
-/// What was found, from its column; nothing where that is empty or of another version.
+/// Findings of a stored column; empty where the column is empty or of another version.
 pub fn findings(stored: &Option<String>) -> Findings {
     let read = stored.as_deref().and_then(Findings::from_json);
     read.unwrap_or_default()

@@ -251,7 +251,7 @@ impl Structure {
         found
     }
 
-    /// Those of them that the file does not list.
+    /// Fault modes of `off_way` that the file does not list.
     pub fn not_understood(&self, off_way: Vec<OffWay>) -> Vec<OffWay> {
         let is_known = |off: &OffWay| {
             self.known_off_way.iter().any(|known| {

@@ -20,9 +20,9 @@ const SETTLES: Duration = Duration::from_ms(1_500);
 /// What the doors did at a station.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doors {
-    /// They were opened and closed.
+    /// The doors were opened and closed.
     Opened,
-    /// They stayed closed: the unit enabled neither side.
+    /// The doors stayed closed: the unit enabled neither side.
     NotEnabled,
 }
 

@@ -62,7 +62,7 @@ pub struct BenchWorker {
     orders: Option<Sender<Order>>,
     live_state: Arc<LiveState>,
     events: Receiver<BenchEvent>,
-    /// Of what was ordered last.
+    /// Stops the run that was ordered last.
     stop: Stop,
     thread: Option<JoinHandle<()>>,
 }
@@ -155,7 +155,7 @@ impl BenchWorker {
         self.stop.presses()
     }
 
-    /// What the run's operator does: pause, single step, answers.
+    /// State of the run that the operator acts on: pause, single step, answers.
     pub fn live_state(&self) -> &Arc<LiveState> {
         &self.live_state
     }
@@ -165,7 +165,7 @@ impl BenchWorker {
         self.live_state.read()
     }
 
-    /// What happened since the last call.
+    /// Events since the last call.
     pub fn events(&self) -> impl Iterator<Item = BenchEvent> + '_ {
         self.events.try_iter()
     }

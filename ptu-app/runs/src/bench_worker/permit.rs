@@ -13,7 +13,7 @@ pub enum Refused {
     NotConnected,
     /// A run has the bench.
     Running,
-    /// It needs the bench harness, and only the maintenance port is connected.
+    /// The act needs the bench harness; only the maintenance port is connected.
     NeedsHarness,
     /// A person in the cab does it: only the maintenance port is connected.
     InCab,

@@ -31,7 +31,7 @@ pub struct Progress {
     pub procedures: Vec<ProcedureProgress>,
     /// Steps in all, repetitions counted: how long it takes.
     steps: usize,
-    /// Of these, steps that are over.
+    /// Steps that are over, repetitions counted.
     done: usize,
     /// Results, and entries outside steps, that neither passed nor were skipped.
     pub not_passed: usize,
@@ -59,9 +59,9 @@ pub struct ProcedureProgress {
     pub chosen: Vec<usize>,
     /// Results of its steps, in the order in which they ran, and what failed outside them: [`outside_place`].
     pub results: Vec<StepResult>,
-    /// Its verdict, once it has ended.
+    /// Verdict of the procedure once it has ended.
     pub verdict: Option<Verdict>,
-    /// What went wrong outside its steps.
+    /// Findings outside the procedure's steps.
     pub findings: Findings,
 }
 
@@ -128,7 +128,7 @@ impl Progress {
         Coverage::of(self.counts(), on_bench)
     }
 
-    /// Of a plan that has not begun, on this unit.
+    /// Progress of a plan that has not begun, on this unit.
     pub fn new(plan: &RunPlan, unit: String) -> Self {
         let procedure = |task: &crate::run::Task| {
             ProcedureProgress::of(task.procedure.clone(), task.options.chosen.clone())
@@ -195,7 +195,7 @@ impl Progress {
         self.ended.is_none()
     }
 
-    /// Its id, once it is over and recorded.
+    /// The run's id once it is over and recorded.
     pub fn id(&self) -> Option<fault_db::Id> {
         self.ended.as_ref()?.as_ref().map(|outcome| outcome.id)
     }
@@ -341,7 +341,8 @@ pub fn outside_place(result: &StepResult) -> Option<Outside> {
 const OUTSIDE: usize = usize::MAX;
 
 impl ProcedureProgress {
-    /// Of a procedure that has not begun, with these of its steps or all.
+    /// Progress of a procedure that has not begun; `chosen` = places of its steps that run, none =
+    /// all.
     fn of(procedure: Arc<Procedure>, chosen: Option<Vec<usize>>) -> Self {
         Self {
             chosen: chosen.unwrap_or_else(|| (0..procedure.steps.len()).collect()),

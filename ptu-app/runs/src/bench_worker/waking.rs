@@ -28,7 +28,7 @@ const ALWAYS_SHOWN: [Signal; 2] = [Signal::Armed, Signal::MaintenanceKey];
 /// What the window shows of the signals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Watched {
-    /// What the connection bar does.
+    /// Work of the connection bar.
     Bar,
     Curves,
     /// All of them as in the cab.

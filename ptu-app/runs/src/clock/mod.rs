@@ -22,7 +22,7 @@ const TIMESYNC: &str = "/run/systemd/timesync";
 /// Whether the computer's clock is kept right by others, as its system says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClockState {
-    /// It was set by the network since the computer was started.
+    /// The network has set the clock since the computer was started.
     Synchronised,
     NotSynchronised,
     /// The system does not say.

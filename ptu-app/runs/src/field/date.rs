@@ -27,7 +27,7 @@ const DRIFT: i64 = 10_000;
 /// What a store of the unit says of the times it was sent.
 #[derive(Clone, Debug, Default)]
 pub struct StoredClocks {
-    /// Those that are not disproved.
+    /// Times that nothing disproves.
     clocks: Vec<StoredClock>,
     /// Our own, if it is known to be right.
     ours: Option<StoredClock>,
@@ -41,7 +41,7 @@ pub struct StoredClocks {
 pub struct StoredDate {
     /// µs UTC.
     pub at_us: i64,
-    /// It may be wrong by so much, µs; none where that is unknown: it may be of any other day.
+    /// Greatest error of the date, µs; none = unknown, the day may be wrong.
     pub uncertainty_us: Option<i64>,
 }
 
@@ -83,7 +83,7 @@ impl StoredClocks {
             };
             (uncertainty_us.unwrap_or(i64::MAX), date)
         });
-        // Of equals the one sent last.
+        // Of two equally good dates, the time sent last counts.
         let best = dates.reduce(|best, date| match date.0 <= best.0 {
             true => date,
             false => best,
@@ -96,8 +96,8 @@ impl StoredClocks {
         best.map(|(_, date)| date).filter(is_past)
     }
 
-    /// What does not go together: times of one power-up further apart than their uncertainties, and a power-up that
-    /// begins before the one that came before it.
+    /// Contradictions, as sentences: times of one power-up further apart than their uncertainties; a power-up that
+    /// begins before the previous one.
     pub fn contradictions(&self) -> Vec<String> {
         self.contradictions.clone()
     }

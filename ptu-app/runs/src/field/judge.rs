@@ -36,7 +36,7 @@ const FRAMES_LOST: [Event; 4] = [
 pub struct JudgedLog {
     /// Faults, in order.
     pub faults: Vec<Entry>,
-    /// Why the others are none.
+    /// Numbers of entries that are no faults, by reason.
     pub left_out: ExcludedEntries,
 }
 
@@ -45,7 +45,7 @@ pub struct JudgedLog {
 pub struct ExcludedEntries {
     /// Information only; so is a station's loop that is left in a mode which needs none.
     pub information: u32,
-    /// Of the time before the one asked for.
+    /// Entries made before the time asked for.
     pub too_old: u32,
     /// Made while a run of the same history tested the unit, which has judged them.
     pub under_test: u32,

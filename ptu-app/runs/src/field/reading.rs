@@ -25,7 +25,7 @@ pub struct AskedUnit {
     pub line: String,
     /// Train it is in, as the depot names it.
     pub train: String,
-    /// Who reads.
+    /// Name of the person who reads.
     pub operator: String,
 }
 
@@ -35,7 +35,6 @@ pub struct UnitReading {
     pub source: Source,
     /// Whether our own clock was right then.
     pub clock: ClockState,
-    /// What a reader should know.
     pub warnings: Vec<String>,
 }
 

@@ -29,7 +29,7 @@ pub struct Source {
     /// SHA-256 of it in hex; empty where the file is not at hand.
     pub unit_config_sha256: String,
     pub line: String,
-    /// Who reads.
+    /// Name of the person who reads.
     pub operator: String,
     /// The train the unit is in, as the tester names it; empty if not given.
     pub train: String,
@@ -37,7 +37,7 @@ pub struct Source {
     pub from_us: i64,
     /// When it ended.
     pub until_us: i64,
-    /// It ended before the log did.
+    /// The link failed before the whole log was read.
     pub broken_off: bool,
 }
 
@@ -48,7 +48,7 @@ pub struct Imported {
     pub run: Option<Id>,
     /// New ones, in order.
     pub new: Vec<FaultRecord>,
-    /// Those known already.
+    /// Number of faults that were stored before.
     pub known: usize,
 }
 
@@ -103,8 +103,8 @@ pub fn import(store: &Store, source: &Source, faults: &[Entry]) -> Result<Import
     Ok(imported)
 }
 
-/// The same on every laptop: from the unit, its power-up and the entry's number, and from the entry itself, because
-/// a unit whose flash was exchanged counts from the start.
+/// Id of the fault, equal on every laptop: made from the unit's serial number, power-up, number and content of the
+/// entry. The content counts because a unit whose flash was exchanged numbers from the start again.
 fn entry_id(serial: &str, entry: &Entry, place: StoredPlace) -> Id {
     let event = &entry.event;
     let parts = [

@@ -38,7 +38,7 @@ pub struct Keep {
 }
 
 impl Keep {
-    /// Of so many runs, the numbers of those that are made here.
+    /// Numbers of the runs that are made here, of `runs` in all.
     pub fn ours(&self, runs: usize) -> impl Iterator<Item = usize> + '_ {
         (0..runs).filter(|run| self.shard.is_none_or(|shard| shard.has(*run)))
     }
@@ -49,7 +49,7 @@ pub enum Made<R> {
     All(Vec<R>),
     /// So many runs, those of the shard, made now or before.
     Part(usize),
-    /// It was stopped; the runs there are, in the plan's order.
+    /// Stopped: the runs made so far, in the plan's order.
     Stopped(Vec<Option<R>>),
 }
 

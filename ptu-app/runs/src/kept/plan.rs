@@ -21,7 +21,7 @@ pub struct Head {
 /// All runs by their names, in order. A name decides its run, whichever process makes it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Plan {
-    /// What it is, for people.
+    /// Description of the plan, for people.
     pub what: String,
     /// A name for each run or, with seeds, for as many runs as there are seeds.
     pub names: Vec<String>,
@@ -31,7 +31,8 @@ pub struct Plan {
 }
 
 impl Head {
-    /// Of this version of the program, for all runs of the plan; `made_by` is all that decides them beside their names.
+    /// Head of all runs of the plan, made by this version of the program; `made_by` = all that decides a run beside
+    /// its name.
     pub fn new(made_by: &str, plan: Plan) -> Self {
         Self {
             app_version: env!("CARGO_PKG_VERSION").into(),
@@ -41,7 +42,7 @@ impl Head {
         }
     }
 
-    /// The same for all of them.
+    /// This head for all runs of the plan instead of one shard.
     pub fn of_all(&self) -> Self {
         Self {
             shard: None,
@@ -69,7 +70,6 @@ impl Plan {
         (self.names.len()).saturating_mul(usize::try_from(seeds).unwrap_or(usize::MAX))
     }
 
-    /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -36,7 +36,7 @@ impl Shard {
         Self { number, of }
     }
 
-    /// Whether a run belongs to it.
+    /// Whether the shard makes this run.
     pub fn has(self, run: usize) -> bool {
         Self::of_run(run, self.of) == self
     }
@@ -65,7 +65,7 @@ impl Shard {
     }
 }
 
-/// What a scheduler's variables say.
+/// The shard that variables of a job scheduler name.
 fn from_scheduler(
     of: Option<u32>,
     variable: &dyn Fn(&str) -> Option<String>,

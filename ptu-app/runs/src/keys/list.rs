@@ -47,22 +47,22 @@ pub struct KeyList {
 /// How a key stood at a time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// It is in the list under this name and held then.
+    /// The list has the key under this name, and the key was valid then.
     Held,
-    /// It is not in the list.
+    /// The list does not have the key.
     Unknown,
-    /// It is in the list under another name, or as another kind of key.
+    /// The list has the key under another name, or as another kind of key.
     OtherName(String),
-    /// Its time had not begun; the day from which on it holds.
+    /// The key was not valid yet; the day from which on it is.
     NotYet(String),
-    /// Its time was over; the day from which on.
+    /// The key had expired; the day from which on.
     Expired(String),
-    /// It was revoked; the day from which on.
+    /// The key was revoked; the day from which on.
     Revoked(String),
 }
 
 impl Standing {
-    /// It is in the list and held then.
+    /// The list has the key, valid then.
     pub fn is_good(&self) -> bool {
         *self == Self::Held
     }
@@ -224,7 +224,7 @@ impl KeyEntry {
         self.key.get(..16).unwrap_or(&self.key)
     }
 
-    /// How it stood at a time.
+    /// State of the key at this time, µs UTC.
     pub fn standing(&self, at_us: i64) -> Standing {
         let day = day_of(at_us);
         let is_from = |start: &&String| ***start <= *day;

@@ -29,9 +29,8 @@ pub enum Endpoint {
     Sim,
     /// A serial port.
     Serial {
-        /// Its path.
         path: String,
-        /// Its rate.
+        /// Baud rate.
         baud: u32,
     },
     /// A TCP socket, `HOST:PORT`.
@@ -113,7 +112,7 @@ pub struct WireLink {
     began: Option<(std::time::Instant, Instant)>,
     read: Vec<u8>,
     backlog: Backlog,
-    /// How long both ends stood still.
+    /// Time for which both ends stood still.
     pause: BenchDuration,
     placed: Option<Placed>,
     /// What leaves and what came, before instruments took and gave their part.

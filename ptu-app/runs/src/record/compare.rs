@@ -31,9 +31,10 @@ pub(super) const RESTS_KMH: f64 = 1.0;
 /// Where two curves part for the first time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parting {
-    /// What parts: `speed` from the run's own `target`, or a signal from the sound unit's.
+    /// The signal: `speed`, which differs from the run's own `target`, or a signal that differs
+    /// from the sound unit's.
     pub signal: &'static str,
-    /// What it was held against: `target` or `twin`.
+    /// Reference of the comparison: `target` or `twin`.
     pub against: &'static str,
     /// Seconds since departure.
     pub at_s: f64,
@@ -41,7 +42,6 @@ pub struct Parting {
     pub at_m: f64,
     /// What came and what was expected, km/h.
     pub came_kmh: f64,
-    /// What was expected, km/h.
     pub expected_kmh: f64,
     /// Greatest difference anywhere, km/h.
     pub most_kmh: f64,

@@ -27,7 +27,7 @@ const SIGNALS: [Signal; 7] = [
 /// One run of one power-up.
 #[derive(Clone, Debug)]
 pub struct RecordedRun {
-    /// The same on every laptop: it follows from the unit and all that the run's rows say.
+    /// Id of the run, equal on every laptop: made from the unit and all rows of the run.
     pub id: Id,
     /// Power-up that it was made in.
     pub power_up: u32,

@@ -11,7 +11,7 @@ use crate::failure::{Failure, Unknown};
 /// The train of the sound unit.
 const TRAIN: &str = "line6";
 
-/// What is asked for; what is not is found out from the trace and its run.
+/// Request for a comparison; fields that are not set follow from the trace and its run.
 #[derive(Clone, Debug, Default)]
 pub struct CompareRequest {
     pub section: Option<u16>,

@@ -15,7 +15,7 @@ pub struct Pulled {
     pub run: Option<fault_db::Id>,
     /// New ones, in order.
     pub new: Vec<RecordedRun>,
-    /// Those known already.
+    /// Number of runs that were stored before.
     pub known: usize,
 }
 

@@ -28,7 +28,8 @@ const CLOCK_TOLERANCES: [(&str, f64); 6] = [
 /// Units of what is left out there: efforts and their accelerations lag behind what the train was asked for
 /// before the procedure began, and jump with every frame that is late. What TCMS orders is compared.
 const CLOCK_LEFT_OUT: [&str; 3] = ["N", "m/s²", "m/s³"];
-/// The same for quantities without a unit: efforts of 1 024.
+/// Tolerance of quantities without a unit (efforts of 1 024), where a unit runs by a clock of its
+/// own.
 const CLOCK_TOLERANCE_PLAIN: f64 = 30.0;
 
 /// What the bench was left in before the procedure shows for so many rows.
@@ -40,8 +41,8 @@ const COUNTERS: [&str; 3] = ["train_position", "position", "marker_count"];
 /// times, and a busy line loses some.
 const FRAME_COUNTS: [&str; 4] = ["rejected_frames", "twc_received", "twc_answers", "twc_sent"];
 
-/// What counts as a deviation. Numbers deviate by more than their smallest step and the tolerance, words
-/// and bits by any difference, a known value from an unknown one always.
+/// Rule of a comparison. Numbers deviate by more than their smallest step and the tolerance, words and
+/// bits by any difference, a known value from an unknown one always.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
     /// A value that came so many rows sooner or later is the same.
@@ -65,7 +66,7 @@ pub struct Deviation {
     pub largest: Difference,
     /// Rows that differ.
     pub rows: usize,
-    /// The same rows of the first trace, as stretches.
+    /// Stretches of the first trace in which those rows lie.
     pub stretches: Vec<Range<usize>>,
 }
 
@@ -74,7 +75,7 @@ pub struct Deviation {
 pub struct Difference {
     /// Seconds from the trigger.
     pub at_s: f64,
-    /// What came; `None` = not known.
+    /// Value of the first trace; `None` = not known.
     pub value: Option<f64>,
     pub expected: Option<f64>,
 }
@@ -122,8 +123,8 @@ impl Rule {
         }
     }
 
-    /// The same, where a procedure began in that row, from the trigger, on a bench that had been in use:
-    /// compared from one second after it.
+    /// Rule for one trace paced by the wall clock, on a bench that had been in use: rows count from one
+    /// second after `began_row`, in which the procedure began, counted from the trigger.
     pub const fn after_begin(began_row: i64) -> Self {
         Self {
             from_row: began_row.saturating_add(LEFT_ROWS),
@@ -131,7 +132,7 @@ impl Rule {
         }
     }
 
-    /// The same, with the second trace laid so many rows later; negative: sooner.
+    /// This rule with the second trace laid `shift_rows` later; negative: sooner.
     pub const fn shifted(self, shift_rows: i64) -> Self {
         Self { shift_rows, ..self }
     }

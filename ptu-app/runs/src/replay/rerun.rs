@@ -18,13 +18,13 @@ use crate::run::{BenchContents, BenchSetup, Connected};
 use crate::stop::Stop;
 use crate::words::{Manner, Say};
 
-/// What a replay is to be.
+/// Settings of a replay.
 #[derive(Clone, Debug)]
 pub struct Rerunning {
     pub endpoint: Endpoint,
     /// Faults injected into the embedded unit, and into the train around any.
     pub faults: Vec<FaultMode>,
-    /// Who tests.
+    /// Name of the tester.
     pub operator: String,
 }
 

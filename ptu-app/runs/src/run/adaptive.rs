@@ -52,7 +52,8 @@ fn run_adaptively(
             return false;
         }
         if !stop.may_begin() {
-            // Its stream ends without a word: it was due.
+            // The stream of events ends empty: the collector counts this procedure as due and not
+            // run.
             return false;
         }
         let mut sink = |event| {

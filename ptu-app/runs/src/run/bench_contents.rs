@@ -69,7 +69,7 @@ pub struct BenchContents {
 pub struct Stimuli {
     /// When the procedure began, µs on the bench's clock: 0 where the unit was powered up for it.
     pub began_us: u64,
-    /// What was done.
+    /// Recorded stimuli.
     #[serde(rename = "tape")]
     pub record: StimulusRecord,
 }
@@ -148,10 +148,10 @@ impl BenchContents {
         Ok((made, stimuli))
     }
 
-    /// Such a bench with the embedded unit, sound, in virtual time.
+    /// A bench of this content with the embedded unit, without fault, in virtual time.
     ///
     /// # Errors
-    /// A data file is no longer there, or is another than it was.
+    /// A data file is no longer there, or differs from the recorded one.
     pub fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
         let settings: Vec<Setting> = self
             .unit_config
@@ -200,7 +200,6 @@ impl BenchContents {
         })
     }
 
-    /// How the unit was reached.
     pub fn connection(&self) -> Connection {
         match self.on_train {
             true => Connection::Ptu,

@@ -30,7 +30,7 @@ use crate::stop::Stop;
 /// Sets the scans whose frames are late apart from what else the same seed gives.
 const WIRE_SEQUENCE: u64 = 0x317E_5CA7_7E2D_1A7E;
 
-/// The same for what disturbs waveforms.
+/// Sets the draws of what disturbs waveforms apart from what else the same seed gives.
 const WAVEFORM_SEQUENCE: u64 = 0xC011_5A3B_1E5D_0A7E;
 
 /// Time an embedded unit is without power before a procedure, so that the signals before show in a trace of its
@@ -42,8 +42,7 @@ pub(crate) const SWITCHED_OFF: Duration = Duration::from_ms(1_000);
 pub struct BenchSetup {
     /// Where the unit is.
     pub endpoint: Endpoint,
-    /// Whether the bench harness is connected. The embedded unit is on a bench unless this says that there is none:
-    /// then it is aboard a train.
+    /// Connection of the bench harness. With `Harness::None` the embedded unit is aboard a train.
     pub harness: Harness,
     /// Unit configuration.
     pub config: DataFile<UnitConfig>,
@@ -116,7 +115,7 @@ impl BenchSetup {
         }
     }
 
-    /// Whether a run is practice: on a simulated unit, or with injected faults.
+    /// Whether the run is practice: on a simulated unit, or with injected faults.
     pub fn is_practice(&self) -> bool {
         fault_db::is_practice(&self.endpoint.to_string(), self.injected().as_deref())
     }
@@ -193,7 +192,7 @@ impl BenchSetup {
         Bench::new(self.rig(seed, power_at), self.unit(seed, power_at))
     }
 
-    /// What was drawn for this run.
+    /// Conditions drawn for this run; none without scatter.
     fn drawn(&self) -> Option<BenchDraw> {
         let scatter = self.scatter.as_ref()?;
         Some(scatter.draw(self.seed, self.train.full_load_kg()))
@@ -204,7 +203,7 @@ impl BenchSetup {
         self.sim_session_by(procedure, stop, |link| link)
     }
 
-    /// The same, reached by what `wired` makes of its link.
+    /// As [`Self::sim_session`]; `wired` wraps the link to the unit.
     pub(super) fn sim_session_by<L: UnitLink>(
         &self,
         procedure: &str,
@@ -235,7 +234,7 @@ impl BenchSetup {
     }
 }
 
-/// Those the unit itself has; it knows nothing of the train's.
+/// Faults of the unit; the unit does not know those of the train.
 fn of_unit(faults: &[FaultMode]) -> Vec<FaultMode> {
     let own = faults.iter().filter(|fault| fault.place.in_unit());
     own.cloned().collect()
@@ -250,7 +249,7 @@ impl Connected {
         }
     }
 
-    /// How it is reached.
+    /// Connection by which the unit was reached.
     pub fn connection(&mut self) -> Connection {
         let found = match self {
             Self::Sim(setup) if setup.harness == Harness::None => Some(Connection::Ptu),

@@ -1,4 +1,5 @@
-//! What a tester chooses by name: the unit, its configuration, the line, the train and the injected faults.
+//! Choices that a tester makes by name: the unit, its configuration, the line, the train and the injected
+//! faults.
 //!
 //! Command line and window fill in the same [`BenchChoice`]; [`BenchChoice::setup`] reads the named files and
 //! checks that they fit together.
@@ -28,7 +29,7 @@ use crate::link::Endpoint;
 pub struct BenchChoice {
     /// `sim`, `serial:PATH[@BAUD]`, `tcp:HOST:PORT` or `lockstep:PATH`.
     pub endpoint: String,
-    /// Whether the bench harness is connected.
+    /// Connection of the bench harness.
     pub harness: Harness,
     /// Line, `lines/NAME.toml`.
     pub line: String,
@@ -107,8 +108,8 @@ impl BenchChoice {
         }
     }
 
-    /// The same without faults if the unit is on a port: the window offers faults for the embedded unit only, and
-    /// those chosen before a port was entered do not apply.
+    /// This choice without faults if the unit is on a port. The window offers faults for the embedded unit alone;
+    /// faults chosen before a port was entered do not apply.
     pub fn with_offered_faults(mut self) -> Self {
         if !self.is_simulated() {
             self.faults.clear();

@@ -83,7 +83,7 @@ pub struct Collector<'a> {
     finished: u32,
     /// Different steps that are due.
     planned: usize,
-    /// It is a search for a fault; one that passed without all steps accepts nothing.
+    /// The run searches for a fault: passing without all steps accepts nothing.
     search: bool,
     /// Steps by procedure and place in it.
     counter: StepCounter<(String, usize)>,
@@ -233,8 +233,8 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// That of its procedures. A stop outranks what they came to, and so does a lost link: what was not
-    /// tested then is no verdict on the unit.
+    /// Verdict of the run from the verdicts of its procedures. A stop or a lost link outranks them:
+    /// what was not tested is no verdict on the unit.
     fn overall(&self) -> Verdict {
         match self.verdict {
             Verdict::Aborted => Verdict::Aborted,

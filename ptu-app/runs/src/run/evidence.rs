@@ -36,7 +36,7 @@ pub struct InstrumentEvidence {
     /// As it was registered.
     #[serde(flatten)]
     pub of: Instrument,
-    /// Its calibration held.
+    /// The calibration was valid.
     pub is_calibrated: bool,
 }
 

@@ -44,7 +44,7 @@ struct Stop {
     backward: bool,
 }
 
-/// How a recovery went.
+/// Result of a recovery.
 #[derive(Debug)]
 struct Recovery {
     tries: u32,

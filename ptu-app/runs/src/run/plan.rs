@@ -29,7 +29,7 @@ pub struct RunPlan {
     pub jobs: usize,
     /// The run ends with the first procedure, in this order, that does not pass.
     pub stop_on_fail: bool,
-    /// Who tests.
+    /// Name of the tester.
     pub operator: String,
     /// The train the unit is in, as the tester names it; empty if not given.
     pub train: String,
@@ -56,7 +56,7 @@ impl From<Arc<Procedure>> for Task {
 }
 
 impl RunPlan {
-    /// These tasks one after the other on one bench, and nothing else asked for or known.
+    /// A plan of these tasks in order on one bench, with defaults for everything else.
     pub fn of(tasks: impl IntoIterator<Item = impl Into<Task>>) -> Self {
         Self {
             tasks: tasks.into_iter().map(Into::into).collect(),
@@ -85,7 +85,7 @@ pub struct MeasuringRules {
 /// A procedure and the events of its run.
 pub(super) type ProcedureStream = (Arc<Procedure>, Receiver<SessionEvent>);
 
-/// What an adaptive run decides by.
+/// Data by which an adaptive run decides.
 pub struct Adaptive {
     /// What each fault does to each check.
     pub dictionary: Dictionary,

@@ -13,7 +13,7 @@ pub(super) struct RepetitionTally {
     over: u32,
     verdict: Verdict,
     findings: Vec<Findings>,
-    /// Those that found no room.
+    /// Differing results beyond [`KEPT`].
     more: u32,
 }
 
@@ -30,7 +30,7 @@ impl RepetitionTally {
         }
     }
 
-    /// How many are over: the place of the present one, from 0.
+    /// Number of repetitions that are over: the place of the present one, from 0.
     pub(super) fn over(&self) -> u32 {
         self.over
     }

@@ -99,7 +99,7 @@ impl<L: UnitLink> Session<L> {
         self
     }
 
-    /// The same, once it is known how the unit is reached.
+    /// Sets the lag of [`Self::with_max_lag`] once it is known how the unit is reached.
     pub fn set_max_lag(&mut self, max_lag: Duration) {
         self.max_lag = Some(max_lag);
     }

@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::failure::{Failure, FileTrouble, Why};
 
-/// What bench and unit exchange. Its text form is `values`, `sampled` or `sampled:FILE`.
+/// Form of the signals between bench and unit. Its text form is `values`, `sampled` or
+/// `sampled:FILE`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Signals {
@@ -21,7 +22,7 @@ pub enum Signals {
 }
 
 impl Signals {
-    /// What disturbs the waveforms; none for numbers.
+    /// Disturbances of the waveforms; none where signals are numbers.
     ///
     /// # Errors
     /// The file cannot be read or is wrong.

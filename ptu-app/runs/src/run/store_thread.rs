@@ -240,7 +240,7 @@ impl RecordedIds {
                     return;
                 }
             }
-            // It is of traces that are held.
+            // This recording belongs to traces that were left out.
             Entry::Recording(_) if self.left_out > 0 => return,
             _ => {}
         }

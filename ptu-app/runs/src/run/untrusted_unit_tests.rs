@@ -28,7 +28,7 @@ enum LinkFault {
     NoLog,
     OtherSerial,
     OtherDatabase,
-    /// It says that every item of its self-test failed.
+    /// The unit says that every item of its self-test failed.
     SelfTest,
 }
 

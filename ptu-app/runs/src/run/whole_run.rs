@@ -48,7 +48,7 @@ pub fn run(
     run_on(&mut connected, &began, plan, &setup, store, stop, listener)
 }
 
-/// The same of an adaptive run, which goes by what `adaptive` makes for the unit as it was reached.
+/// Runs an adaptive run. `adaptive` makes its settings for the unit that was reached.
 ///
 /// # Errors
 /// The unit has no dictionary, or the database fails; what was recorded stays.

@@ -24,7 +24,7 @@ use fault_db::Id;
 
 use crate::failure::{Near, Trouble};
 
-/// How something is said.
+/// Language and extent of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Manner {
     /// In Korean, not in English.
@@ -51,7 +51,7 @@ impl Manner {
 
 /// A value that stands in a sentence: a name, a number, or a sentence of its own.
 pub trait Say {
-    /// Its text in this language, with or without commands.
+    /// Text of the value in this language, with or without commands.
     fn say(&self, how: Manner) -> String;
 }
 
@@ -165,7 +165,7 @@ use sentences;
 /// Makes one type of all areas.
 macro_rules! areas {
     ($($area:ident),*) => {
-        /// What is refused, by area.
+        /// Refusals, by area.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Refusal { $(#[doc = stringify!($area)] $area($area),)* }
 

@@ -32,7 +32,7 @@ sentences! {
         Code(asked: String, known: String): "the unit configuration has no code \"{asked}\"; it has {known}", "장치 구성에 속도 코드 \"{asked}\"이(가) 없습니다. 있는 코드: {known}";
     }
 
-    /// Why a file does not serve.
+    /// Reasons for which a file does not serve.
     Why {
         Said(said: String): "{said}", "{said}";
         NoFileName: "it has no file name", "파일 이름이 없음";
@@ -247,7 +247,7 @@ impl Why {
 }
 
 impl FileTrouble {
-    /// It cannot be read, and who reads it says why.
+    /// The file cannot be read; `why` is the reader's error.
     pub fn unread(file: &Path, why: impl Display) -> Self {
         Self::Unread(file.display().to_string(), Why::of(why))
     }

@@ -1,4 +1,4 @@
-//! Who may read a file, and which file it is.
+//! Access rights and identity of files.
 
 use std::fs::{DirBuilder, File, Metadata, Permissions};
 use std::io::Result;

@@ -42,7 +42,7 @@ fn is_pseudo_terminal(path: &str) -> bool {
     })
 }
 
-/// The same device once more, without waiting for it or becoming its terminal.
+/// Opens the port a second time, without waiting for it or becoming its terminal.
 fn open_beside(path: &str) -> Option<File> {
     let flags = (OFlags::NOCTTY | OFlags::NONBLOCK).bits();
     OpenOptions::new()

@@ -16,7 +16,7 @@ use windows_sys::Win32::System::JobObjects::{
 };
 use windows_sys::Win32::System::Threading::GetCurrentProcess;
 
-/// What a process is bound to.
+/// Limits that Windows puts on a process and its children.
 pub enum JobLimit {
     /// Memory that it may have, bytes.
     Memory(usize),

@@ -1,5 +1,4 @@
-//! Who may read a file, and which file it is. A user's folders are closed to other users already, and what is made in
-//! them is, too.
+//! Access rights and identity of files. Windows closes a user's folders, and what is made in them, to other users.
 
 use std::fs::{DirBuilder, File, Metadata};
 use std::io::Result;

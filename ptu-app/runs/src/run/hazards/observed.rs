@@ -6,12 +6,12 @@ use protocol::signal::{Sample, Signal};
 /// Overrun after which a train may be jogged back, m, with what its position may be off.
 const JOGS_FROM_M: f64 = 5.3 + 0.9;
 
-/// What is true in a scan.
+/// True state of train, track and unit in one scan.
 #[derive(Clone, Copy)]
 pub struct Observed<'a> {
     pub now: Instant,
     pub sample: &'a Sample,
-    /// Of the train, m/s, forward positive.
+    /// True speed of the train, m/s, forward positive.
     pub speed_mps: f64,
     /// Forward positive, m/s².
     pub accel_mps2: f64,
@@ -106,7 +106,7 @@ impl Observed<'_> {
         self.by_ato() && backward && self.to_stop_m.is_some_and(past)
     }
 
-    /// It runs where neither reverser nor code lets it.
+    /// The train runs in a direction that neither reverser nor code allows.
     pub(super) fn wrong_way(&self) -> bool {
         let by_code = matches!(self.switch(), 2..=4);
         let against = self.speed_mps * f64::from(self.reverser) <= 0.0;

@@ -1,5 +1,5 @@
-//! What the train may run at: limits of the codes in the antenna and of the mode switch, and the wheels that speed is
-//! measured by.
+//! Greatest speed that the train may run at, by the codes in the antenna and the mode switch, and the wheels by
+//! which speed is measured.
 
 use protocol::config::{SpeedCode, UnitConfig};
 use protocol::signal::Signal;
@@ -32,7 +32,8 @@ pub(super) struct Permitted {
     pub selected_kmh: f64,
     /// True speed over that measured, by any wheel diameter that was keyed in: 1 at least.
     pub keyed: f64,
-    /// The same by those that the table does not refuse.
+    /// True speed over measured speed, by diameters of the permitted range that were keyed in at
+    /// standstill.
     pub admitted: f64,
 }
 
@@ -45,7 +46,7 @@ pub(super) struct Limits {
     yard_ended: YardEnded,
     proceeding: Proceeding,
     emergency_kmh: f64,
-    /// Of the track's own code, or the mode switch; and of a neighbouring track's.
+    /// Limits by the track's own code or the mode switch, and by a neighbouring track's code.
     each: [Heard; 2],
     selected: Lately,
     /// Limits by code and mode switch.

@@ -1,5 +1,5 @@
-//! What is done to a unit: how a scene begins, what is done in it and when, which parts have failed. A plan follows from
-//! its number alone, so that a part of it can be left out and the rest played again.
+//! A plan of a scene: its beginning, its acts with their times, the parts that have failed. A plan follows from its
+//! number alone, so that a part of it can be left out and the rest played again.
 
 use std::fmt;
 
@@ -38,12 +38,12 @@ impl fmt::Display for Act {
     }
 }
 
-/// How a scene begins.
+/// Beginning of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scene {
     /// A driver in the cab, the train at a platform.
     Standing,
-    /// The same, under way by a notch of the controller.
+    /// A driver in the cab, the train under way by a notch of the controller.
     ByHand,
     /// Driven by hand at yard or emergency.
     Slowly(ModeSwitch),
@@ -87,7 +87,7 @@ pub struct Plan {
     pub acts: Vec<(u32, Act)>,
 }
 
-/// What a plan is drawn from.
+/// Choices from which a plan is drawn.
 pub struct Draw<'a> {
     pub setup: &'a BenchSetup,
     pub random: Random,

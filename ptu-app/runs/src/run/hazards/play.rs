@@ -198,7 +198,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// How the scene begins.
+    /// Brings the bench to the beginning of the scene.
     fn begin(&mut self) {
         let scene = self.plan.scene;
         let ride = matches!(scene, Scene::Ride(_));

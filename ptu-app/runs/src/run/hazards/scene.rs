@@ -115,7 +115,7 @@ fn wait(time: Duration) -> String {
     format!("wait(ms({}))", time.as_ms())
 }
 
-/// The same lines, four that come again written once.
+/// The lines, with a round of four that comes again written once.
 fn repeated(lines: Vec<String>) -> Vec<String> {
     let (mut short, mut from) = (Vec::new(), 0);
     while from < lines.len() {
