@@ -12,11 +12,11 @@ use ptu_runs::words::noun;
 /// What was done, and what a person should know besides.
 pub struct Said {
     pub text: String,
-    /// What should be looked at.
+    /// Notes on what should be looked at.
     pub notes: Vec<String>,
 }
 
-/// How far a sync is.
+/// Progress of a sync, as text.
 pub fn progress(progress: SyncProgress, words: &Words) -> String {
     let SyncProgress { phase, done, total } = progress;
     let phase = words.care.phase(phase);
@@ -149,7 +149,7 @@ fn span(us: u64) -> String {
     }
 }
 
-/// What pruning came to, or would.
+/// Result of pruning, or of a dry run, as text.
 pub fn pruned(counts: &PruneCounts, dry_run: bool, words: &Words) -> String {
     let care = &words.care;
     let (gone, over) = match dry_run {

@@ -16,7 +16,7 @@ const PAGE_END: &str = "</body></html>";
 /// Version of what is signed of a sheet; the first did not cover the certificate.
 const VERSION: u32 = 2;
 
-/// What is signed of a sheet.
+/// The statement about a sheet that is signed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SheetStatement {
@@ -31,7 +31,7 @@ pub struct SheetStatement {
     pub digest: String,
     /// When the sheet was written.
     pub at_us: i64,
-    /// Who signed.
+    /// Name of the person who signed.
     #[serde(default)]
     pub who: String,
     #[serde(default)]

@@ -36,7 +36,8 @@ pub fn count_text(counts: &StepCounts, words: &Words) -> String {
     text
 }
 
-/// The same for a table: steps that were due, and how many of these were run if that is not all.
+/// Count of steps for a table: the steps that were due, and how many of them were run where that
+/// differs.
 pub fn count_short(counts: &StepCounts, words: &Words) -> String {
     let of = [("run", &counts.run() as _), ("of", &counts.planned as _)];
     match counts.not_run() {

@@ -41,7 +41,7 @@ pub const MARK: &str = "\u{feff}";
 
 /// A cell of a table: text must not act, a number must stay one.
 pub enum Cell {
-    /// What people and scripts wrote.
+    /// Text that people and scripts wrote.
     Text(String),
     Number(String),
 }

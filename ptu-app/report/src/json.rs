@@ -41,7 +41,7 @@ pub fn run_json(run: &RunDetail) -> Value {
     })
 }
 
-/// Who signed, with which key and when.
+/// Signature of a run: who signed, with which key and when.
 pub fn signature_json(signed: &Statement) -> Value {
     json!({
         "who": signed.who, "kind": signed.kind, "key": signed.key, "at": rfc3339(signed.at_us),

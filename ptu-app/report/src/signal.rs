@@ -28,11 +28,11 @@ pub struct Recording {
     pub file: String,
     /// Name of the unit configuration.
     pub unit_config: String,
-    /// What full scale stands for, mV.
+    /// Voltage of full scale, mV.
     pub full_scale_mv: f64,
-    /// What was heard.
+    /// What the receivers detected.
     pub reading: Reading,
-    /// How each channel looks.
+    /// Picture of each channel.
     pub pictures: Vec<Picture>,
     /// By which command, and when.
     pub made: String,
@@ -54,7 +54,7 @@ pub fn heads(words: &Words) -> [&'static str; 9] {
     ]
 }
 
-/// What was heard, a row each.
+/// A detected signal as a row of a table.
 pub fn row(source: &Source, words: &Words) -> [String; 9] {
     let said = &words.signals;
     let number = |value: Option<f64>, digits: usize| {
@@ -157,7 +157,7 @@ pub fn level(of: &Level, words: &Words) -> String {
     fill(said.meter, &values)
 }
 
-/// What was heard, for a terminal.
+/// Detected signals as text for a terminal.
 pub fn text(reading: &Reading, words: &Words) -> String {
     let mut lines = vec![format!("{:.2} s", reading.duration_s)];
     if reading.sources.is_empty() {

@@ -110,12 +110,12 @@ impl Target {
         &self.path
     }
 
-    /// It is a page, which carries a signature where it is of a run.
+    /// The target is an HTML page, which carries a signature where it shows a run.
     pub fn is_html(&self) -> bool {
         self.format == Format::Html
     }
 
-    /// It is a test sheet, for people.
+    /// The target is a test sheet, for people.
     fn is_sheet(&self) -> bool {
         matches!(self.format, Format::Html | Format::Pdf)
     }

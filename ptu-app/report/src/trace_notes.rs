@@ -14,7 +14,7 @@ pub struct TraceNote {
     pub time_us: i64,
     /// When it was written, UTC.
     pub at: String,
-    /// Who wrote it, and on a signed run whether it is signed.
+    /// Author of the note; on a signed run with whether the note is signed.
     pub who: String,
     pub text: String,
 }
@@ -40,7 +40,7 @@ impl TraceNote {
         Ok(notes)
     }
 
-    /// Its time, as `−0.35 s`.
+    /// Time of the note, as `−0.35 s`.
     pub fn time(&self) -> String {
         time(self.time_us)
     }
@@ -62,7 +62,7 @@ pub fn note_text(note: &RunNote, words: &Words) -> String {
     )
 }
 
-/// Who wrote a note on a run; on a signed one, whether it is signed by that name, too.
+/// Author of a note on a run; on a signed run with whether the note is signed.
 pub fn noted_by(note: &RunNote, run: &RunDetail, words: &Words) -> String {
     let who = &note.who;
     match (&run.signature, &note.signed_by) {

@@ -27,7 +27,7 @@ pub fn stop(trial: &Trial) -> String {
     }
 }
 
-/// How a run ended, for people.
+/// Sentence that says how a drive ended.
 pub fn ending(run: &Driven) -> String {
     let tolerance_cm = run.case.tolerance_m() * 100.0;
     let Outcome {

@@ -30,7 +30,7 @@ pub struct Results {
 }
 
 impl Results {
-    /// Of automatic runs; those of one section stand side by side.
+    /// Results of automatic runs; runs of one section stand side by side.
     pub fn of_runs(runs: Vec<Driven>) -> Self {
         Self {
             outcomes: Outcomes::Single(runs),

@@ -47,7 +47,7 @@ impl Table {
         table.render()
     }
 
-    /// For printed pages, in one language.
+    /// The table for printed pages, in one language.
     pub fn printed(&self, words: &Words) -> block::Table {
         let columns = self.headings.len();
         let said = |text: &String| words.content(text).into_owned();
@@ -119,7 +119,7 @@ pub fn of_runs(runs: &[Driven]) -> Table {
     table
 }
 
-/// How figures of many runs lie.
+/// Percentiles of the figures of many runs.
 pub fn of_many(many: &MonteCarlo) -> Table {
     let row = |name: String, values: &[f64], shown: &dyn Fn(f64) -> String| {
         let cell = |percent| percentile(values, percent).map_or("-".into(), shown);
@@ -168,7 +168,7 @@ pub fn worst(many: &MonteCarlo) -> Table {
     table
 }
 
-/// What happened on the way.
+/// Table of the events of a drive.
 pub fn events(landmarks: &[Landmark], words: &Words) -> Table {
     let headings = [
         ("TIME s", "Time s"),

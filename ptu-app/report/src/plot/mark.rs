@@ -1,6 +1,6 @@
 //! The marks a plot consists of, for every output medium.
 
-/// What a mark is there for; how it looks follows from that.
+/// Purpose of a mark; its look follows from the purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Name of the plot.

@@ -245,7 +245,7 @@ fn faults(sheet: &Sheet, words: &Words) -> Vec<Block> {
     blocks
 }
 
-/// What was said about the run.
+/// Notes on the run.
 fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let report = &words.report;
     if sheet.run.notes.is_empty() {
@@ -269,7 +269,7 @@ fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
     ]
 }
 
-/// Who tested what with what.
+/// The run: tester, unit, bench and times.
 fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let (run, report) = (&sheet.run.run, &words.report);
     let seconds =
@@ -337,7 +337,7 @@ fn seal(sheet: &Sheet, words: &Words) -> String {
     }
 }
 
-/// How right the computer's clock was.
+/// Accuracy of the computer's clock, as text.
 fn clock(sheet: &Sheet, words: &Words) -> String {
     let report = &words.report;
     let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);
@@ -388,7 +388,7 @@ fn instruments(sheet: &Sheet, words: &Words) -> String {
     }
 }
 
-/// Who signed the run, by which `ptu verify` can be held against a list of keys.
+/// Signature of the run, by which `ptu verify` can be held against a list of keys.
 fn signed_by(sheet: &Sheet, words: &Words) -> String {
     let report = &words.report;
     let Some(signed) = &sheet.run.signature else {

@@ -6,7 +6,7 @@ use super::block::Block;
 use super::content;
 use crate::words::Words;
 
-/// What is printed, in one language.
+/// A printed document, in one language.
 pub struct Paper {
     /// What it is, as its head and its margin say.
     pub(crate) name: &'static str,
@@ -14,7 +14,7 @@ pub struct Paper {
     pub(crate) unit: String,
     /// What tells it from others of its kind, for the title of a window or a file.
     pub(crate) short: String,
-    /// Its number, below each page.
+    /// Number of the paper, below each page.
     pub(crate) number: String,
     /// Version of the program that tested.
     pub(crate) program: String,
@@ -26,7 +26,7 @@ pub struct Paper {
 }
 
 pub trait Printed {
-    /// It, in one language.
+    /// The paper in one language.
     fn paper(&self, words: &Words) -> Paper;
 }
 

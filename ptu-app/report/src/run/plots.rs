@@ -1,4 +1,4 @@
-//! What is drawn of a trace: speeds, and the switched signals that changed nearest to the trigger.
+//! Plots of a trace: speeds, and the switched signals that changed nearest to the trigger.
 
 use std::collections::BTreeMap;
 

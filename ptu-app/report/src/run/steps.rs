@@ -126,7 +126,7 @@ fn uncertainty(measurement: &MeasurementRecord, all: &[MeasurementRecord]) -> Op
     all.iter().find(|other| other.name == name)?.value
 }
 
-/// It is shown with the measurement it belongs to.
+/// The measurement is the uncertainty of another one, with which it is shown.
 fn is_uncertainty(measurement: &MeasurementRecord, all: &[MeasurementRecord]) -> bool {
     all.iter()
         .any(|other| uncertainty_of(&other.name) == measurement.name)
@@ -136,7 +136,7 @@ pub fn verdict(verdict: Verdict, words: &Words) -> Cell {
     Cell::Verdict(tone(verdict), words.common.stored_verdict(verdict).into())
 }
 
-/// How good news a verdict is.
+/// Tone of a verdict.
 pub fn tone(verdict: Verdict) -> Tone {
     match verdict {
         Verdict::Passed => Tone::Good,

@@ -28,7 +28,7 @@ pub struct TraceInfo {
     pub rows: usize,
     /// The row of the trigger, which has the time 0; of a part it may be before or after all rows.
     pub trigger_row: Option<i64>,
-    /// It ends before its window did.
+    /// The trace ends before its window did.
     pub partial: bool,
     /// Some samples are missing.
     pub gaps: bool,
@@ -40,7 +40,7 @@ pub struct TraceInfo {
 }
 
 impl TraceInfo {
-    /// Of the rows from `first` on.
+    /// Head of a part of a trace: `rows` rows from `first` on.
     pub fn part(head: &TraceHead, channels: Vec<Channel>, first: usize, rows: usize) -> Self {
         let later_us = (first as i64).saturating_mul(head.period_us);
         let t0_us = head.t0_us.saturating_add(later_us);

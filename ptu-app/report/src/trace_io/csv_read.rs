@@ -358,7 +358,7 @@ fn separator(begin: &str) -> u8 {
         let same = |one: &usize| counts.iter().filter(|other| *other == one).count();
         counts.iter().map(same).max().unwrap_or(0)
     };
-    // Of equals the last is taken: a comma may be a decimal one.
+    // Of separators equally frequent the last is taken: a comma may be a decimal one.
     [b',', b'\t', b';']
         .into_iter()
         .max_by_key(alike)

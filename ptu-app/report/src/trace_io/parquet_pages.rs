@@ -20,7 +20,7 @@ const DEPTH: u32 = 4;
 const DICTIONARY: i64 = 2;
 const DELTA_BYTE_ARRAY: i64 = 7;
 
-/// Why a file is not read.
+/// Sentence that says why a file is not read.
 type Refused = String;
 
 /// Refuses a description that takes more memory than a trace's.
@@ -81,7 +81,7 @@ pub(super) fn check_pages(
     Ok(())
 }
 
-/// What a page's header says.
+/// Header of a page.
 #[derive(Default)]
 struct Header {
     kind: i64,

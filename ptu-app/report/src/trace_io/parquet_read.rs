@@ -31,7 +31,7 @@ const AT_ONCE: usize = 16;
 struct Signal {
     place: usize,
     known: Known,
-    /// What its values mean; `None` if they cannot be read, and then no trace has the signal.
+    /// Conversion of the values; `None` if they cannot be read, and then no trace has the signal.
     values: Option<Values>,
 }
 

@@ -8,7 +8,7 @@ use super::times::TimeUnit;
 /// Longest number of a decimal column, bytes.
 const LONGEST: usize = 16;
 
-/// How values become numbers.
+/// Conversion of stored values to numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Values {
     Numbers(Numbers),

@@ -64,7 +64,7 @@ impl Columns {
         }
     }
 
-    /// That none of these is the column of times that was named.
+    /// Sentence which says that no column has the name given for the times.
     pub(super) fn no_time<'a>(time: &str, headings: impl Iterator<Item = &'a str>) -> String {
         let near = did_you_mean(time, headings);
         format!("no column is called \"{time}\"{near}")
@@ -90,7 +90,7 @@ impl TimeUnit {
         (us.abs() < 9e18).then(|| us.round() as i64)
     }
 
-    /// What a cell says: a number of this unit, or a date.
+    /// Time of a cell: a number of this unit, or a date.
     pub(super) fn time(self, cell: &str, comma: bool) -> Option<Time> {
         if let Some(number) = number(cell, comma) {
             let is_utc = false;

@@ -13,10 +13,10 @@ use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::replay::{Comparison, Deviation, Original, Rule, compare, good_twin, rule_between};
 
-/// What a trace is compared with.
+/// A trace that another is compared with.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OverlaySource {
-    /// The same stimuli on a sound unit.
+    /// The trace of a sound unit under the same stimuli.
     Twin,
     /// Another trace.
     Trace(Id),
@@ -43,7 +43,7 @@ pub struct FirstDifference {
     pub stretches: BTreeMap<String, Vec<Range<usize>>>,
     /// The first signal that differs.
     pub first: Option<Deviation>,
-    /// Why it could not be told.
+    /// Why the comparison failed.
     pub trouble: Option<Trouble>,
 }
 

@@ -17,7 +17,7 @@ pub enum Statistics {
         /// Root of the mean square of what rows differ from the mean by.
         rms: f64,
     },
-    /// Of a choice or a bit.
+    /// Statistics of a choice or a bit.
     States {
         /// Changes from one known value to another.
         changes: usize,
@@ -28,7 +28,7 @@ pub enum Statistics {
     Unknown,
 }
 
-/// Of a signal at this place over these rows.
+/// Statistics of the signal at this place over these rows.
 pub fn over(view: &TraceView, place: usize, rows: Range<usize>) -> Statistics {
     match view.summary(place) {
         Summary::Quantity(_) => quantity(view.samples(place).get(rows).unwrap_or_default()),

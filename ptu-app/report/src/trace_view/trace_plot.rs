@@ -34,7 +34,7 @@ pub struct Lane {
     pub place: Option<usize>,
     /// Size it was given, 1 = as usual.
     pub stretch: f32,
-    /// It is to be drawn in the lane of the signal above it.
+    /// The signal is drawn in the lane of the signal above it.
     pub joined: bool,
 }
 
@@ -109,7 +109,7 @@ impl TracePlot {
         self.camera.window()
     }
 
-    /// Its lanes from top to bottom.
+    /// Lanes from top to bottom.
     pub fn lanes(&self) -> &[Lane] {
         &self.lanes
     }
@@ -337,7 +337,7 @@ fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
     VisibleRange::new(axis.whole(), least)
 }
 
-/// Its axis, with 0 this many rows before the trigger.
+/// Axis of a trace, with 0 this many rows before the trigger.
 fn axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Option<Axis> {
     let zero_row = (view.trigger_row() as i64).saturating_sub(shift_rows);
     match kind {

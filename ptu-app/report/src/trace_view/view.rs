@@ -73,7 +73,7 @@ impl TraceView {
         self.extent_of(place, 0..self.data.rows())
     }
 
-    /// The same over some rows.
+    /// Extent of the signal at this place over some rows.
     pub fn extent_of(&self, place: usize, rows: Range<usize>) -> Option<(f64, f64)> {
         let Summary::Quantity(pyramid) = self.summary(place) else {
             return None;

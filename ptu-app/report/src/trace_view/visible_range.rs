@@ -43,7 +43,7 @@ impl VisibleRange {
         self.set(fixed - share * length, length);
     }
 
-    /// What was in view before.
+    /// Brings back an earlier range.
     pub fn restore(&mut self, window: Window) {
         let length = window.length().clamp(self.least, self.whole.length());
         self.set(window.from, length);

@@ -68,7 +68,7 @@ wordings! {
 }
 
 impl Care {
-    /// How far a sync is.
+    /// Phase of a sync, as text.
     pub fn phase(&self, phase: SyncPhase) -> &'static str {
         match phase {
             SyncPhase::Sending => self.sending,

@@ -21,7 +21,7 @@ const JOINED: &str = "; ";
 static CONTENT: LazyLock<Content> =
     LazyLock::new(|| Content::read(KOREAN).expect("a test reads the file that is built in"));
 
-/// Those of the user and of the depot, the ones that count most first.
+/// Korean contents of the user and of the depot, those that take precedence first.
 static OWN: OnceLock<Vec<Content>> = OnceLock::new();
 const FILE: &str = "korean.toml";
 

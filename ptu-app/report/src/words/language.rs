@@ -29,7 +29,7 @@ impl Language {
         }
     }
 
-    /// Its code as web pages have it (BCP 47).
+    /// Code of the language on web pages (BCP 47).
     pub fn code(self) -> &'static str {
         match self {
             Self::English => "en",

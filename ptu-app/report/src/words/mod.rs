@@ -1,4 +1,4 @@
-//! What people read, in their language: the one catalogue of the window and of printed reports.
+//! Texts that people read, in both languages: the one catalogue of the window and of printed reports.
 //!
 //! A missing wording does not compile. Technical words (ATP, EB, FSB, PSM1, signal names …) stay as
 //! technicians write them. What scripts, catalogues and the runner say is looked up by [`Words::content`].
@@ -104,7 +104,7 @@ pub struct Words {
     pub care: Care,
     /// Life by serial number.
     pub life: Life,
-    /// What a unit has stored.
+    /// Stored memory of a unit.
     pub memory: Memory,
     /// Parts to replace.
     pub diagnosis: Diagnosis,
@@ -279,7 +279,7 @@ mod tests {
         }
     }
 
-    /// Who reads the window or a sheet has no command line before them.
+    /// Readers of the window or of a sheet have no command line before them.
     #[test]
     fn no_wording_speaks_of_the_command_line() {
         for (key, english, korean) in all() {

@@ -1,4 +1,4 @@
-//! What parts are called.
+//! Names of parts.
 
 use std::sync::LazyLock;
 

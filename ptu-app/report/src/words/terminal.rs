@@ -151,7 +151,7 @@ wordings! {
 }
 
 impl Words {
-    /// That which the terminal of this process shows.
+    /// Words in the language that the terminal of this process shows.
     pub fn shown() -> &'static Self {
         Language::shown().words()
     }
@@ -180,7 +180,7 @@ impl Words {
         self.choose([state.as_str(), fault_state(state)])
     }
 
-    /// What happened to a fault; a kind of another program stays as it is.
+    /// Kind of an event of a fault, as text; an unknown kind stays as it is.
     pub fn event_kind<'a>(&self, kind: &'a str) -> &'a str {
         self.choose([kind, event_kind(kind)])
     }

@@ -40,7 +40,7 @@ pub struct CaseSheet {
     /// Runs that passed since the repair, oldest first.
     pub passed: Vec<Id>,
     pub after: Option<Sheet>,
-    /// What is said of the repair.
+    /// Standing of the repair.
     pub standing: Standing,
 }
 
@@ -52,14 +52,14 @@ pub struct Repair {
     pub at_us: i64,
 }
 
-/// What is said of a repair.
+/// How far a repair is proved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Standing {
     /// Runs have proved it.
     Proved,
     /// A person says it holds: who, when and why.
     Vouched(String, i64, String),
-    /// It was recorded, and no run proves it yet.
+    /// The repair is recorded, and no run proves it yet.
     Claimed,
     /// The fault was seen again after it.
     CameBack,
@@ -97,7 +97,7 @@ impl CaseSheet {
 }
 
 impl Standing {
-    /// Its word in JSON.
+    /// Word of the standing in JSON.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Proved => "proved",

@@ -26,9 +26,9 @@ pub use text::{comparison_json, comparison_text};
 pub struct Compared<'a> {
     /// The step of the first run, if that has it.
     pub step_before: Option<&'a StepRecord>,
-    /// The same step of the second run.
+    /// This step in the second run.
     pub step_after: Option<&'a StepRecord>,
-    /// What it measured; none if the row is about the step.
+    /// Measurement of the first run; none if the row is about the step.
     pub before: Option<&'a MeasurementRecord>,
     pub after: Option<&'a MeasurementRecord>,
 }
@@ -72,20 +72,20 @@ impl StepPair<'_> {
         [self.step.step_before, self.step.step_after].map(|step| Some(step?.verdict))
     }
 
-    /// It passed in both runs: there is little to say of it.
+    /// The step passed in both runs: there is little to say of it.
     pub fn passed_in_both(&self) -> bool {
         self.verdicts() == [Some(Verdict::Passed); 2]
     }
 }
 
-/// How many steps changed, and how.
+/// Numbers of steps that changed, by direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// They did not pass in A and pass in B.
+    /// Steps that did not pass in A and pass in B.
     pub pass_now: usize,
-    /// They passed in A and do not pass in B.
+    /// Steps that passed in A and do not pass in B.
     pub passed_before: usize,
-    /// They pass in neither.
+    /// Steps that pass in neither.
     pub in_neither: usize,
     pub only_a: usize,
     /// B alone has them.
@@ -146,7 +146,7 @@ impl RunComparison {
         pairs
     }
 
-    /// How many steps changed, and how; what was skipped counts in neither direction, and what is outside steps is none.
+    /// Numbers of steps that changed. A skipped step counts in no direction, and an entry outside steps is no step.
     pub fn tally(&self) -> Tally {
         let mut tally = Tally::default();
         let is_step =
@@ -167,7 +167,7 @@ impl RunComparison {
         tally
     }
 
-    /// What makes them hard to compare.
+    /// Differences that make the runs hard to compare.
     pub fn differs(&self) -> Vec<Differs> {
         let (a, b) = (&self.a.run, &self.b.run);
         let two = |a: &String, b: &String| (a.clone(), b.clone());
@@ -236,7 +236,7 @@ fn by_name(steps: &[StepRecord]) -> BTreeMap<Key<'_>, &StepRecord> {
     all
 }
 
-/// Of the same step twice the one that stands, the earlier of two alike.
+/// Of two records of one step the one with the higher rank, the earlier of two alike.
 fn telling<'a>(one: &'a StepRecord, other: &'a StepRecord) -> &'a StepRecord {
     match rank(other.verdict) > rank(one.verdict) {
         true => other,
@@ -276,13 +276,13 @@ pub(super) fn pair<'a>(
     StepPair { step, measurements }
 }
 
-/// The same step in another run; of several the one that tells.
+/// The record of this step in another run; of several the one that [`telling`] chooses.
 pub(super) fn same_step<'a>(step: &StepRecord, run: &'a RunDetail) -> Option<&'a StepRecord> {
     let all = run.steps.iter().filter(|other| is_same(other, step));
     all.reduce(telling)
 }
 
-/// The same step, in whichever run.
+/// Whether two records are of one step, in whichever run.
 pub(super) fn is_same(one: &StepRecord, other: &StepRecord) -> bool {
     key(one) == key(other)
 }

@@ -85,7 +85,7 @@ impl RunComparison {
         blocks
     }
 
-    /// How many steps are not shown; none if all are.
+    /// Sentence with the number of steps that are not shown; none if all are.
     pub(super) fn rest(&self, words: &Words) -> Option<String> {
         let pairs = self.steps();
         let rest = pairs.iter().filter(|pair| pair.passed_in_both()).count();

@@ -114,7 +114,7 @@ fn cells(one: &Compared<'_>, name: String, words: &Words) -> [Cell; 7] {
     ]
 }
 
-/// What is allowed; both where it changed.
+/// Limits of a measurement as text; both where they changed.
 pub(super) fn allowed(one: &Compared<'_>, words: &Words) -> String {
     match [one.before, one.after].map(|value| value.map(|value| limits(value, words))) {
         [Some(then), Some(now)] if now != then => fill(
@@ -151,7 +151,7 @@ fn shown(measured: &MeasurementRecord, words: &Words) -> [Cell; 2] {
     [Cell::Text(tone, value(measured, words)), Cell::Gauge(gauge)]
 }
 
-/// What is allowed, in words.
+/// Limits as text.
 fn limits(measured: &MeasurementRecord, words: &Words) -> String {
     let report = &words.report;
     let unit = &words.unit(&measured.unit);
@@ -166,7 +166,7 @@ fn limits(measured: &MeasurementRecord, words: &Words) -> String {
     }
 }
 
-/// What a step is called.
+/// Name of a step.
 pub fn name_of(step: &StepRecord, words: &Words) -> String {
     match outside_of(step) {
         Some(place) => words.common.outside(place).to_owned(),

@@ -12,7 +12,7 @@ use super::reasons::{
     deviated, deviated_share, fault_text, logged, step_expected, step_found, told,
 };
 
-/// The same in English and in Korean.
+/// A text in English and in Korean.
 pub(super) type Both = [String; 2];
 
 impl Words {
@@ -28,7 +28,7 @@ impl Words {
         self.choose(all_called(parts, names))
     }
 
-    /// What a check tells; empty if that is not known.
+    /// What a check would tell, as text; empty if that is not known.
     pub fn tells(&self, next: &NextCheck, names: &[Lru]) -> String {
         self.choose(tells(next, names))
     }
@@ -38,7 +38,7 @@ impl Words {
         self.choose(checked(check))
     }
 
-    /// What is wrong under a fault.
+    /// Sentence that says what is wrong under a fault.
     pub fn fault_text(&self, text: &FaultText) -> String {
         self.choose(fault_text(text))
     }
@@ -50,7 +50,7 @@ impl Words {
         path + &self.reason_in_procedure(reason, run)
     }
 
-    /// The same without the path of its procedure.
+    /// Reason as text, without the path of its procedure.
     pub fn reason_in_procedure(&self, reason: &Reason, run: &RunDetail) -> String {
         self.choose(match reason {
             Reason::Step(step) => step_found(step, run),

@@ -39,7 +39,7 @@ impl Words {
         }
     }
 
-    /// What an action waits for.
+    /// Condition that an action waits for, as text.
     pub fn awaited(&self, action: &Action) -> String {
         match (action, self.language) {
             (Action::Until { condition, .. }, Language::English) => format!("{condition:#}"),
@@ -64,7 +64,7 @@ impl Words {
         }
     }
 
-    /// What is on record: a step, or where something failed that is none.
+    /// Name of a record: a step, or the place of a failure outside steps.
     pub fn record(&self, of: &StepRecord) -> String {
         match stored::outside_of(of) {
             Some(place) => self.common.outside(place).to_owned(),
@@ -72,7 +72,7 @@ impl Words {
         }
     }
 
-    /// The same of a run that is under way.
+    /// Name of a step of a run that is under way, as in [`Self::record`].
     pub fn result(&self, of: &StepResult) -> String {
         match outside_place(of) {
             Some(place) => self.common.outside(place).to_owned(),
@@ -80,7 +80,7 @@ impl Words {
         }
     }
 
-    /// What an event's parameter says; empty for an event that has none.
+    /// Parameter of an event as text; empty for an event without one.
     pub fn parameter(&self, event: Event, number: i32) -> String {
         match self.language {
             Language::English => event_text::parameter(event, number),
