@@ -27,7 +27,7 @@ pub struct DataPaths {
 }
 
 impl DataPaths {
-    /// These; nothing is opened yet.
+    /// Paths of a history in a file; nothing is opened yet.
     pub fn new(database: PathBuf, scripts: ScriptsDirectory) -> Self {
         Self {
             database,
@@ -38,7 +38,7 @@ impl DataPaths {
         }
     }
 
-    /// Those of a server; it is not connected to yet.
+    /// Paths of a history on a server; the window is not connected to it yet.
     pub fn of_server(server: Address, scripts: ScriptsDirectory) -> Self {
         Self {
             server: Some(server.clone()),
@@ -46,7 +46,7 @@ impl DataPaths {
         }
     }
 
-    /// It is a server, which is only read.
+    /// The history is on a server, which is only read.
     pub fn is_server(&self) -> bool {
         self.server.is_some()
     }

@@ -10,7 +10,7 @@ pub struct Messages {
     all: Vec<Message>,
     /// Index of the latest trouble, until the user acknowledges it.
     unread: Option<usize>,
-    /// What was taken back last.
+    /// Record that was taken back last.
     taken_back: Option<Written>,
     /// Runs that had ended when an undo was offered last.
     runs_ended: usize,
@@ -38,24 +38,23 @@ pub enum About {
 pub struct Message {
     /// In the language chosen when it happened.
     pub text: String,
-    /// What went wrong; empty if the text says it all.
+    /// The trouble; empty if the text says it all.
     pub detail: Trouble,
-    /// Whether it reports trouble.
     pub bad: bool,
     /// µs since 1970.
     pub at_us: i64,
     /// None = until the next.
     about: Option<About>,
-    /// What it is about is over: it is only listed.
+    /// The matter is over: the message is only listed.
     pub over: bool,
-    /// It tells of this, which can be undone for a while.
+    /// Record that the message tells of; the message can undo it for a while.
     written: Option<Written>,
     /// When it was shown first, in the window's time, s.
     shown_at_s: Option<f64>,
 }
 
 impl Message {
-    /// It says how a run ended.
+    /// The message says how a run ended.
     pub fn is_of_run(&self) -> bool {
         matches!(self.about, Some(About::Run(_)))
     }

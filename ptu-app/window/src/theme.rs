@@ -188,7 +188,7 @@ pub fn ground(visuals: &Visuals) -> Color32 {
 }
 
 impl Palette {
-    /// Of the window as it is.
+    /// Palette of the window as it is.
     pub fn of(ui: &Ui) -> Self {
         Self::of_mode(ui.visuals().dark_mode)
     }

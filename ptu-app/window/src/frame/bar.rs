@@ -282,7 +282,7 @@ fn run(unit: &Unit, words: &words::Frame, without: Without, items: &mut Vec<Item
     }
 }
 
-/// What else wants a look; at last without its words.
+/// Other states that need a look; the last one without its words.
 fn states(context: &PageContext<'_>, with_words: bool, items: &mut Vec<Item>) {
     let words = context.words;
     let unit = context.units.chosen();

@@ -164,7 +164,7 @@ impl Find {
             return;
         }
         let (faults, steps) = (self.faults(context), steps(procedures, context));
-        // Of hundreds nobody looks for one without a letter of it.
+        // Among hundreds of entries nobody looks for one without typing a letter.
         let most = if wanted.0.trim().is_empty() { 0 } else { MOST };
         let faults = faults.filter(|row| row.fits(&wanted.0)).take(most);
         let steps = steps.filter(|row| row.fits(&wanted.0)).take(most);

@@ -100,7 +100,7 @@ impl Frame {
         lost::row(ui, goes_on, context);
     }
 
-    /// What stands over the page: what was told, and the dialogs that are open.
+    /// Shows what stands over the page: messages, and open dialogs.
     pub fn over(&mut self, ui: &Ui, procedures: &[Arc<Procedure>], context: &mut PageContext<'_>) {
         self.undo.poll(context);
         // Not over the steps and the foot of a case, nor over the foot of a form.

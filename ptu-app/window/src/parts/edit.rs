@@ -56,7 +56,7 @@ pub fn go_on(ui: &Ui, fields: &[Response]) {
     }
 }
 
-/// What was typed, if anything.
+/// Text of a field, trimmed; none if it is empty.
 pub fn typed(text: &str) -> Option<String> {
     let text = text.trim();
     (!text.is_empty()).then(|| text.to_owned())

@@ -12,11 +12,11 @@ use ptu_runs::bench_worker::Wake;
 use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::stop::Stop;
 
-/// What work came to, in words.
+/// Result of work, in words.
 pub struct Done {
     pub text: String,
     pub notes: Vec<String>,
-    /// It was not done to its end: why.
+    /// Why the work was not done to its end.
     pub broken_off: Option<Trouble>,
 }
 
@@ -112,7 +112,7 @@ impl Job {
         });
     }
 
-    /// What it came to last.
+    /// Shows the last result.
     pub fn result(&self, ui: &mut Ui) {
         if let Some(done) = &self.done {
             if !done.text.is_empty() {

@@ -33,7 +33,8 @@ fn open_with((program, before): (&str, &[&str]), path: &Path) -> Result<(), Fail
         .stderr(Stdio::null());
     match command.spawn() {
         Ok(mut child) => {
-            // It is waited for, so that nothing is left of it; what it shows outlives it.
+            // Waits for the process, so that nothing is left of it; the viewer that it starts
+            // outlives it.
             std::thread::spawn(move || child.wait());
             Ok(())
         }

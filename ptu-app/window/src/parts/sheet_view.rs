@@ -20,7 +20,7 @@ use ptu_report::run::page::{self, DASH, HEIGHT, Ink, Item, MARGIN, Page, Text, W
 
 /// A page is so wide at least and at most, points of the window.
 const WIDE: RangeInclusive<f32> = 640.0..=1168.0;
-/// Its width is a multiple of this, so that few sizes of letters are made.
+/// Step of the sheet's width, so that few sizes of letters are made.
 const STEP: f32 = 16.0;
 /// Free beside and between pages.
 const BETWEEN: f32 = 12.0;

@@ -21,7 +21,7 @@ const BELOW: f32 = 24.0;
 pub struct Side<'a> {
     /// Name of the list, form or strip; the button that opens its drawer has it.
     pub name: &'a str,
-    /// Its width until the divider is dragged, and that in a wide window, points.
+    /// Width until the divider is dragged, and the width in a wide window, points.
     pub wide: [f32; 2],
     pub at_right: bool,
 }
@@ -54,7 +54,7 @@ impl Side<'_> {
             };
             let panel = panel.default_size(wide).size_range(range);
             let shown = panel.frame(ground(ui)).show(ui, |ui| {
-                // It stays as large as it was made, whatever is in it.
+                // The panel keeps its size, whatever is in it.
                 ui.set_min_size(ui.available_size());
                 content(ui)
             });

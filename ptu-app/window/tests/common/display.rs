@@ -14,7 +14,7 @@ use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt, EventMask};
 /// Patience with a busy machine that paints in software.
 pub const PATIENCE: Duration = Duration::from_secs(300);
 
-/// Of the dump in the frame buffer file (XWDFile.h).
+/// Version of the dump in the frame buffer file (XWDFile.h).
 const DUMP_VERSION: u32 = 7;
 
 /// A private X server; ends with the value.

@@ -187,7 +187,7 @@ impl Window {
         self.click_once_still(label, |places| places.first().copied(), 2);
     }
 
-    /// The same here, whatever is here.
+    /// Double-clicks at this position, whatever is there.
     pub fn double_click_at(&mut self, pos: Pos2) {
         self.pass(MOMENT_S);
         self.click_at(pos, 2);
@@ -446,7 +446,7 @@ impl Window {
         }
     }
 
-    /// What the last frame looks like.
+    /// Pixels of the last frame.
     pub fn picture(&self) -> Picture {
         let context = &self.harness.ctx;
         let ground = eframe::App::clear_color(self.app(), &context.global_style().visuals);

@@ -27,7 +27,7 @@ pub struct Care {
     file: String,
     job: Job,
     last: CachedResponse<Vec<LastSync>>,
-    /// Of which data the last syncs are known.
+    /// Data whose last syncs are known.
     asked: Option<(usize, u64)>,
 }
 

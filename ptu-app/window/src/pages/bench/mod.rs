@@ -41,7 +41,7 @@ const LOG_SHARE: f32 = 0.4;
 struct Sheet {
     /// Checksums of the unit's configuration and line.
     of: (u32, u32),
-    /// Of the bench when something was given.
+    /// Epoch of the bench when a stimulus was given.
     bench_epoch: u64,
     forms: Forms,
     given: StimuliGiven,

@@ -8,7 +8,7 @@ const ROOM_KMH: f64 = 15.0;
 /// The dial's scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dial {
-    /// Its last number, km/h.
+    /// Last number of the dial, km/h.
     pub full_kmh: f64,
 }
 

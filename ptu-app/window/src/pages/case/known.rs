@@ -55,7 +55,7 @@ impl KnownUnit {
         last.and_then(|(_, repair)| repair.serial_new.clone())
     }
 
-    /// What people call a part.
+    /// Name of a part, for people.
     pub fn part_name<'a>(&'a self, id: &'a str, words: &Words) -> &'a str {
         let history = self.history.get().value();
         history.map_or(id, |known| known.parts.name(id, words.language))

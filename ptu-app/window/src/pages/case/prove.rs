@@ -24,7 +24,7 @@ use ptu_runs::clock::now_us;
 use ptu_runs::keys;
 use ptu_runs::run::Outcome;
 
-/// How far the proof is.
+/// State of the proof.
 #[derive(Default)]
 pub struct Proof {
     /// The part was fitted; the unit is connected again as soon as it is disconnected.
@@ -33,7 +33,7 @@ pub struct Proof {
     /// What the last run says of the repair, or what it came to itself.
     said: Option<String>,
     verdict: Option<Verdict>,
-    /// The same in a word or two.
+    /// The verdict in a word or two.
     word: Option<&'static str>,
     /// Answers with the run that was signed, by whom, and whether with a key.
     signing: Request<(Id, String, bool)>,
@@ -101,7 +101,7 @@ impl Proof {
         }
     }
 
-    /// Who checked the sheet, or the button that asks who does.
+    /// Foot of the sheet: who checked it, or the button that asks.
     pub fn sign_foot(&mut self, ui: &mut Ui, run: Option<Id>, context: &mut PageContext<'_>) {
         let words = &context.words.case;
         if let Some((_, who, with_key)) = self.signing.value().filter(|(of, ..)| Some(*of) == run) {
@@ -328,7 +328,7 @@ impl CasePage {
             unit.disconnect();
             (self.proof.fitted, self.proof.reconnects) = (true, true);
         }
-        // Its sheet says that the repair is not proved.
+        // The sheet of a run that did not pass says that the repair is not proved.
         let passed = self.proof.verdict == Some(Verdict::Passed);
         if passed && place.clicked(&Face::new(Look::Secondary, words.to_sheet).show(ui)) {
             self.stage = Stage::Sheet;

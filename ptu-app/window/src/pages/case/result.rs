@@ -1,4 +1,4 @@
-//! What a run found: the part, the values that show it, three reasons, and what to do next.
+//! Result of a run: the part, the values that show it, three reasons, and what to do next.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ const WIDE: f32 = 1600.0;
 /// Values that are drawn large, at most.
 const MOST_BARS: usize = 2;
 
-/// What was found in a run.
+/// Findings of a run.
 pub struct Found {
     pub run: Id,
     /// When it ended, µs since 1970.

@@ -32,7 +32,8 @@ impl CasePage {
         let unit = context.units.chosen();
         let waits = has_orders || self.is_over(context);
         let Some(run) = unit.run_of_case().filter(|_| !waits) else {
-            // It is about to begin, or it has ended, and what it says is worked out; or it never began.
+            // The run is about to begin, or has ended and its result is being worked out, or never
+            // began.
             title(
                 ui,
                 match waits || unit.phase() == Phase::Running {

@@ -1,4 +1,5 @@
-//! What a run comes to: a word, a headline, and what to do next. The run decides; a diagnosis adds a part to one that failed.
+//! Outcome of a run for the technician: a word, a headline, and what to do next. The run decides; a diagnosis adds a
+//! part to one that failed.
 
 use btu_rig::procedure::Verdict;
 use diagnosis::{Conclusion, Diagnosis};
@@ -40,7 +41,7 @@ pub enum Next {
 }
 
 impl Told {
-    /// Of a run, with the diagnosis of one that failed.
+    /// Verdict of a run, with the diagnosis of one that failed.
     pub fn of(run: Verdict, said: Option<&Conclusion>) -> Self {
         match run {
             Verdict::Failed => match said {
@@ -83,7 +84,7 @@ impl Told {
         }
     }
 
-    /// What stands below the word; of parts, steps and reasons it is completed with these.
+    /// Headline below the word; parts, steps and reasons complete it.
     pub fn headline(self, words: &Case) -> &'static str {
         match self {
             Self::Part => words.replace,

@@ -133,7 +133,7 @@ impl Asked {
         ui.add(field).labelled_by(label.id);
     }
 
-    /// What is written down; nothing while something is missing.
+    /// Text to be written down; none while something is missing.
     fn note(&self, said: &Faults, of_verified: bool) -> Option<String> {
         let note = self.note.trim().to_owned();
         if self.to == FaultState::Repaired {

@@ -24,7 +24,7 @@ const TOWARDS: [FaultState; 5] = [
 /// The form, and what becomes of it.
 #[derive(Default)]
 pub struct Change {
-    /// What is written about one fault.
+    /// The fault that is written about.
     of: Option<Id>,
     note: String,
     asked: Option<Asked>,

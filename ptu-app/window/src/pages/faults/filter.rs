@@ -39,7 +39,7 @@ impl Filter {
         }
     }
 
-    /// Whether a fault is shown.
+    /// Whether the filter shows the fault.
     pub fn takes(&self, fault: &FaultSummary) -> bool {
         let text = self.text.trim().to_lowercase();
         let has = |what: &str| what.to_lowercase().contains(&text);

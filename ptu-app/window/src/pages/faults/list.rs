@@ -115,7 +115,7 @@ pub fn table(
     clicked
 }
 
-/// Of today the time says enough.
+/// Time of an event: without the day if it is today.
 fn of_today<'a>(when: &'a str, today: &str) -> &'a str {
     match (when.split_once(' '), today.split_once(' ')) {
         (Some((day, time)), Some((now, _))) if day == now => time,

@@ -237,7 +237,7 @@ impl FaultsPage {
     }
 }
 
-/// The same fault, seen again after this one was closed.
+/// Whether another fault is the closed one, seen again.
 fn takes_its_place(other: &FaultSummary, closed: &FaultSummary) -> bool {
     let of = |fault: &FaultSummary| (fault.unit_serial.clone(), fault.code, fault.lru.clone());
     other.state != FaultState::Closed && of(other) == of(closed)

@@ -16,7 +16,7 @@ pub struct Concluded {
     pub text: String,
     /// The diagnosis of a run that failed.
     pub answer: Option<Arc<Answer>>,
-    /// Of a run that passed.
+    /// Proofs of repairs by a run that passed.
     pub proofs: Vec<RepairProof>,
 }
 

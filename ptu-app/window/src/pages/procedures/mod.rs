@@ -44,11 +44,10 @@ const LIVE_SHARE: f32 = 0.3;
 
 pub struct ProceduresPage {
     suite: Request<Arc<Suite>>,
-    /// What the suite was loaded for.
+    /// Choice for which the suite was loaded.
     loaded_for: Option<BenchChoice>,
     /// Nothing = everything but what is on request.
     selection: Option<Selection>,
-    /// What people call the parts.
     parts: Request<PartNames>,
     find: String,
     repeat: u32,
@@ -72,7 +71,7 @@ pub struct ProceduresPage {
 struct PendingOrder {
     /// The unit it is for, by its own number.
     unit: u64,
-    /// It is for a run of the unit's case.
+    /// The run belongs to the unit's case.
     of_case: bool,
     order: Request<Prepared>,
 }
@@ -325,7 +324,8 @@ impl ProceduresPage {
         let answer = present::present(ui, words, run, texts, true);
         let note = (&mut self.note, context.settings.operator.as_str());
         results::after_run(ui, (words, context.queries), run, note, context.go_to);
-        // It comes later: below what is written and clicked meanwhile, and in a place kept for it.
+        // The conclusion comes later, in a place kept for it, below what is written and clicked
+        // meanwhile.
         let conclusion = match &self.conclusion {
             Request::Ready(concluded) => Some(concluded.text.as_str()),
             Request::Pending(_) => Some(words.common.loading),

@@ -12,7 +12,6 @@ use ptu_runs::run::{BenchChoice, RunPlan, Suite};
 use ptu_runs::run_diagnosis;
 use ptu_runs::symptoms::Symptom;
 
-/// How the chosen procedures are run.
 #[derive(Clone, Debug)]
 pub struct RunSettings {
     pub operator: String,
@@ -36,7 +35,7 @@ pub fn load(paths: &DataPaths, choice: &BenchChoice) -> Result<Suite, Failure> {
     Suite::load(&paths.scripts, &[], &setup)
 }
 
-/// What the page shows: a suite, and the choice of the unit it was evaluated for.
+/// The suite on the page, and the choice of the unit it was evaluated for.
 #[derive(Clone)]
 pub struct ShownSuite {
     pub suite: Arc<Suite>,

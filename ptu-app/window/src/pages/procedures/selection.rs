@@ -10,7 +10,6 @@ use protocol::{Duration, LruId};
 use ptu_runs::bench_worker::Progress;
 use ptu_runs::run::Task;
 
-/// How much of something is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Share {
     None,
@@ -28,7 +27,8 @@ pub fn possible(procedure: &Procedure, connection: Connection) -> bool {
 pub struct Selection(BTreeMap<String, BTreeSet<String>>);
 
 impl Selection {
-    /// What a run without names runs: everything this connection can do but what is on request only.
+    /// Procedures of a run without names: all that this connection can do, except those on request
+    /// only.
     pub fn usual(procedures: &[Arc<Procedure>], connection: Connection) -> Self {
         let mut usual = Self::default();
         for procedure in procedures {

@@ -23,7 +23,7 @@ pub(super) enum Wanted {
     },
     /// What a run left that broke off with the link, once its unit is connected again.
     Rest,
-    /// These procedures, and those that suspect the part.
+    /// These procedures, and procedures that suspect the part.
     Prove {
         procedures: BTreeSet<String>,
         part: String,

@@ -76,7 +76,7 @@ impl SheetOf {
 struct Shown {
     of: SheetOf,
     pages: Vec<Page>,
-    /// Its traces with the faults each shows.
+    /// Traces of the run, each with the faults it shows.
     traces: Vec<(Id, String)>,
     /// Something in it did not pass.
     faulty: bool,

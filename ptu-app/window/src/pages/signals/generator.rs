@@ -135,7 +135,7 @@ impl Generator {
         }
     }
 
-    /// How it looks.
+    /// Draws the waveform.
     pub fn sketch(&mut self, ui: &mut Ui, unit: &Arc<UnitConfig>, context: &PageContext<'_>) {
         let (wave, strength) = (self.wave(), self.strength());
         if let Some(wave) = wave {
@@ -151,7 +151,7 @@ impl Generator {
         }
     }
 
-    /// What is filled in; none if the bytes are none.
+    /// Waveform of the form; none if the form has no bytes.
     fn wave(&self) -> Option<Wave> {
         if !self.is_twc {
             return Some(Wave::Code {

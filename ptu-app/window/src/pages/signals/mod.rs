@@ -21,7 +21,6 @@ use ptu_runs::sound::{self, DeviceFound};
 /// Where a thread that reads or records puts how it looks now.
 type Slot = Arc<Mutex<Option<Seen>>>;
 
-/// What there is to choose from.
 struct Offered {
     unit: Arc<UnitConfig>,
     /// Devices for sound, or why there are none.

@@ -1,4 +1,5 @@
-//! How a recording looks: what was heard as a list, and below it the drawings of a channel, as in its report.
+//! View of a recording: detected signals as a list, and below them the pictures of a channel, as in the
+//! report.
 
 use eframe::egui::{
     Color32, ColorImage, Context, RichText, ScrollArea, TextureHandle, TextureOptions, Ui, Vec2,
@@ -129,7 +130,7 @@ impl View {
     }
 }
 
-/// What was heard, a row each; a narrow table goes without what is seldom looked at.
+/// List of detected signals; a narrow table goes without what is seldom looked at.
 fn heard(ui: &mut Ui, reading: &Reading, words: &Words) {
     let [channel, from, to, kind, what, carrier, rate, level, snr] = report::heads(words);
     let number = |name, wide| Column::new(name, wide).right();

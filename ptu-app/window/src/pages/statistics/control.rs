@@ -29,7 +29,7 @@ const DOT_RADIUS: f32 = 2.5;
 const NAMES: f32 = 160.0;
 const STEPS: f32 = 240.0;
 
-/// What is measured: a measurement, and of it one step or all.
+/// The measurement shown, of one step or of all.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Measured {
     measurement: Option<String>,

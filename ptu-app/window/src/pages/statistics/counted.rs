@@ -83,7 +83,7 @@ impl Counted {
     }
 }
 
-/// Whether the history has this unit; one that comes for the first time has nothing to count.
+/// Whether the history has this unit; a new unit has nothing to count.
 pub fn is_known(store: &Store, unit: Option<&str>) -> Result<bool, Failure> {
     let Some(unit) = unit else { return Ok(true) };
     Ok(store.known_units()?.iter().any(|known| known == unit))

@@ -29,7 +29,7 @@ const LINE: f32 = 28.0;
 /// Between lanes.
 pub const GAP: f32 = 4.0;
 
-/// What lanes are painted from.
+/// Everything from which lanes are painted.
 pub struct Sheet<'a> {
     /// The trace as it is looked at.
     pub scene: &'a TracePlot,
@@ -173,7 +173,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// The same signal of the trace behind.
+    /// This signal in the trace behind.
     fn other(&self, signal: &str) -> Option<Source<'_>> {
         let behind = self.scene.behind()?;
         let view = &behind.overlay.view;

@@ -10,7 +10,7 @@ use ptu_report::words::fill;
 /// How much one press makes a lane taller.
 const TALLER: f32 = 1.25;
 
-/// What was pressed at a lane.
+/// Act at a lane.
 enum LaneAction {
     Up(usize),
     Down(usize),

@@ -37,7 +37,7 @@ pub struct Forms {
     pub test_motion: MotionForm,
     /// The TEST board's TWC frame.
     pub test_station: StationForm,
-    /// What stimuli are looked for by.
+    /// Text by which stimuli are looked for.
     pub find: String,
 }
 

@@ -34,7 +34,7 @@ pub enum TachoKind {
     Noisy,
     /// Pulses of another speed.
     Scaled,
-    /// Its direction the wrong way round.
+    /// The tachometer gives the wrong direction.
     Reversed,
 }
 

@@ -15,7 +15,7 @@ const COLUMNS: usize = 2;
 /// Room between lamps.
 const BETWEEN: f32 = 4.0;
 
-/// Whether a lamp is lit; unknown without a unit.
+/// State of a lamp; unknown without a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LampState {
     On,

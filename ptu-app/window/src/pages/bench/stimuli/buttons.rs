@@ -40,7 +40,6 @@ pub struct StimulusPanel<'a> {
 }
 
 impl StimulusPanel<'_> {
-    /// How the unit is reached.
     pub fn connection(&self) -> Connection {
         self.bench.live().connection.unwrap_or(Connection::Btu)
     }
