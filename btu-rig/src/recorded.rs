@@ -31,7 +31,7 @@ pub enum BenchAction {
 pub struct RecordedStimulus {
     /// Time of the scan after which it was done, µs.
     pub at_us: u64,
-    /// What was done; `act` in stored recordings.
+    /// Act of the bench; `act` in stored recordings.
     #[serde(rename = "act")]
     pub action: BenchAction,
 }

@@ -73,11 +73,11 @@ struct Open {
 pub struct RecordedWindow {
     /// Faults it shows, by their number in the procedure.
     pub faults: Vec<usize>,
-    /// Its rows; at least one.
+    /// Rows of the window; at least one.
     pub rows: Vec<Row>,
     /// The row at which it was triggered.
     pub trigger_row: usize,
-    /// It ends before its time was over.
+    /// The window ends before its time was over.
     pub partial: bool,
 }
 

@@ -76,7 +76,7 @@ impl FromStr for Load {
 /// Speed codes of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Codes {
-    /// Those the section has, each from its place on.
+    /// Codes of the section, each from its place on.
     Along,
     /// One from start to end.
     Fixed(Stimulus),
@@ -162,7 +162,7 @@ pub(super) fn fixed_code(
     })
 }
 
-/// The same; `None` = the table has no such code.
+/// The code of this name as a stimulus of the antenna; `None` = the table has no such code.
 pub fn code_in_antenna(config: &UnitConfig, name: &str) -> Option<Stimulus> {
     let code = &config.codes[find_code(&config.codes, name)?];
     Some(Stimulus::Code {

@@ -15,14 +15,13 @@ pub enum Operand {
     Measured {
         /// Which of the procedure's measurements.
         slot: usize,
-        /// Its name, for people.
+        /// Name of the measurement, for people.
         name: String,
         /// Added to it, in its own unit.
         offset: f64,
     },
 }
 
-/// How a signal is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Comparison {
     Equal,
@@ -48,7 +47,7 @@ pub enum Comparison {
 }
 
 impl Comparison {
-    /// It is about bits, not about a number's size.
+    /// The comparison is about bits, not about a number's size.
     pub fn is_bits(self) -> bool {
         matches!(self, Self::Has | Self::Lacks)
     }
@@ -121,7 +120,7 @@ impl Operand {
 }
 
 impl Condition {
-    /// Whether it holds in `sample`.
+    /// Whether the condition holds in `sample`.
     pub(super) fn truth(&self, sample: &Sample, captured: &Captured) -> Answer {
         match self {
             Self::Compare {

@@ -20,7 +20,8 @@ pub fn parameter(event: Event, number: i32) -> String {
     })
 }
 
-/// The same for an event whose parameter stands for a name; `None` for a measured one or none.
+/// Name that an event's parameter stands for; `None` where the parameter is a measured value or not
+/// used.
 pub fn named(event: Event, number: i32) -> Option<String> {
     let (code, bits) = (number as u8, number as u16);
     Some(match event {

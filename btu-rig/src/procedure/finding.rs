@@ -60,7 +60,7 @@ pub enum Finding {
     /// A condition did not stay true.
     HeldOnlyFor {
         condition: Condition,
-        /// For how long it did.
+        /// Time for which the condition stayed true.
         held: Duration,
         /// The data that were missing then.
         missing: Option<MissingData>,
@@ -161,13 +161,13 @@ pub enum Finding {
         /// In which attempt, from 1.
         attempt: u32,
     },
-    /// It was found before the tester's computer, or the link, stood still.
+    /// A finding from before the tester's computer, or the link, stood still.
     BeforeStandstill(Box<Finding>),
     /// In the actions before the first step.
     InSetUp(Box<Finding>),
     /// In the actions after the last step.
     InCleanUp(Box<Finding>),
-    /// These actions did not end in time.
+    /// Clean-up actions did not end in time.
     CleanUpTooLong {
         within: Duration,
     },
@@ -281,9 +281,9 @@ pub enum Finding {
     },
     /// The tester could not begin or go on, in both languages, because a file, a port or a setting does not serve.
     Prevented {
-        /// Why, in English.
+        /// The reason in English.
         english: String,
-        /// Why, in Korean.
+        /// The reason in Korean.
         korean: String,
     },
     /// Words of a script.
@@ -327,7 +327,7 @@ impl Finding {
         Self::NotRun(Box::new(self))
     }
 
-    /// It is why nothing could be run without the harness of a bench.
+    /// The finding says that nothing could be run without the harness of a bench.
     pub fn needs_harness(&self) -> bool {
         match self {
             Self::NeedsHarness => true,

@@ -15,11 +15,11 @@ use thiserror::Error;
 pub struct LinkFailure {
     /// What it is connected by, as the user named it.
     pub link: String,
-    /// How it broke.
+    /// Failure of the port.
     pub why: PortFailure,
 }
 
-/// How a port fails; the strings are the operating system's.
+/// Failures of a port; the strings are the operating system's.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PortFailure {
@@ -57,9 +57,9 @@ pub enum LinkTrouble {
     Taken {
         /// Where that tester is.
         by: SocketAddr,
-        /// For how long it has it.
+        /// Time for which the other tester has had the unit.
         held: Duration,
-        /// For how long it has said nothing, if that is long.
+        /// Time for which the other tester has been silent, if that is long.
         silent: Option<Duration>,
     },
     /// Nothing at all came.
@@ -70,18 +70,15 @@ pub enum LinkTrouble {
     },
     /// Frames came that another version of this program makes.
     #[error("{frames} frames of another version of the wire — unit and bench programs differ")]
-    OtherVersion {
-        /// How many.
-        frames: u64,
-    },
+    OtherVersion { frames: u64 },
     /// Bytes came, and no frame that can be taken.
     #[error("garbage: {bytes} bytes, no valid frame{} — {cause}", refused_for(*.refused))]
     Garbage {
-        /// How many bytes.
+        /// Number of bytes that came.
         bytes: u64,
         /// The most frequent reason for which frames were refused, and how many were for it.
         refused: Option<(u64, Reject)>,
-        /// What it looks like.
+        /// Probable cause.
         cause: GarbageCause,
     },
     /// The unit was heard before, and is not any more.
@@ -89,7 +86,7 @@ pub enum LinkTrouble {
     Silent {
         /// Where it is silent.
         channel: Channel,
-        /// For how long.
+        /// Duration of the silence.
         silence: Duration,
         /// What came in the place of frames.
         refused: Option<Refused>,
@@ -111,7 +108,7 @@ pub enum LinkTrouble {
         /// Frames that the unit refused.
         to_unit: u64,
     },
-    /// Who answers says other things of itself than before.
+    /// The unit that answers differs from the one before.
     #[error("another unit answers: {}", changes(.0))]
     OtherUnit(Vec<Changed>),
     /// The log grows faster than it can be read.
@@ -123,7 +120,7 @@ pub enum LinkTrouble {
     /// The unit does not answer questions for its log.
     #[error("the unit's log could not be read: asked {times} times, no answer")]
     LogNotAnswered {
-        /// How many questions.
+        /// Number of questions.
         times: u32,
     },
     /// The unit answers, and does not give an entry that it says it has.
@@ -131,7 +128,7 @@ pub enum LinkTrouble {
         "the unit's log could not be read: asked {times} times for entry {entry} of {of}, which never came"
     )]
     EntryNeverCame {
-        /// How many questions.
+        /// Number of questions.
         times: u32,
         /// Index of the entry.
         entry: u32,
@@ -141,7 +138,7 @@ pub enum LinkTrouble {
     /// Entries were lost in the unit before they could be read.
     #[error("{entries} entries of the unit's log were overwritten before they could be read")]
     Overwritten {
-        /// How many.
+        /// Number of entries lost.
         entries: u64,
     },
     /// The unit ceased to answer questions for its stored memory.
@@ -150,7 +147,7 @@ pub enum LinkTrouble {
     /// The unit says that it stores more than its memory can hold.
     #[error("the unit says that it stores {entries} entries, more than a unit can")]
     MemoryTooLarge {
-        /// How many.
+        /// Number of entries the unit claims.
         entries: u32,
     },
     /// The stored memory has become shorter while it was read.
@@ -180,10 +177,10 @@ pub enum InstrumentFault {
     /// The connection ended.
     #[error("disconnected: {0}")]
     Disconnected(String),
-    /// It took a question and does not answer.
+    /// The instrument took a question and does not answer.
     #[error("no answer within {:.2} s", .0.as_secs())]
     Silent(Duration),
-    /// It answers later than the bench file says.
+    /// The instrument answers later than the bench file says.
     #[error("slow: it took {:.0} ms, and the bench file states {:.0} ms", ms(*.took), ms(*.stated))]
     Slow {
         /// What a command or a reading took.
@@ -194,7 +191,7 @@ pub enum InstrumentFault {
     /// Another model answers.
     #[error("wrong model: {found} answers where {expected} is expected")]
     OtherModel {
-        /// Its answer to `*IDN?`.
+        /// Answer to `*IDN?`.
         found: String,
         /// Part of the answer to `*IDN?` that its driver names.
         expected: String,
@@ -207,7 +204,7 @@ pub enum InstrumentFault {
         /// `serial` of the bench file.
         expected: String,
     },
-    /// Its line is locked.
+    /// The line of the instrument is locked.
     #[error("another program of this computer uses it")]
     Taken,
     /// A carrier without a code was ordered.
@@ -224,13 +221,13 @@ pub enum InstrumentFault {
     NoPlayer {
         /// Error of the sound server.
         server: String,
-        /// That of ALSA.
+        /// Error of ALSA.
         alsa: String,
     },
-    /// It ended, and said nothing.
+    /// The program ended without a word.
     #[error("the program that plays on it has ended")]
     PlayerEnded,
-    /// It reports an error after a command.
+    /// The instrument reports an error after a command.
     #[error("it refused {command}: {error}")]
     Refused {
         /// As it was sent.

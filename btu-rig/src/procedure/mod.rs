@@ -48,7 +48,7 @@ pub use runner::{Poll, PromptPolicy, RunOptions, Runner};
 
 use crate::stimulus::Stimulus;
 
-/// What a procedure drives: the rig, or a stand-in for it.
+/// Interface that a procedure drives: the rig, or a stand-in for the rig.
 pub trait Driver {
     /// Begins a stimulus.
     ///
@@ -176,7 +176,7 @@ impl UnitEvent {
 }
 
 impl EventSource {
-    /// Who it is, in a message.
+    /// Name of the source in a message.
     pub fn who(self) -> &'static str {
         match self {
             Self::Unit => "the unit",
@@ -184,7 +184,7 @@ impl EventSource {
         }
     }
 
-    /// Who logs this event.
+    /// The source that logs this event.
     pub fn of(event: Event) -> Self {
         if event.by_tcms() {
             Self::Tcms

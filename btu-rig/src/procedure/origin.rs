@@ -17,7 +17,7 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// Of a number that names no source.
+    /// Origin of a number that names no source.
     pub(super) fn lacking() -> Self {
         Self {
             lacks: true,
@@ -25,7 +25,7 @@ impl Origin {
         }
     }
 
-    /// Of a number with this source.
+    /// Origin of a number with this source.
     pub(super) fn of(source: impl Into<String>) -> Self {
         Self {
             sources: BTreeSet::from([source.into()]),
@@ -33,7 +33,7 @@ impl Origin {
         }
     }
 
-    /// Of a number made of this one and another.
+    /// Adds the origin of another number, of which this one is made, too.
     pub(super) fn join(&mut self, other: &Self) {
         self.sources.extend(other.sources.iter().cloned());
         self.lacks |= other.lacks;

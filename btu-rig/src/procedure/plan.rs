@@ -1,4 +1,4 @@
-//! What a check procedure is: plain data that can be shown, chosen from, stored and run.
+//! Data of a check procedure: plain data that can be shown, chosen from, stored and run.
 
 use protocol::event::Event;
 use protocol::message::SelfTest;
@@ -40,7 +40,7 @@ impl Connection {
 pub struct Procedure {
     /// Path under the scripts folder without `.star`, for instance `atp/overspeed`.
     pub id: String,
-    /// What it checks, in English.
+    /// Purpose of the check, in English.
     pub title: String,
     pub title_ko: Option<String>,
     pub needs: Connection,
@@ -69,7 +69,7 @@ pub struct Step {
     pub name: String,
     /// Source line of the `step()` call.
     pub line: u32,
-    /// What is done, in order.
+    /// Actions of the step, in order.
     pub actions: Vec<Action>,
     pub expectations: Vec<Expectation>,
     /// Where the numbers of its expectations come from: times, and what signals are compared with.
@@ -81,11 +81,11 @@ pub struct Step {
     pub when: Option<Condition>,
     /// What unit type, line or train lack for it: it is skipped, and this is why.
     pub lacks: Option<String>,
-    /// How often it is run; every repetition must pass.
+    /// Number of repetitions, each of which must pass.
     pub repeat: u32,
     /// What happens after it did not pass.
     pub on_fail: OnFail,
-    /// It begins in the state that the step before left, and cannot be run without that.
+    /// The step begins in the state that the step before left, and cannot be run without that step.
     pub continues: bool,
     /// When it is ended as an error.
     pub time_limit: Duration,
@@ -192,7 +192,7 @@ pub enum What {
     Time {
         /// Beginning of the measured time.
         from: TimeFrom,
-        /// Its end: the first scan in which this holds.
+        /// End of the time: the first scan in which this condition holds.
         to: Condition,
     },
     /// Value at the end of the step.
@@ -378,7 +378,7 @@ impl Procedure {
         self.steps.iter().flat_map(of_step).collect()
     }
 
-    /// It asks the operator something, on a bench or on a train.
+    /// The procedure asks the operator something, on a bench or on a train.
     pub fn asks(&self) -> bool {
         let steps = self.steps.iter().flat_map(|step| &step.actions);
         let mut actions = self.setup.iter().chain(&self.cleanup).chain(steps);

@@ -13,7 +13,7 @@ pub struct Measurement {
     pub name: String,
     /// The value, if there is one.
     pub value: Option<f64>,
-    /// Its unit; empty for counts and states.
+    /// Unit of the value; empty for counts and states.
     pub unit: &'static str,
     /// Least value allowed, in `unit`.
     pub low: Option<f64>,
@@ -27,7 +27,7 @@ pub struct Measurement {
     pub verdict: Verdict,
 }
 
-/// How a result counts: a step has one that counts, and may have others.
+/// How a result of a step counts: each step has one result that counts, and may have others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResultKind {
     /// The result that counts for the step.
@@ -115,7 +115,7 @@ impl Outside {
         Self::ALL.into_iter().find(|place| place.name() == name)
     }
 
-    /// Its name, under which it is stored and shown where a step has the name of the script.
+    /// Name of the place, stored and shown where a step has the name of the script.
     pub const fn name(self) -> &'static str {
         match self {
             Self::BringUp => "bring-up",
@@ -183,7 +183,7 @@ pub enum RunEvent {
     /// The operator is asked; answer with [`super::Runner::answer`].
     Prompt {
         text: String,
-        /// How long it may take.
+        /// Time left for an answer.
         left: Duration,
     },
     Measured {
@@ -213,7 +213,7 @@ pub enum RunEvent {
     ProcedureFinished {
         /// Over its steps and what stands beside them.
         verdict: Verdict,
-        /// What went wrong outside steps; empty if nothing did.
+        /// Findings outside steps; empty if there are none.
         findings: Findings,
         /// Bench time.
         at: Instant,

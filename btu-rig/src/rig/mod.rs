@@ -77,7 +77,7 @@ pub struct Rig {
     tachos: [Tacho; 2],
     train: Train,
     train_data: TrainData,
-    /// Its cars from the head, length in m and share of the weight, at a load in kg.
+    /// Length of each car from the head, m, and its share of the weight at the present load.
     cars: Vec<(f64, f64)>,
     cars_load_kg: f64,
     train_state: TrainState,

@@ -39,7 +39,7 @@ impl Rig {
         self.tester.log().overwritten() + self.tcms_dropped + u64::from(self.tcms.events_lost())
     }
 
-    /// Who the unit is, once it has said so.
+    /// Identity of the unit, once the unit has told it.
     pub fn identity(&self) -> Option<&Identity> {
         self.tester.identity()
     }

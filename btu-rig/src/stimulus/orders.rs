@@ -12,7 +12,7 @@ use crate::stored::train_order;
 pub struct OrderData {
     /// Section that the length is of; 0 = none is given.
     pub section: u16,
-    /// Its length, 0.1 m.
+    /// Length of the section, 0.1 m.
     pub length_dm: u32,
     /// Station at which the train's run ends; 0 = none.
     pub destination: u16,

@@ -141,7 +141,6 @@ stimuli! {
     Tacho {
         /// 1 or 2.
         channel: u8,
-        /// Its condition.
         condition: TachoCondition,
     } [Harness] => format!("tachometer {channel} {}", tacho_text(condition));
     /// Tachometers and markers follow the train model, which obeys the unit through TCMS.
@@ -195,7 +194,6 @@ stimuli! {
     SideDoors {
         /// On the left, else on the right.
         left: bool,
-        /// What they are.
         state: DoorState,
     } [Cab] => format!("doors on the {} {}", side(left), state.label());
     /// The doors follow the unit's contacts, until a hand moves one.
@@ -245,7 +243,6 @@ stimuli! {
     ModeSwitch(#[serde(with = "mode_switch")] mode: ModeSwitch) [Cab] => format!("mode switch to {}", mode.label());
     /// Master controller.
     Controller {
-        /// Its position.
         lever: Lever,
     } [Cab] => format!("master controller to {lever}");
     /// Voltage of the master controller's potentiometer, whatever its position.
@@ -275,7 +272,7 @@ stimuli! {
     } [Cab] => format!("{} {}", switch.label(), on_off(on));
     /// Equipment of a car is cut out or in.
     CutOut {
-        /// What.
+        /// Equipment that is cut out.
         what: CutOut,
         /// Car, counted from 1 at the head.
         car: u8,
@@ -290,7 +287,7 @@ stimuli! {
     };
     /// Equipment of a car fails, or is in order again.
     Failure {
-        /// What.
+        /// Kind of failure.
         what: CarFailure,
         /// Car, counted from 1 at the head.
         car: u8,

@@ -48,7 +48,7 @@ struct PairShares {
     motor_air_n: f64,
     /// What its air brakes give beyond that for cars without one.
     more_air_n: f64,
-    /// Its cars among the parts.
+    /// Places of the pair's cars among the parts.
     parts: Range<usize>,
 }
 
@@ -59,8 +59,8 @@ pub struct BrakingInputs<'a> {
     pub share: f64,
     /// Electric brake there is, share of its greatest (DBE_v).
     pub pattern: f64,
-    /// The same when air that is asked for now will be there. Air takes longer than an inverter, and
-    /// would come too late to a brake that fades.
+    /// Electric brake at the time at which air that is asked for now arrives, share of its greatest.
+    /// Air takes longer than an inverter, and would come too late to a brake that fades.
     pub pattern_ahead: f64,
     /// What inverters should be giving by now and what their electric brakes give (EFM of S3); none
     /// when they give what they are asked for.
@@ -87,8 +87,8 @@ pub struct BrakeDemands {
 }
 
 impl Sharing {
-    /// For the consist's load, with cars whose inverter gives no electric brake, and cars that have no
-    /// air brake.
+    /// Shares for the consist's load, with cars whose inverter gives no electric brake, and cars that
+    /// have no air brake.
     pub fn new(consist: &Consist, no_electric: CarSet, no_air: CarSet) -> Self {
         let pair_n = consist.full_brake_n() / consist.pairs.len().max(1) as f64;
         let wanted_n: f64 = consist

@@ -16,7 +16,7 @@ macro_rules! causes {
                 self.0 = if on { self.0 | one.0 } else { self.0 & !one.0 };
             }
 
-            /// Whether one is in it.
+            /// Whether the set has this cause.
             pub fn contains(self, one: Self) -> bool {
                 self.0 & one.0 == one.0
             }

@@ -16,7 +16,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Of these motor cars and trailers, not weighed.
+    /// Pair of these motor cars and trailers, not weighed.
     fn of((motors, trailers): (CarSet, CarSet)) -> Self {
         Self {
             motors,

@@ -24,7 +24,7 @@ pub struct ControllerInputs {
     pub neutral: bool,
     /// Potentiometer, V.
     pub volts: f64,
-    /// Its contact in the emergency brake train line is open.
+    /// The controller's contact in the emergency brake train line is open.
     pub emergency: bool,
 }
 

@@ -49,7 +49,7 @@ pub struct Effort {
     pub consist: Consist,
     /// Effort asked for, as acceleration: jerk limited.
     effort_mps2: f64,
-    /// The same of the holding brake.
+    /// Effort of the holding brake, as acceleration: jerk limited.
     held_mps2: f64,
     /// The holding brake was on, and its air has not gone yet.
     departs: bool,
@@ -131,7 +131,8 @@ impl Effort {
         demands
     }
 
-    /// What cylinders should hold: nothing to work out once they have long been empty.
+    /// Works out the pressure that cylinders should hold; there is nothing to work out once they
+    /// have long been empty.
     fn expect_air(&mut self, dt_s: f64, asked: bool, air_n: &PerCar) {
         let service = &self.consist.data.service_brake;
         let settled_s = service.dead_time_s + SETTLED * service.release_s;

@@ -2,7 +2,7 @@
 
 use super::cause_bits::EbSources;
 
-/// What the line runs through.
+/// Contacts in the emergency brake train line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineInputs {
     /// Exactly one head control relay is energised.

@@ -44,7 +44,8 @@ pub struct EquipmentFailures {
     pub cylinders: CarSet,
     /// Cars whose brake is not released.
     pub not_released: CarSet,
-    /// They bring the full service brake (BCXNRB): not while they are asked again.
+    /// Brakes that are not released bring the full service brake (BCXNRB): not while they are asked
+    /// again.
     pub not_released_brakes: bool,
 }
 

@@ -5,7 +5,7 @@ use protocol::message::ModeSwitch;
 use super::atc_link::AtoOrder;
 use super::inputs::CabInputs;
 
-/// Who drives the train, by the mode bits of the paper's modules.
+/// Driver of the train, by the mode bits of the paper's modules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Driver {
     /// The driver: emergency, yard and manual mode.

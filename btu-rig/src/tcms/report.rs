@@ -135,7 +135,7 @@ impl Report {
         self.line_takes_nothing = line;
     }
 
-    /// What is on or off.
+    /// Reports conditions that are on or off.
     fn conditions(&mut self, scan: &Scan<'_>) {
         let cabs = &scan.inputs.cabs;
         let contacts = scan

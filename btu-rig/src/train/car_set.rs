@@ -56,7 +56,7 @@ impl CarSet {
         self.0
     }
 
-    /// Its cars' places, from the head.
+    /// Places of the cars, from the head.
     pub fn iter(self) -> impl Iterator<Item = usize> {
         let mut left = self.0;
         std::iter::from_fn(move || {

@@ -26,7 +26,7 @@ pub(super) struct Efforts {
 pub(super) struct TrainMotion {
     /// Train's speed, m/s, forward positive.
     pub velocity_mps: f64,
-    /// Its acceleration in the step before, m/s².
+    /// Acceleration in the step before, m/s².
     pub accel_mps2: f64,
     /// Traction pulls forward 1 or backward −1.
     pub reverser: f64,

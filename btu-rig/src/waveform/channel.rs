@@ -23,13 +23,13 @@ pub struct ChannelConfig {
     pub hum_lines: u32,
     /// A line of the traction inverter, mV rms.
     pub inverter_mv: f64,
-    /// It sweeps between these, Hz, up and down.
+    /// Limits of the line's sweep, Hz, up and down.
     pub inverter_hz: [f64; 2],
     /// In this time, s.
     pub inverter_sweep_s: f64,
     /// Mean number of dropouts, 1/s.
     pub dropouts_per_s: f64,
-    /// How long each lasts, s.
+    /// Duration of a drop-out, s.
     pub dropout_s: f64,
     /// Greatest amplitude that passes, mV.
     pub clip_mv: f64,

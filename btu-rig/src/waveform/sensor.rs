@@ -15,7 +15,7 @@ const AMPLITUDE_MV: f64 = 1_000.0;
 pub struct SensorWave {
     sample_hz: f64,
     lines: [Line; 2],
-    /// What the lines do next: at a sample from now on, line, high or low.
+    /// Coming changes of the lines: time in samples from now on, line, high or low.
     changes: VecDeque<(f64, usize, bool)>,
     /// Time since the last pulse, samples.
     since: f64,

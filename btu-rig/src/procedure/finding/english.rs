@@ -14,7 +14,7 @@ use crate::procedure::plan::Condition;
 use crate::procedure::runner::ATTEMPTS;
 use crate::stimulus::text::number;
 
-/// Who logged what, as the beginning of a sentence.
+/// Beginning of a sentence: who logged which event.
 impl Display for LoggedEvent {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let event = self.event();

@@ -16,7 +16,7 @@ pub struct Findings(Vec<Found>);
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Found {
     pub finding: Finding,
-    /// How often it came; not in JSON if once.
+    /// Number of times the finding came; not in JSON if 1.
     #[serde(default = "once", skip_serializing_if = "is_once")]
     pub times: u32,
 }

@@ -236,7 +236,7 @@ fn alloc(item: Item, heap: Heap<'_>) -> Value<'_> {
     }
 }
 
-/// The same for predeclared names.
+/// Value of a predeclared name on a frozen heap.
 pub(super) fn alloc_frozen(item: Item, heap: &FrozenHeap) -> FrozenValue {
     match item {
         Item::None => heap.alloc(NoneType),

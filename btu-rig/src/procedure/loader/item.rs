@@ -80,7 +80,7 @@ impl Item {
         }
     }
 
-    /// Its number, if it is one.
+    /// Number of the item, if it is one.
     pub(super) fn number(&self) -> Option<f64> {
         match self {
             Self::Int(n) => Some(*n as f64),

@@ -130,7 +130,7 @@ impl Runner {
             Phase::Setup(_) => self.spoil(self.begun_at.target, now, now, by),
             Phase::Steps { next, live } => {
                 let (place, live) = (*next, live.take());
-                // It counts, although the step that it came in is repeated.
+                // A failure from before the standstill counts, although its step is repeated.
                 let before = live.iter().flat_map(|run| run.failures());
                 let before = before.map(|why| Finding::BeforeStandstill(Box::new(why.clone())));
                 self.findings.extend(before);
@@ -139,7 +139,7 @@ impl Runner {
                     self.spoil(place, live.map_or(now, |run| run.started()), now, by);
                 }
             }
-            // Its actions may have waited for what the unit did not do while it braked.
+            // Actions of the clean-up may have waited for what the unit did not do while it braked.
             Phase::CleanUp { actions, since } if self.clean_ups < CLEAN_UPS => {
                 self.clean_ups += 1;
                 (*actions, *since) = (ActionRun::default(), now);

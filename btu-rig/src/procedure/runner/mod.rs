@@ -105,7 +105,7 @@ pub struct Runner {
     left_open: Vec<UnitEvent>,
     /// Reported events that no step provoked.
     reported: usize,
-    /// Those that were not, because there were too many.
+    /// Unprovoked events beyond those reported, because there were too many.
     not_reported: u64,
     leaving: bool,
     pause: Pause,

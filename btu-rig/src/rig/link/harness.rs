@@ -43,7 +43,7 @@ impl std::str::FromStr for Harness {
     }
 }
 
-/// What is known of it.
+/// Presence of the harness, as far as it is known.
 #[derive(Debug)]
 pub struct HarnessWatch {
     found: Option<bool>,
@@ -68,7 +68,7 @@ impl HarnessWatch {
         self.found
     }
 
-    /// It is there, as far as is known.
+    /// Whether the harness is connected, as far as is known.
     pub fn is_there(&self) -> bool {
         self.found == Some(true)
     }

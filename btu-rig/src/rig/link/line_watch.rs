@@ -21,7 +21,7 @@ use super::lateness::Lateness;
 
 /// Span over which a line is bad or good, as the unit's own.
 const SPAN: Duration = Duration::from_ms(10_000);
-/// How often counts are kept.
+/// Interval at which counts are kept.
 const EVERY: Duration = Duration::from_ms(500);
 /// What the unit does about lost frames may be reported so much later: its time-outs, and reading its log.
 const LATELY: Duration = Duration::from_ms(12_000);

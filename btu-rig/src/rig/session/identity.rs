@@ -1,4 +1,4 @@
-//! Who the unit says it is, against what its train's record says it should be.
+//! Comparison of the unit's identity with its train's record.
 
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ pub struct ExpectedIdentity {
     pub software: Option<[u8; 3]>,
 }
 
-/// What a comparison came to.
+/// Result of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Compared {
     signal: Signal,

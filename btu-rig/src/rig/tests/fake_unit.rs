@@ -19,7 +19,7 @@ pub struct FakeUnit {
     pub reading: Option<u32>,
     pub log: Vec<LogEntry>,
     pub oldest: u32,
-    /// Who it says it is, its uptime aside.
+    /// Identity that the unit tells, its uptime aside.
     pub identity: Identity,
     /// What its status says of its self-test.
     pub self_test: SelfTest,
@@ -39,9 +39,9 @@ pub struct FakeUnit {
     pub noise: &'static [u8],
     pub to_tcms: AtcToTcms,
     pub outputs: Outputs,
-    /// It is reached at its harness, and not at its maintenance port alone.
+    /// The unit is reached at its harness, too, not at its maintenance port alone.
     pub harness: bool,
-    /// It knows `Subscribe`.
+    /// The unit knows `Subscribe`.
     pub tells_train_state: bool,
     pub subscribed: bool,
     pub train_state: TrainState,

@@ -56,7 +56,7 @@ fn air_share(equipment: &Equipment, car: usize, like: usize) -> f64 {
     equipment.air_n[car - 1] / equipment.air_n[like - 1]
 }
 
-/// Whether a fault shows now.
+/// Tells whether a fault shows now.
 type Shows = fn(&mut Bench<FakeUnit>) -> bool;
 
 const CASES: [(&str, Shows); 30] = [

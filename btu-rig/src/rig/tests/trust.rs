@@ -237,7 +237,7 @@ fn a_unit_that_never_shows_its_log_is_an_error_though_nothing_is_in_it() {
     assert!(error.ends_with("times, no answer"), "{error}");
 }
 
-/// It says it has logged something, and answers with the end of the log alone.
+/// A unit says that it has logged something, and answers with the end of the log alone.
 #[test]
 fn a_log_without_the_entries_it_should_have_is_an_error() {
     let mut bench = bench(FakeUnit {
@@ -409,7 +409,7 @@ fn a_unit_that_restarts_repeatedly_is_not_reported_as_a_bad_line() {
     }
     bench.link_mut().dead = Channel::ALL.to_vec();
     bench.run_ms(200);
-    // It may be about to be heard again.
+    // The unit may be about to be heard again.
     assert_eq!(bench.rig().link_error(), None);
     bench.run_ms(9_000);
     let error = link_error(&bench);

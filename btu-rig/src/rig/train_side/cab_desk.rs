@@ -29,7 +29,7 @@ pub struct CabDesk {
     pub lever: Lever,
     /// Voltage of its potentiometer, whatever its position.
     pub volts: Option<f64>,
-    /// Its P and B contacts, whatever its position.
+    /// P and B contacts, whatever the lever's position.
     pub contacts: Option<(bool, bool)>,
     /// Reverser: 1, 0 or −1.
     pub reverser: i8,

@@ -331,7 +331,7 @@ mod tests {
         );
         let var = pitches.iter().map(|p| (p - 40_500.0).powi(2)).sum::<f64>();
         let sigma = (var / pitches.len() as f64).sqrt() / 40_500.0;
-        // Of the difference of two places, each 5 %.
+        // Each pitch is the difference of two places, each uncertain by 5 %.
         assert!((sigma - 0.0707).abs() < 0.015, "{sigma}");
     }
 

@@ -24,7 +24,7 @@ pub struct TrainSeen {
 pub struct TcmsPort {
     /// Condition of the link as the procedure wants it.
     pub condition: TcmsCondition,
-    /// What is wrong with it.
+    /// Condition of the port, if it is faulty.
     pub fault: Option<TcmsCondition>,
     pub ato_enable: bool,
     /// Passengers, kg.

@@ -73,7 +73,7 @@ impl Injected {
         }
     }
 
-    /// Those of `modes` that are not in the unit; their times count from `from`.
+    /// Injects those of `modes` that act outside the unit; their times count from `from`.
     pub fn begin(&mut self, modes: &[FaultMode], from: Instant) {
         self.from = from;
         let random = &mut self.random;

@@ -224,12 +224,12 @@ impl Wheel {
         self.plan.next >= self.plan.segments.len()
     }
 
-    /// It does not turn and is not about to.
+    /// The wheel does not turn and is not about to.
     pub fn standing(&self) -> bool {
         self.speed_mps == 0.0 && self.settled()
     }
 
-    /// It turns backward, or would.
+    /// The wheel turns backward, or would.
     pub fn backward(&self) -> bool {
         self.backward
     }
@@ -239,7 +239,7 @@ impl Wheel {
         Speed::from_mps(self.speed_mps)
     }
 
-    /// Its speed, m/s, forward positive.
+    /// Speed at the rim, m/s, forward positive.
     pub fn velocity_mps(&self) -> f64 {
         if self.backward {
             -self.speed_mps

@@ -19,7 +19,7 @@ const CROSSTALK_PERIOD: Duration = Duration::from_ms(50);
 #[derive(Debug)]
 pub struct Antenna {
     wanted: AntennaCommand,
-    /// That of a neighbouring track circuit.
+    /// Signal of a neighbouring track circuit.
     second: Second,
     sensors: Sensors,
     random: Random,
@@ -42,7 +42,7 @@ struct AntennaCommand {
 #[derive(Debug, Default)]
 struct Second {
     signal: AntennaCommand,
-    /// It was sent, and its end was not.
+    /// The signal was sent, and its end was not.
     told: bool,
     due: Instant,
 }
@@ -114,7 +114,7 @@ impl Antenna {
         })
     }
 
-    /// What arrives of both signals: carrier, Hz, code rate, Hz, level, mV.
+    /// Both signals as they arrive: carrier, Hz, code rate, Hz, level, mV.
     pub fn arriving(&self) -> [(f64, f64, f64); 2] {
         [&self.wanted, &self.second.signal].map(|signal| {
             (

@@ -7,7 +7,8 @@ use protocol::message::{AtcToTcmsBits, ModeSwitch, Outputs};
 
 use super::bench::{Bench, order};
 
-/// It masks P, value and electric brake; cut out, it masks itself and nothing else.
+/// The emergency brake masks P, value and electric brake; cut out, it masks itself and nothing
+/// else.
 #[test]
 fn the_emergency_brake_masks_power_and_value_unless_cut_out() {
     for lever in [Lever::Power(4), Lever::Brake(4)] {

@@ -14,7 +14,7 @@ use crate::procedure::plan::{Action, Comparison, Condition, Expectation, Operand
 
 /// Time for something to become true if a script gives none.
 const BECOMES_WITHIN: Duration = Duration::from_ms(2000);
-/// The same for `until`.
+/// Time that `until` waits if a script gives none.
 const UNTIL_WITHIN: Duration = Duration::from_ms(10_000);
 
 const TIME: ParamType = ParamType::Amount(Dimension::Time);
