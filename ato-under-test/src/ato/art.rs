@@ -21,7 +21,7 @@ pub enum Checks {
     Failed(AtoFailure),
 }
 
-/// What the state depends on.
+/// Inputs of the state.
 #[derive(Clone, Copy, Debug)]
 pub struct ArtInputs {
     /// Every check passes and nothing has failed on the way.

@@ -47,7 +47,7 @@ pub struct JogInputs {
     pub jogs: bool,
 }
 
-/// What came of a cycle.
+/// Result of a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JogOutcome {
     /// The run is over: aligned, or given up.
@@ -169,7 +169,7 @@ impl Jog {
         JogOutcome::default()
     }
 
-    /// It has the train, and the run's controller has not.
+    /// Jogging drives the train; the run's controller does not.
     pub fn acts(&self) -> bool {
         self.phase != Phase::Idle
     }
@@ -188,7 +188,7 @@ impl Jog {
         self.phase == Phase::Goes(0, false)
     }
 
-    /// It has given the stop point up.
+    /// Jogging has given the stop point up.
     pub fn gave_up(&self) -> bool {
         self.gave_up
     }

@@ -81,11 +81,11 @@ pub struct AtoInputs<'a> {
     pub train: TrainReport,
     /// Passenger load TCMS reports, kg.
     pub load_kg: f64,
-    /// What KRN's checks say.
+    /// Results of KRN's checks.
     pub checks: Checks,
 }
 
-/// What ATO commands.
+/// Commands of ATO.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AtoOutputs {
     /// ATO is out of inspection ([`AtoState::Inspection`]).
@@ -203,7 +203,7 @@ impl Ato {
         }
     }
 
-    /// What has failed: the first failure of a run is kept until the train stands outside Automatic
+    /// Failure of ATO: the first failure of a run is kept until the train stands outside Automatic
     /// Run; then ATO is inspected again.
     fn failure_after(&self, inputs: &AtoInputs<'_>, findings: &Findings) -> AtoFailure {
         let run = inputs.mode == Mode::AutomaticRun;

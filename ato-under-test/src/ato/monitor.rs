@@ -72,7 +72,8 @@ pub struct Findings {
     pub absurd: AbsurdInputs,
     /// Speed less the speed effort should have made, m/s.
     pub not_following_mps: Option<f64>,
-    /// The same of a train that withholds effort, by TCMS's own report; reported once until it is over.
+    /// Deviation of a train that withholds effort by its TCMS's own report, m/s; reported once until it
+    /// is over.
     pub withheld_mps: Option<f64>,
     /// Distance past the stop point, m; reported once a run.
     pub overrun_m: Option<f64>,

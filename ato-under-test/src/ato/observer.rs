@@ -21,7 +21,7 @@ const FRAME_S: f64 = 0.01;
 /// Time between pulses at which a measured speed begins to lose its weight, and has none left, s.
 const PULSE_S: (f64, f64) = (0.034, 0.1);
 
-/// How speed is measured.
+/// Quality of the measured speed.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedMeasurement {
     /// Window over which it is averaged, s.
@@ -79,7 +79,7 @@ struct Times {
 }
 
 impl Times {
-    /// Of inverters, of air, or of both while one hands over to the other.
+    /// Times of inverters, of air, or between both while one hands over to the other.
     fn of(train: &AtoTrainConfig, speed_mps: f64, braking: bool) -> Self {
         let span = (train.air_from_kmh - train.air_alone_kmh).max(0.1);
         let air = ((train.air_from_kmh - speed_mps * 3.6) / span).clamp(0.0, 1.0);

@@ -61,7 +61,7 @@ impl Witness {
 pub struct Belief {
     /// Speed that follows the measured one as fast as adhesion lets a train, m/s.
     reference_mps: f64,
-    /// The same for each tachometer.
+    /// The reference of each tachometer, m/s.
     each_mps: [f64; 2],
     /// The greatest that it was since it was last near the measured one, m/s.
     last_mps: f64,

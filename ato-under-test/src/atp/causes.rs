@@ -14,7 +14,7 @@ use crate::signals::Inputs;
 pub struct Found {
     /// The train ran against the reverser.
     pub rollback: bool,
-    /// It ran forward although ATO jogs it backward.
+    /// The train ran forward although ATO jogs it backward.
     pub wrong_way: bool,
     pub door_open: bool,
     /// Faster than the limit for too long.

@@ -106,7 +106,7 @@ impl CodeDecoder {
         // What may be over already permits no more.
         let patience = match stricter(match_, self.code) {
             true => detect,
-            // Its beginning is known only so exactly.
+            // The beginning of a code that comes and goes is known only to [`KNOWN_TO`].
             false if self.comes_back => hold + signal.heard_for.min(KNOWN_TO),
             false => detect + signal.lags,
         };

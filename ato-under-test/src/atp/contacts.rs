@@ -39,7 +39,7 @@ impl<T: Copy + PartialEq> Contacts<T> {
         }
     }
 
-    /// They chatter, until a position has been chosen.
+    /// The contacts chatter, until a position has been chosen.
     pub fn chatters(&self) -> bool {
         self.chatters.value()
     }

@@ -48,7 +48,7 @@ impl DoorLines {
         self.sides(|_, closed, locked| !self.lines.contains(closed | locked))
     }
 
-    /// Of these, the sides that are not enabled.
+    /// Sides that are neither proved closed and locked nor enabled.
     pub fn open_without(self, enabled: Outputs) -> DoorSide {
         self.sides(|enable, closed, locked| {
             !enabled.contains(enable) && !self.lines.contains(closed | locked)

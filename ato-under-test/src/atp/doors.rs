@@ -231,7 +231,7 @@ mod tests {
             train
         }
 
-        /// These lines for 600 ms, with doors enabled on a side. Whether the train is held.
+        /// Feeds these lines for 600 ms, with doors enabled on a side; whether the train is held.
         fn has(&mut self, lines: TrainLines, side: DoorSide) -> bool {
             let inputs = at_platform(lines, side);
             for _ in 0..60 {

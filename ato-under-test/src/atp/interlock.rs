@@ -1,5 +1,5 @@
-//! What follows a brake: power only after the lever was at neutral, and the service brake where the emergency brake does
-//! not act.
+//! Interlocks that follow a brake: power only after the lever was at neutral, and the service brake where the
+//! emergency brake does not act.
 
 use protocol::event::Event;
 use protocol::{Duration, Instant};
@@ -70,7 +70,7 @@ impl BrakePath {
         }
     }
 
-    /// It does not: the next brake has to.
+    /// Whether the path of the brake has failed: the next brake has to act.
     pub fn failed(&self) -> bool {
         self.failed.value()
     }

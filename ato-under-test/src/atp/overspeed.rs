@@ -23,7 +23,8 @@ pub struct SupervisedMotion {
     /// The limit is zero because the code, or none, says so, or the mode is off.
     pub stop: bool,
     pub standstill: bool,
-    /// It does what no standing train does ([`Tachometers::moves`](super::Tachometers::moves)).
+    /// The train does what no standing train does
+    /// ([`Tachometers::moves`](super::Tachometers::moves)).
     pub moves: bool,
 }
 

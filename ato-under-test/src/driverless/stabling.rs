@@ -99,7 +99,8 @@ impl Stabling {
         matches!(self.stage, Stage::PutAway | Stage::Waking)
     }
 
-    /// It is, or was woken with a self-test that failed: put away until proved sound.
+    /// The unit is put away, or was woken with a self-test that failed: it stays put away until
+    /// proved sound.
     pub fn sleeps(&self) -> bool {
         self.asleep() || self.stage == Stage::Failed
     }

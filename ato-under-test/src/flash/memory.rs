@@ -60,7 +60,7 @@ struct Rings {
 /// Why a time is not stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SetClockError {
-    /// It is none that can be, or too many were sent.
+    /// The time is impossible, or too many times were sent.
     OutOfRange,
     Failed,
 }

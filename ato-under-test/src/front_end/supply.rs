@@ -14,7 +14,7 @@ pub enum Supply {
     /// Voltage is there.
     Up,
     Down,
-    /// It has just come back.
+    /// The supply has just come back.
     Back,
 }
 

@@ -247,7 +247,8 @@ impl Locator {
         }
         self.hold_against_the_way(now, place_m, &detection, log);
         self.note_way(place_m, &detection);
-        // Of a section's start only the distance is known; a span on sliding wheels tells nothing of their diameter.
+        // At the start of a section only the distance is known; a span on sliding wheels tells nothing of their
+        // diameter.
         let start = self.span_from(&detection, self.fix.marker != 0);
         if let Some((start, _)) = start.filter(|_| self.slid_m == 0.0) {
             let track_m = place_m - start.place_m;

@@ -55,7 +55,7 @@ impl Wheels {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MarkerCheck {
-    /// Its place is the train's position.
+    /// The marker's place is the train's position.
     Accepted,
     /// Not its turn: one that has been passed, or one at another's place.
     OutOfOrder,
@@ -77,7 +77,7 @@ pub fn window_m(fix: &PositionFix, run_m: f64, wheels: &Wheels, config: &MarkerC
 /// The detection that was away from its place before this one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PendingDetection {
-    /// It, none since the fix.
+    /// The detection; none since the fix.
     pub detection: Option<MarkerDetection>,
     /// A marker is overdue: even the fix may have been wrong.
     pub unsure: bool,

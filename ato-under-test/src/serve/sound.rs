@@ -80,7 +80,7 @@ pub fn is_there(program: &str) -> bool {
 /// Listens at a sound card.
 pub struct Listener {
     child: Child,
-    /// What was heard, mV; `None` = the program that carries it has ended.
+    /// Level that was heard, mV; `None` = the program that carries the sound has ended.
     heard: Arc<Mutex<Option<Steady>>>,
 }
 
@@ -138,7 +138,7 @@ impl Listener {
 
 impl Drop for Listener {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The process may have ended by itself.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -123,7 +123,7 @@ mod tests {
                 steady.push((made..until).map(tone));
                 made = until;
                 steady.take(&mut out);
-                // Of three samples a third of a turn apart the squares add up to 1.5.
+                // The squares of three samples a third of a turn apart add up to 1.5.
                 let power: f32 = out.iter().map(|pair| pair[0] * pair[0]).sum();
                 if block > 10 {
                     worst = worst.max((f64::from(power) / 240.0 - 1.0).abs());

@@ -69,7 +69,7 @@ struct SecondClient {
     stream: TcpStream,
     address: SocketAddr,
     since: Instant,
-    /// It was sent who has the unit.
+    /// The client was sent `Taken`, which says who has the unit.
     answered: bool,
 }
 

@@ -27,7 +27,8 @@ pub struct TrainState {
     pub speed: Speed,
 }
 
-/// Who sent station data into the TWC antenna and hears the answer, with the sequence number of its frame.
+/// Sender of station data into the TWC antenna, which hears the answer, with the sequence number of its
+/// frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StationSender {
     Loop(u16),

@@ -52,7 +52,7 @@ pub struct Unit {
     maintenance: Maintenance,
     board: TestBoard,
     self_tester: SelfTester,
-    /// Those of the train; nothing of test signals gets into them.
+    /// Functions that see the train; nothing of test signals gets into them.
     functions: Functions,
     test_mode: Option<TestMode>,
     scanned: ScannedInputs,

@@ -31,7 +31,7 @@ impl Unit {
         self.outputs_of(self.tested())
     }
 
-    /// What the contacts should do.
+    /// Outputs that the contacts should have.
     pub(super) fn wanted(&self, now: Instant) -> Outputs {
         let train = self.outputs_of(&self.functions);
         if !self.maintenance.holds_brake(now) {

@@ -113,7 +113,7 @@ pub fn train_state(unit: &Unit, now: Instant) -> TrainState {
     }
 }
 
-/// Why the relay is open.
+/// Cause for which the relay is open.
 fn eb_cause(unit: &Unit) -> EbCause {
     let held = unit.test_mode.is_some() && !unit.commanded.contains(Outputs::EB_RELAY);
     shown_cause(&unit.tested().atp, &unit.functions.atp, held)

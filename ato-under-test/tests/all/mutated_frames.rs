@@ -29,7 +29,7 @@ const MOST_SPOILED: u64 = 3;
 /// Memory after the first tenth may grow by one part of so many.
 const MOST_GROWTH: u64 = 10;
 
-/// What came of a campaign.
+/// Figures of a campaign.
 #[derive(Clone, Default)]
 struct Figures {
     kinds: [u64; Kind::ALL.len()],

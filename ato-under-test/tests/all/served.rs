@@ -100,7 +100,7 @@ impl Client {
     }
 
     pub fn write(&mut self, bytes: &[u8]) {
-        // Who has been turned away may not be able to write any more.
+        // A client that has been turned away may not be able to write any more.
         let _ = self.stream.write_all(bytes);
     }
 

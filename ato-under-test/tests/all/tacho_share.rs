@@ -20,7 +20,7 @@ fn running(kmh: f64) -> Bench {
     bench
 }
 
-/// The same, and tachometer 2 tells so many times the speed.
+/// A running train whose tachometer 2 tells `factor` times the speed.
 fn unlike(kmh: f64, factor: f64) -> Bench {
     let mut bench = running(kmh);
     let sound_mps = bench.speeds[0];

@@ -1,5 +1,5 @@
-//! What TCMS tells the unit: who opens the emergency brake line, what lets a train not run, and whose
-//! fault it is that a train does not do what ATO asks.
+//! Reports of TCMS to the unit: who opens the emergency brake line, what lets a train not run, and
+//! whose fault it is that a train does not do what ATO asks.
 
 use crate::common::{Bench, fault};
 use crate::journey::Journey;
@@ -164,7 +164,7 @@ fn what_tcms_does_by_itself_is_not_the_units_fault() {
         let error_m = journey.stop_error_m();
         assert!(error_m.abs() < 0.3, "{bits:?}: {error_m}");
         let mut faults = journey.faults();
-        // It stood on the way, where no door may open.
+        // The train stood on the way, where no door may open.
         faults.retain(|event| *event != "door_enable_refused");
         assert_eq!(faults, [""; 0], "{bits:?}");
     }

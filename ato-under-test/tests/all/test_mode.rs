@@ -415,8 +415,8 @@ fn ready(automatic: bool) -> Bench {
     bench
 }
 
-/// The same by numbers: as many sequences as the promise is made for, a hundred on each unit, which is brought back
-/// to rest and armed where it is not.
+/// No sequence of acts releases an armed train, by numbers: as many sequences as the promise is made for, a hundred
+/// on each unit, which is brought back to rest and armed where it is not.
 #[test]
 #[ignore = "minutes: cargo test --release -p ato-under-test --test all -- --ignored sequences"]
 fn a_million_sequences_release_no_armed_train() {

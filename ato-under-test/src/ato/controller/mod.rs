@@ -60,7 +60,7 @@ impl From<&ControllerInput> for ReferenceInputs {
     }
 }
 
-/// What a controller asks for.
+/// Demand of a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
     /// Target speed now, m/s.

@@ -25,7 +25,7 @@ use crate::ato::profile::{FinalStop, FinalStopLimits, MarkerApproach, SCurve, Se
 /// Speed by which an order must be below the station stop's profile to rule instead, m/s.
 const ORDER_MPS: f64 = 0.05;
 
-/// What the profile is doing.
+/// Phase of the profile.
 #[derive(Clone, Debug)]
 enum Phase {
     /// Toward or at the cruising speed by eq. (1).
@@ -178,7 +178,7 @@ impl Servo {
         SCurve::new(from, target_mps, seconds, self.rates.jerk_mps3)
     }
 
-    /// Its time for a change of speed, s.
+    /// Time of the S-curve for a change of speed, s.
     fn s_curve_s(&self, change_mps: f64) -> f64 {
         self.config.s_curve_s_per_mps * libm::fabs(change_mps) + self.config.s_curve_s
     }

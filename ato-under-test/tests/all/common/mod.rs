@@ -58,7 +58,7 @@ pub struct Bench {
     pub tcms_obeys: bool,
     /// The brake line stays energised, whatever the relay does.
     pub welded: bool,
-    /// Its alive counter stands still.
+    /// The alive counter of TCMS stands still.
     pub alive_stands: bool,
     /// The emergency brake is cut out: an open line does not apply it.
     pub eb_cut_out: bool,
@@ -96,7 +96,7 @@ pub fn departure(section: &protocol::line::Section) -> TwcWayside {
     }
 }
 
-/// The same as a request to the TEST module.
+/// Station data as a request to the TEST module.
 pub fn test_station(session: u32, data: TwcWayside) -> TestTwc {
     TestTwc {
         session,

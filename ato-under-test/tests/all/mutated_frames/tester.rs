@@ -20,7 +20,7 @@ const GONE: Duration = Duration::from_secs(20);
 const FIRST: usize = 40;
 const KEPT: usize = 400;
 
-/// What came of a connection.
+/// Outcome of a connection.
 pub struct Ended {
     /// Frames that the unit counts as refused.
     pub refused: u64,
