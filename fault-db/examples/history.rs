@@ -53,7 +53,7 @@ const KINDS: [(i64, &str, &str); 20] = [
     (9000, "eb_relay", "major"),
 ];
 
-/// What a run measures: procedure, name, value as good as new.
+/// Measurements of a run: procedure, name, value as good as new.
 const CHECKS: [(&str, &str, f64); 6] = [
     ("atp/power_up", "release_time", 1.08),
     ("atp/limit_speed", "decoding_time", 0.72),

@@ -3,16 +3,16 @@
 /// How a file is no longer the one that was opened, as what follows its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Misplaced {
-    /// It has no name any more.
+    /// The file has no name any more.
     #[error("was removed")]
     Removed,
-    /// Its name leads to another file.
+    /// The name leads to another file.
     #[error("was replaced by another file")]
     Replaced,
     /// Two names lead to it.
     #[error("has a second name (a hard link); remove that name")]
     SecondName,
-    /// Its write-ahead log is another.
+    /// The write-ahead log beside the file was removed or replaced.
     #[error("lost its log: the file beside it that ends in -wal was removed or replaced")]
     NoLog,
     /// The run is not in it.

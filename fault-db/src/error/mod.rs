@@ -26,7 +26,7 @@ pub enum StoreError {
         /// The database file.
         path: PathBuf,
     },
-    /// Who asked for the work has stopped it: nothing of it is kept.
+    /// The caller has stopped the work: nothing of it is kept.
     #[error("stopped before its end")]
     Stopped,
     /// No room for the write; what was committed before remains.
@@ -60,7 +60,7 @@ pub enum StoreError {
     NewerSchema {
         /// The database file.
         path: PathBuf,
-        /// Its schema version.
+        /// Schema version of the file.
         found: i32,
         /// The newest this crate knows.
         known: i32,
@@ -72,7 +72,7 @@ pub enum StoreError {
         path: PathBuf,
         /// The first finding.
         what: Box<Damage>,
-        /// How many more there are.
+        /// Number of further findings.
         more: usize,
     },
     /// The file is no longer the one that was opened, or another name leads to it, too.
@@ -80,7 +80,7 @@ pub enum StoreError {
     Misplaced {
         /// The database file.
         path: PathBuf,
-        /// What has happened to it.
+        /// Change of the file.
         what: Misplaced,
     },
     /// The file is an older copy: more of its chain of seals is known elsewhere.
@@ -110,7 +110,7 @@ pub enum StoreError {
         after: i64,
         /// run, event or note.
         what: String,
-        /// Its id.
+        /// Id of that run, event or note.
         id: Id,
     },
     /// An earlier schema that a read-only opening may not migrate.
@@ -118,7 +118,7 @@ pub enum StoreError {
     OlderSchema {
         /// The database file.
         path: PathBuf,
-        /// Its schema version.
+        /// Schema version of the file.
         found: i32,
         /// The one this crate reads.
         known: i32,
@@ -134,7 +134,7 @@ pub enum StoreError {
     CannotOpen {
         /// The file asked for.
         path: PathBuf,
-        /// What the system said.
+        /// Message of the system.
         reason: String,
     },
     /// The disk or the system failed a read or a write.
@@ -156,7 +156,7 @@ pub enum StoreError {
     Corrupt {
         /// The database file.
         path: PathBuf,
-        /// What is wrong, and where.
+        /// Damage, and its place.
         detail: String,
     },
     /// No row has the id or name.
@@ -164,7 +164,7 @@ pub enum StoreError {
     NotFound {
         /// run, fault, trace or measurement.
         what: &'static str,
-        /// What was asked.
+        /// The name that was asked for.
         asked: String,
     },
     /// A run names the trace, which is not here.
@@ -173,7 +173,7 @@ pub enum StoreError {
          not fit its seal; importing a whole copy of the file that recorded it brings it"
     )]
     TraceMissing {
-        /// What was asked.
+        /// The trace that was asked for.
         asked: String,
         /// The run.
         run: Id,
@@ -183,7 +183,7 @@ pub enum StoreError {
     Ambiguous {
         /// run, fault or trace.
         what: &'static str,
-        /// What was asked.
+        /// The name that was asked for.
         asked: String,
         /// A few of those that fit.
         matches: Vec<Id>,
@@ -191,7 +191,7 @@ pub enum StoreError {
     /// A search text without any word.
     #[error("{asked:?} has no word to search for; give letters or digits")]
     NoWords {
-        /// What was asked.
+        /// The words that were asked for.
         asked: String,
     },
     /// Neither an id, nor a part of one, nor `latest`.
@@ -201,7 +201,7 @@ pub enum StoreError {
     BadId {
         /// run, fault or trace.
         what: &'static str,
-        /// What was asked.
+        /// The id that was asked for.
         asked: String,
     },
     /// A text exceeds its limit.
@@ -209,7 +209,7 @@ pub enum StoreError {
     TextTooLong {
         /// Which text, as "the note".
         what: &'static str,
-        /// Its length in characters.
+        /// Length of the text, characters.
         length: usize,
         /// The limit.
         most: usize,
@@ -252,7 +252,7 @@ pub enum StoreError {
     Trace {
         /// The trace.
         trace: Id,
-        /// What is wrong with it.
+        /// Error of the trace.
         source: TraceError,
     },
     /// A backup or export never overwrites.
@@ -269,7 +269,7 @@ pub enum StoreError {
         /// What is missing, or what the system said.
         reason: String,
     },
-    /// The same file is both source and target.
+    /// One file is both source and target.
     #[error("{} cannot be merged into itself; name another file", .path.display())]
     SameFile {
         /// The file.
@@ -278,13 +278,13 @@ pub enum StoreError {
     /// The statement does more than read.
     #[error("only one reading statement is allowed here ({reason}); write a single SELECT")]
     QueryRefused {
-        /// What was refused.
+        /// Why the statement was refused.
         reason: String,
     },
     /// SQLite rejected the statement.
     #[error("the query failed: {reason}")]
     QueryFailed {
-        /// What SQLite said.
+        /// Message of SQLite.
         reason: String,
     },
     /// The result exceeds a limit.
@@ -308,7 +308,7 @@ pub enum StoreError {
     /// Not the address of a server.
     #[error("bad server address: {reason}; write postgres://USER@HOST/DATABASE")]
     BadAddress {
-        /// What is wrong with it; never its password.
+        /// Fault of the address; never its password.
         reason: String,
     },
     /// The server does not answer, or no longer.
@@ -316,9 +316,9 @@ pub enum StoreError {
     ServerUnreachable {
         /// The server.
         path: PathBuf,
-        /// What was being done.
+        /// Work during which the error came.
         doing: &'static str,
-        /// What went wrong.
+        /// Reason of the error.
         reason: ServerReason,
     },
     /// The server refuses the connection or the right.
@@ -342,7 +342,7 @@ pub enum StoreError {
     ServerBusy {
         /// The server.
         path: PathBuf,
-        /// What was being done.
+        /// Work during which the error came.
         doing: &'static str,
         /// The server's message.
         reason: String,
@@ -372,7 +372,7 @@ pub enum StoreError {
     ServerOlderSchema {
         /// The server.
         path: PathBuf,
-        /// Its schema version.
+        /// Schema version of the server.
         found: i32,
         /// The one this crate knows.
         known: i32,
@@ -382,7 +382,7 @@ pub enum StoreError {
     ServerNewerSchema {
         /// The server.
         path: PathBuf,
-        /// Its schema version.
+        /// Schema version of the server.
         found: i32,
         /// The one this crate knows.
         known: i32,
@@ -392,7 +392,7 @@ pub enum StoreError {
     Server {
         /// The server.
         path: PathBuf,
-        /// What was being done.
+        /// Work during which the error came.
         doing: &'static str,
         /// The server's error.
         source: postgres::Error,
@@ -402,7 +402,7 @@ pub enum StoreError {
     Sqlite {
         /// The database file.
         path: PathBuf,
-        /// What was being done.
+        /// Work during which the error came.
         doing: &'static str,
         /// SQLite's error.
         source: rusqlite::Error,

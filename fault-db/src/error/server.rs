@@ -14,19 +14,19 @@ pub enum ServerReason {
     /// No program at that address.
     #[error("nothing listens there")]
     NothingListens,
-    /// It is silent.
+    /// The server is silent.
     #[error("no answer in time")]
     NoAnswer,
     /// The file of the socket is not there.
     #[error("there is no such socket")]
     NoSocket,
-    /// It broke off.
+    /// The connection broke off.
     #[error("the connection is lost")]
     Lost,
     /// None was given.
     #[error("it wants a password")]
     NoPassword,
-    /// It offers none, and the address demands it.
+    /// The server offers no TLS, and the address demands TLS.
     #[error("it has no TLS; on a network you trust add sslmode=disable")]
     NoTls,
     /// The certificate's issuer is not trusted.

@@ -9,7 +9,7 @@ use crate::files::regular_file::open_regular_file;
 
 /// What SQLite keeps beside a database, by the ends of the names.
 const BESIDE: [&str; 3] = ["-wal", "-shm", "-journal"];
-/// How an SQLite database begins.
+/// First bytes of an SQLite database.
 const MAGIC: &[u8] = b"SQLite format 3\0";
 
 /// Databases that this program opened.

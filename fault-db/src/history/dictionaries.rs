@@ -14,7 +14,7 @@ pub struct DictionaryRecord {
     pub made_at_us: i64,
     /// Version of the program that made it.
     pub app_version: String,
-    /// Its provenance: SHA-256 over everything that it was made of, in hex.
+    /// Provenance of the dictionary: SHA-256 over everything that it was made of, in hex.
     pub basis_sha256: String,
     /// Number of fault modes in it.
     pub modes: usize,

@@ -19,13 +19,14 @@ pub struct RunNote {
     pub id: Id,
     /// When it was written.
     pub at_us: i64,
-    /// Who wrote it.
+    /// Author of the note.
     pub who: String,
     /// The place in a trace of the run that it is about.
     pub place: Option<TracePlace>,
-    /// What it says.
+    /// Text of the note.
     pub text: String,
-    /// Who signed it, where the signature holds; looked at only where a whole run is read.
+    /// Name in the signature of the note, where the signature holds; looked at only where a whole
+    /// run is read.
     pub signed_by: Option<String>,
 }
 

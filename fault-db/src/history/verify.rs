@@ -77,7 +77,7 @@ const WITH_IT: &str = concat!(
     ORDER BY c.seq"
 );
 
-/// Of those, the ones that a run has noted as passed, if no other fault naming the cause is left that is not
+/// The consequences in that case which a run has noted as passed, if every other fault naming the cause is
 /// verified.
 const PROVEN_WITH_IT: &str = "
     AND f.cause = lower(f.lru) AND c.cause <> lower(c.lru) AND c.state = 'repaired'
@@ -140,7 +140,7 @@ const THERE: &str = concat!(
 pub struct RepairToProve {
     /// The repaired fault.
     pub fault: Id,
-    /// Its name.
+    /// Name of the fault's code.
     pub code_name: String,
     /// Runs of the unit in which the fault was there, oldest first: the last ones, from the one that saw it first.
     pub there: Vec<Id>,
@@ -309,9 +309,9 @@ fn noted_run(note: &str) -> Option<Id> {
 pub struct SettledFault {
     /// The fault.
     pub id: Id,
-    /// Its number.
+    /// Code of the fault.
     pub code: i64,
-    /// Its name.
+    /// Name of the fault's code.
     pub code_name: String,
     /// The part it points at.
     pub lru: String,

@@ -17,23 +17,23 @@ use crate::values::withdrawal_error::WithdrawalError;
 /// Kind of the event that takes back the one it follows.
 pub(crate) const WITHDRAWN: &str = "withdrawn";
 
-/// What a withdrawal takes back.
+/// Extent of a withdrawal.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ToWithdraw {
     /// Only what was written at this time, µs since 1970; `None`: what a person wrote last, whenever that was.
     pub written_at_us: Option<i64>,
-    /// Of this fault alone, although the same was written about the others of its case.
+    /// Take back for this fault alone, although the same was written about the others of its case.
     pub only: bool,
 }
 
-/// What was taken back.
+/// An entry that was taken back.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Withdrawn {
     /// Kind of the event.
     pub kind: String,
     /// When it was written, µs since 1970.
     pub at_us: i64,
-    /// Who wrote it.
+    /// Author of what was withdrawn.
     pub who: String,
     /// The fault that was named, then the others about which the same was written, each as it stands now.
     pub faults: Vec<ChangedFault>,

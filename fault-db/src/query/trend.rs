@@ -15,7 +15,7 @@ const BY_DAY: &str = "reading a measurement by day";
 /// Selects values of a measurement; `None` does not restrict.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TrendQuery {
-    /// Its name.
+    /// Name of the measurement.
     pub measurement: String,
     /// Serial number of the unit.
     pub unit: Option<String>,
@@ -50,7 +50,7 @@ pub struct TrendPoint {
     pub low: Option<f64>,
     /// Highest allowed value.
     pub high: Option<f64>,
-    /// Its verdict.
+    /// Verdict of the measurement.
     pub verdict: Verdict,
 }
 

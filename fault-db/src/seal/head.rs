@@ -22,7 +22,7 @@ pub struct SealHead {
 pub struct RunSealed {
     /// The file that sealed it.
     pub file: Id,
-    /// Its position in that file's chain.
+    /// Position of the seal in that file's chain.
     pub entry: i64,
     /// The hash of the entry, in hex; it covers the run and all entries before it.
     pub seal: String,

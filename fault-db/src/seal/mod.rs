@@ -158,7 +158,7 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
 /// The kind of an entry for a recount.
 pub(crate) const RECOUNTED: &str = "recounted";
 
-/// What differed before a recount: this may be the only trace of a row that was changed by hand.
+/// Rows that differed before a recount: perhaps the only trace of a row that was changed by hand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RecountedPayload {
     pub at_us: i64,
@@ -189,7 +189,7 @@ pub(crate) struct CopiedPayload {
 }
 
 impl CopiedPayload {
-    /// For a file that is a copy from this entry on.
+    /// Entry of a file that is a copy from entry `after` on.
     pub fn of(backend: &Backend, origin: Id, after: i64, at_us: i64) -> SqlResult<Self> {
         let sql = "SELECT hash FROM seal WHERE origin = ?1 AND ordinal = ?2";
         let hash: Option<Vec<u8>> =

@@ -14,10 +14,10 @@ const LONGEST: usize = 16 << 20;
 /// Why a signature does not hold.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SignatureError {
-    /// It cannot be read.
+    /// The document cannot be read.
     #[error("it is no signed document: {0}")]
     Unreadable(String),
-    /// It is written in another way than it was signed.
+    /// The document is not in the form in which it was signed.
     #[error("it is not in the one form in which it was signed: it was changed")]
     Form,
     /// The document or the signature was changed.
@@ -101,7 +101,7 @@ impl Signed {
         self.statement["key"].as_str().unwrap_or_default()
     }
 
-    /// Who signed, as the signed object says.
+    /// Name of the person who signed, as the signed object says.
     pub fn who(&self) -> &str {
         self.statement["who"].as_str().unwrap_or_default()
     }

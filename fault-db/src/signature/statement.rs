@@ -34,7 +34,7 @@ pub struct Statement {
     pub seal: String,
     /// When it was made: the end of a run, the time of an event or note.
     pub at_us: i64,
-    /// Who signed.
+    /// Name of the person who signed.
     #[serde(default)]
     pub who: String,
     /// Whose key it is: of a technician or a bench.
@@ -58,7 +58,7 @@ pub struct About {
     pub unit: String,
     /// The verdict.
     pub verdict: String,
-    /// Who tested.
+    /// Name of the tester.
     pub operator: String,
     /// Where the unit was: `sim`, `serial:…`.
     pub source: String,
@@ -187,7 +187,7 @@ fn wrong_subject(
         )?,
         _ => return Ok(Some(WrongSignature::NotThere(what.clone()))),
     };
-    // That a note or event was taken out is told by its seal.
+    // A removed note or event is reported by its seal.
     let is_own = owners.is_empty() || owners.contains(&group);
     Ok((!is_own).then(|| WrongSignature::Other(what.clone(), id)))
 }

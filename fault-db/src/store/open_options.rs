@@ -37,7 +37,7 @@ impl OpenOptions {
         self
     }
 
-    /// How far a commit goes.
+    /// How far a commit reaches.
     pub fn synchronous(mut self, synchronous: Synchronous) -> Self {
         self.synchronous = synchronous;
         self

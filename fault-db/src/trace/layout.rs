@@ -32,7 +32,7 @@ pub struct Shape<'a> {
     pub encoding: i64,
     /// Rows of the trace.
     pub rows: usize,
-    /// Its channels, all of them.
+    /// All channels of the trace.
     pub channels: &'a [Channel],
 }
 

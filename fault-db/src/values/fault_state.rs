@@ -24,7 +24,7 @@ text_enum! {
 /// What can happen to a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultAction {
-    /// It occurred again.
+    /// The fault occurred again.
     Occur,
     /// Somebody begins to work on it.
     Acknowledge,
@@ -32,7 +32,7 @@ pub enum FaultAction {
     Repair,
     /// A run after the repair passed.
     Verify,
-    /// It is closed.
+    /// The fault is closed.
     Close,
     /// The repair did not hold, or was a mistake.
     Reopen,
@@ -59,7 +59,7 @@ impl FaultAction {
         }
     }
 
-    /// Its kind in the event log.
+    /// Kind of the action in the event log.
     pub fn event_kind(self) -> &'static str {
         match self {
             Self::Occur => "recurred",

@@ -56,7 +56,7 @@ impl StepCounts {
 /// Counts results as they come; `K` tells steps apart.
 #[derive(Clone, Debug)]
 pub struct StepCounter<K> {
-    /// What each step came to: 0 not run, 1 passed, 2 an error, 3 failed, as in [`SELECT_COUNTS`].
+    /// Outcome of each step: 0 not run, 1 passed, 2 an error, 3 failed, as in [`SELECT_COUNTS`].
     steps: BTreeMap<K, u8>,
     attempts: u32,
     outside: u32,
@@ -123,7 +123,7 @@ pub(crate) const COUNTS_OF_RUN: &str = "
             FROM step WHERE run = r.seq AND kind <> 'outside') AS turn
         GROUP BY procedure, place) AS step";
 
-/// What [`COUNTS_OF_RUN`] gave.
+/// Counts from the text of [`COUNTS_OF_RUN`].
 pub(crate) fn counts_of_text(text: &str) -> StepCounts {
     let mut numbers = text.split(' ').filter_map(|number| number.parse().ok());
     let mut next = || numbers.next().unwrap_or_default();

@@ -1,6 +1,6 @@
 //! Why what a person wrote cannot be withdrawn.
 
-/// Why nothing is taken back.
+/// Reason for which nothing is taken back.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WithdrawalError {
     /// There is no event of a person, or all are withdrawn.
@@ -11,7 +11,7 @@ pub enum WithdrawalError {
     OtherWritten {
         /// Kind of what was written last.
         kind: String,
-        /// Who wrote it.
+        /// Author of the other entry.
         who: String,
     },
     /// What was written cannot be taken back without what came after it.
@@ -24,7 +24,7 @@ pub enum WithdrawalError {
         /// Kind of the event after it.
         after: String,
     },
-    /// It was closed, and the same fault was opened again.
+    /// The fault was closed, and the same fault was opened again.
     #[error("it was seen again after it was closed, and is a fault of its own since")]
     SeenSince,
 }

@@ -231,7 +231,7 @@ fn a_diagnosis_attributes_only_what_it_changes() {
     );
 }
 
-/// What is closed is settled: it is shown in no case, and none is shown with it. The same part of another unit is
+/// A closed fault is settled: no case shows it, and no fault is shown with it. The same part of another unit is
 /// another case.
 #[test]
 fn a_closed_fault_and_one_of_another_unit_are_in_no_case() {

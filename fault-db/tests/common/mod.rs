@@ -85,7 +85,7 @@ pub trait Deeds: Borrow<Store> {
         done.expect("a repair");
     }
 
-    /// Of all faults of the case: the one that was named, and the rest.
+    /// Stores a repair of all faults of the case: the named fault and the rest.
     #[track_caller]
     fn put_case_repair(
         &self,

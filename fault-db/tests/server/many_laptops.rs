@@ -46,13 +46,13 @@ const STAGES: u64 = 3;
 const LATEST_KILL_MS: u64 = 60;
 /// So often the server is killed and started again.
 const RESTARTS: usize = 2;
-/// It is away at least so long.
+/// Shortest time for which a laptop is away.
 const AWAY: Duration = Duration::from_secs(1);
 /// A technician tries again after so long, at least, and at most twice as long, ms: when the server was away,
 const MOMENT_MS: u64 = 1_000;
 /// and when it was busy. All laptops share one machine with the server here, and each try costs time of it.
 const LATER_MS: u64 = 8_000;
-/// For the whole campaign, which would not end if the server did not come back.
+/// Limit of the whole campaign, which would not end if the server did not come back.
 const PATIENCE: Duration = Duration::from_secs(900);
 /// 99 of 100 completed syncs take no longer than this.
 const P99_GOAL: f64 = 10.0;
@@ -105,7 +105,7 @@ fn in_short(error: &StoreError) -> String {
     }
 }
 
-/// What happened in the evening.
+/// Counts of the evening.
 #[derive(Default)]
 struct Tally {
     begun: u32,

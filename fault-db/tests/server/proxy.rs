@@ -81,7 +81,7 @@ fn serve(laptop: &TcpStream, server: &TcpStream, when: When, act: impl FnOnce())
     commits
 }
 
-/// What comes from the server.
+/// Answers from the server.
 struct Answers {
     held: std::sync::Arc<std::sync::atomic::AtomicBool>,
     came: std::sync::mpsc::Receiver<()>,

@@ -184,7 +184,7 @@ fn a_server_that_hangs_after_the_login_is_given_up_in_time() {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let at = listener.local_addr().expect("its number");
     let (given_up, waiting) = std::sync::mpsc::channel::<()>();
-    // It holds the connection until the laptop has gone.
+    // The server holds the connection until the laptop has gone.
     let server = std::thread::spawn(move || {
         let (mut laptop, _) = listener.accept().expect("a laptop");
         laptop.write_all(LET_IN).expect("answered");

@@ -90,7 +90,7 @@ pub(super) fn event_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Optio
     Ok(None)
 }
 
-/// The same of a note on a run.
+/// Why a note of the other file is not taken, if the note does not fit a seal there.
 pub(super) fn note_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option<String>> {
     for (payload, digest) in seals_of(theirs, "note", &entry.id)? {
         if note_digest(theirs, entry.seq, &payload)? != digest[..] {
@@ -100,7 +100,8 @@ pub(super) fn note_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option
     Ok(None)
 }
 
-/// The same of a trace, whose digest the seal of its run has.
+/// Why a trace of the other file is not taken, if its digest differs from the one in the seal of
+/// its run.
 pub(super) fn trace_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option<String>> {
     let (seq, run) = (entry.seq, entry.parent);
     let read = "SELECT id, recording FROM trace WHERE seq = ?1";
@@ -125,7 +126,7 @@ pub(super) fn trace_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Optio
     Ok(None)
 }
 
-/// The same of the recordings of a run, which come together.
+/// Why the recordings of a run, which come together, are not taken, if one differs from its seal.
 pub(super) fn recordings_mismatch(theirs: &Backend, run: i64) -> SqlResult<Option<String>> {
     let sealed = payloads(theirs, run)?;
     for ordinal in trace::recordings(theirs, run)? {

@@ -18,7 +18,7 @@ pub(super) struct Entry {
     row: i64,
     /// `None` if it was pruned since.
     id: Option<Vec<u8>>,
-    /// Of a run the digests of its seals, of a trace its checksum.
+    /// Digests of the seals of a run; checksum of a trace.
     digests: BTreeSet<Vec<u8>>,
 }
 
@@ -69,7 +69,7 @@ pub(super) fn last(file: &Backend) -> SqlResult<i64> {
 /// What the server has of a run or trace.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ServerCopy {
-    /// The same, complete.
+    /// The server has the whole of it.
     Whole,
     /// Part of it, or unknown.
     Perhaps,

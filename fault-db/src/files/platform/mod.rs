@@ -27,7 +27,8 @@ pub(crate) struct Identity {
 }
 
 impl Identity {
-    /// Of the file that a name leads to; none if there is no such file, or the system does not number files.
+    /// Identity of the file that a name leads to; none if there is no such file, or the system does not
+    /// number files.
     pub(crate) fn at(path: &Path) -> Option<Self> {
         system::identity(&std::fs::metadata(path).ok()?)
     }

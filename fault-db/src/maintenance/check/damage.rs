@@ -131,19 +131,19 @@ pub enum Damage {
 /// How a signature does not hold.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WrongSignature {
-    /// It is none, or does not fit its document.
+    /// The signature cannot be read, or does not fit its document.
     #[error(transparent)]
     Document(SignatureError),
-    /// It signs something else than a seal.
+    /// The signature is on something else than a statement about a seal.
     #[error("it is no statement about a seal")]
     NoStatement,
-    /// It says of no seal.
+    /// The statement names no seal.
     #[error("it names no seal")]
     NoSeal,
-    /// It hangs on another thing than it signs: what, and its id.
+    /// The signature is stored with another thing than it signs: kind and id of that thing.
     #[error("it is of another: it signs {0} {1}")]
     Other(String, Id),
-    /// Such a thing is not signed.
+    /// A thing of this kind is not signed there.
     #[error("a \"{0}\" is not signed there")]
     NotThere(String),
     /// The seal is gone: of what, and its id.
@@ -221,7 +221,7 @@ text_enum! {
 pub struct SchemaObject {
     /// Which of these, as SQLite says.
     pub kind: String,
-    /// Its name.
+    /// Name of the object.
     pub name: String,
     /// The table it is of, unless it is itself.
     pub on: Option<String>,

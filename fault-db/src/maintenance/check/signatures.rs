@@ -6,12 +6,12 @@ use serde::Serialize;
 
 use crate::signature::Statement;
 
-/// What one key has signed.
+/// Uses of one key.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct KeyUse {
     /// The public key.
     pub key: String,
-    /// Who it says to be.
+    /// Name that the key's signatures give.
     pub who: String,
     /// Whose key it is: of a technician or a bench.
     pub kind: String,

@@ -21,11 +21,11 @@ use crate::store::Store;
 pub struct Verification {
     /// The run.
     pub run: Id,
-    /// Its seal; `None` before its end.
+    /// Seal of the run; `None` before its end.
     pub seal: Option<RunSealed>,
     /// Signatures of the run, of notes on it and of events of its faults, each of which holds.
     pub signatures: Vec<Statement>,
-    /// What was changed, and where.
+    /// Changes that were found, with their places.
     pub changes: Vec<String>,
     /// Traces and recordings that were pruned.
     pub pruned: Vec<String>,

@@ -49,14 +49,14 @@ struct Counting<'a> {
     lrus: Option<&'a [String]>,
     /// With the words and the part's serial number asked for.
     faults: Option<HashSet<i64>>,
-    /// Of the train asked for, or the one run.
+    /// Runs of the train asked for, or the one run.
     runs: Option<HashSet<i64>>,
     by: StatKey,
     times: RepairTimes,
     spans: Vec<Span>,
     /// Where the counts of each key begin.
     places: HashMap<Key, usize>,
-    /// Of each key in each span.
+    /// Counts of each key in each span.
     counts: Vec<Counts>,
     /// Faults that are attributed to a part, if cases are counted.
     attributed: Vec<Case>,

@@ -73,7 +73,7 @@ pub struct FaultStat {
     pub last_at_us: Option<i64>,
     /// Faults closed.
     pub closed: u32,
-    /// Of these, closed without a repair (no fault found).
+    /// Faults closed without a repair (no fault found).
     pub no_fault_found: u32,
     /// Number of repairs.
     pub repairs: u32,
@@ -108,7 +108,7 @@ impl Store {
         Ok(self.count_and_total(query, false)?.0)
     }
 
-    /// The same, and the counts of all keys together.
+    /// Counts as [`Store::stats`], and the counts of all keys together.
     ///
     /// # Errors
     /// The filter names what is not there, or the file or server cannot be read.
