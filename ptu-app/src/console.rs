@@ -59,7 +59,7 @@ enum Shown {
 }
 
 impl Console {
-    /// For a run of this plan.
+    /// Console of a run of this plan.
     ///
     /// # Errors
     /// The system gives no thread.

@@ -43,7 +43,7 @@ impl Page {
         Self::Signals,
     ];
 
-    /// Its name on the command line.
+    /// Name of the page on the command line.
     fn word(self) -> &'static str {
         match self {
             Self::Case => "case",

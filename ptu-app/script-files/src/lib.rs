@@ -25,7 +25,7 @@ pub enum ScriptsError {
     /// A file or folder, by its path or name, and why.
     #[error("cannot read {what}: {why}")]
     Unreadable {
-        /// Its path, or its name and "(embedded)".
+        /// Path of the file, or its name and "(embedded)".
         what: String,
         /// The system's word, or ours.
         why: String,
@@ -69,7 +69,7 @@ impl ScriptFiles {
         })
     }
 
-    /// These folders, those of them that are there, over the embedded files.
+    /// Script files of these folders, as far as they are there, over the embedded files.
     pub fn layered(folders: impl IntoIterator<Item = PathBuf>) -> Self {
         let folders = folders.into_iter().filter(|folder| folder.is_dir());
         Self(

@@ -45,7 +45,7 @@ pub fn own_folder() -> Option<PathBuf> {
         .map(|directories| directories.data_dir().join("scripts"))
 }
 
-/// Those of all users of this computer: the depot's own, and those that a package installed.
+/// Folders for all users of this computer: the depot's own, and those that a package installed.
 pub(crate) fn system_folders() -> Vec<PathBuf> {
     if cfg!(windows) {
         let programs = std::env::var_os("ProgramData").map(PathBuf::from);

@@ -244,7 +244,7 @@ fn procedures_show_figures_5_to_7_of_s3() {
     assert!(value("regeneration cut out", "air_takes_over") < 1_000.0);
 }
 
-/// These columns of a report's rows.
+/// Values of these columns, by row of a report.
 fn rows<const N: usize>(csv: &str, names: [&str; N]) -> Vec<[f64; N]> {
     let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let head = lines.next().expect("a head");

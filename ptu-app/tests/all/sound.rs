@@ -223,7 +223,7 @@ fn levels_follow_the_calibration() {
     server.recorded("4", || {
         let play = "signal play code 55 --seconds 3";
         let said = server.ptu(&format!("{play} --device coil"));
-        // Of the other channel there is none.
+        // The other channel has no calibration.
         let said = said.exits(0);
         has(&said.err, &["no calibration of the channel twc"]);
     });

@@ -94,7 +94,7 @@ impl Maker {
         let stopped = making.collect(&mut collector);
         let outcome = if making.kind == Broken {
             drop(collector);
-            // Its writer writes what there is, and goes away.
+            // The writer of the run writes what there is, and goes away.
             while self.open().run(id).expect("begun").run.state == RunState::Running {
                 std::thread::yield_now();
             }
@@ -156,7 +156,7 @@ struct Making<'a> {
     not_passed: Vec<String>,
     values: Vec<(String, String)>,
     parts: BTreeMap<&'static str, usize>,
-    /// Of faults, by part and code.
+    /// Number of faults, by part and code.
     faults: usize,
     /// Verdict of what was read of a unit.
     read_as: Option<&'static str>,
@@ -353,7 +353,8 @@ impl<'a> Making<'a> {
         verdict
     }
 
-    /// What a step comes to: `is_end` = there the run is broken off; `after` = it comes after that.
+    /// Result of a step; `is_end` = the run is broken off there; `after` = the step comes after
+    /// that.
     fn result(
         &mut self,
         of: &Procedure,
@@ -528,7 +529,7 @@ impl<'a> Making<'a> {
         (read.id, self.facts(read.id))
     }
 
-    /// What the run comes to.
+    /// Facts of the run.
     fn facts(mut self, id: Id) -> Facts {
         let planned = self.planned();
         let of = |rank: u8| self.worst.values().filter(|worst| **worst == rank).count();

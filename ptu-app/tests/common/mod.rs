@@ -1,4 +1,4 @@
-//! What the end-to-end tests share: a place of its own for each test, and the program run in it.
+//! Parts shared by end-to-end tests: a place of its own for each test, and the program run in it.
 
 #![allow(dead_code, reason = "each of the test programs uses its part")]
 
@@ -283,7 +283,8 @@ fn keep_to_owner(_path: &Path) {
     }
 }
 
-/// The same in a run of its own, for whoever compares or joins the histories of two places.
+/// Records the bad unit in a run of its own, for tests that compare or join the histories of two
+/// places.
 pub fn record_bad_unit_anew(place: &Place) {
     let who = ["--serial-no", "BAD-1", "--who", "Kim"];
     let arguments = [

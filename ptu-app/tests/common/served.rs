@@ -26,7 +26,7 @@ pub struct Unit {
     child: Child,
     /// Where a train's cab is spoken to.
     cab: Option<ChildStdin>,
-    /// What `--unit` takes.
+    /// Address for `--unit`.
     pub address: String,
     /// Port or socket address alone.
     pub port: String,

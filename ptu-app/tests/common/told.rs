@@ -83,7 +83,7 @@ pub fn turn_of(turn: u64, turns: u64, kind: &str) -> String {
     }
 }
 
-/// The same as it stands behind a name.
+/// Repetition and kind of a result, from its name.
 pub fn turn_in(name: &str) -> String {
     let kinds = [
         (" (repeated)", "again"),
@@ -163,7 +163,7 @@ pub fn value_and_limits(
     )
 }
 
-/// Of each measurement its value and its limits; an uncertainty follows the value it is of.
+/// Value and limits of each measurement; an uncertainty follows its value.
 pub fn measured(all: impl Iterator<Item = (String, [Option<f64>; 3])>) -> Told {
     let mut known: Vec<(String, [Option<f64>; 3], Option<f64>)> = Vec::new();
     for (name, [value, low, high]) in all {

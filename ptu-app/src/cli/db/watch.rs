@@ -70,7 +70,7 @@ impl Watch {
         })
     }
 
-    /// It was the disk, not the time.
+    /// Whether the disk stopped the command, not the time.
     pub fn stopped_by_disk(&self) -> bool {
         self.disk.load(Ordering::Relaxed)
     }

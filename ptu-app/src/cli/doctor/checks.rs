@@ -111,7 +111,7 @@ pub(super) fn ports(words: &Words) -> Vec<Finding> {
 
 /// A port that this user may not open, and the group whose members may, if there is one.
 fn closed_port(path: &str, kind: &str, group: Option<&str>, doctor: &Doctor) -> Finding {
-    // Who joins the group "root" may do more than open ports.
+    // A member of the group "root" may do more than open ports.
     let remedy = match group.filter(|group| *group != "root") {
         Some(group) => fill(doctor.join_group, &[("group", &group)]),
         None => doctor.install_rule.into(),

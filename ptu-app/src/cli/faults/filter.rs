@@ -66,7 +66,7 @@ impl FilterArguments {
         if let Some(unit) = &self.serial_no {
             check_unit(store, unit)?;
         }
-        // Of several the others would hide it.
+        // In a list of several codes the others would hide an unknown one.
         if self.code.as_ref().is_some_and(|codes| codes.contains(','))
             && let Some(unknown) = self.unknown_code(store)?
         {

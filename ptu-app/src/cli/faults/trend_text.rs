@@ -288,7 +288,7 @@ fn outstanding(units: &[TrendUnit], limit: usize) -> String {
     format!("\n\n{said}\n{}", table.render())
 }
 
-/// How units scatter: from their middle half, so that a few bad ones do not hide themselves.
+/// Scatter of units, from their middle half, so that a few bad ones do not hide themselves.
 struct Spread {
     middle: f64,
     sigma: f64,

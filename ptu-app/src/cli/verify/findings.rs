@@ -1,4 +1,4 @@
-//! What a verification found: who signed, what was changed, what is in doubt.
+//! Findings of a verification: who signed, what was changed, what is in doubt.
 
 use std::fmt::Display;
 
@@ -20,7 +20,7 @@ pub(super) struct Findings {
     pub(super) id: String,
     /// A signature or seal of it as a whole was read: without one nothing says that it is unchanged.
     pub(super) is_covered: bool,
-    /// Who signed what, when, and how the key stood then.
+    /// Signatures: who signed what, when, and whether the key was valid then.
     pub(super) signatures: Vec<Value>,
     /// The signatures, a sentence each.
     pub(super) said: Vec<String>,

@@ -96,7 +96,7 @@ impl Bench {
         place.write("bench.toml", &text)
     }
 
-    /// The same with generator, module and a supply at serial lines.
+    /// Bench file with generator, module and a supply at serial lines.
     fn serial_file(&self, place: &Place) -> String {
         let [generator, supply, module] = serial_lines(place);
         let Self(_, ports) = self;

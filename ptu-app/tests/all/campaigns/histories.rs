@@ -80,7 +80,7 @@ pub struct Victim {
     after: Rows,
 }
 
-/// What is done: name, arguments, the file that is written, the exit code.
+/// Deeds: name, arguments, the file that is written, the exit code.
 const DEEDS: [(&str, &[&str], &str, i32); 8] = [
     ("run", &["run", "fails.star"], "history.db", 1),
     (

@@ -66,7 +66,7 @@ impl OnDisk {
     }
 }
 
-/// What a folder is asked: a file system keeps the order of these.
+/// Changes of a folder, whose order a file system keeps.
 enum Entry {
     Named(PathBuf, usize),
     Gone(PathBuf),

@@ -96,7 +96,7 @@ pub fn traced(program: &Command, folder: &Path) -> (ExitStatus, Vec<Deed>) {
 
 fn deeds(log: &str) -> Vec<Deed> {
     let mut deeds = Vec::new();
-    // Of calls that another thread interrupted: the first half of the line, by thread.
+    // First halves of calls that another thread interrupted, by thread.
     let mut begun = BTreeMap::new();
     // Where the next `write` to a file goes.
     let mut places = BTreeMap::new();

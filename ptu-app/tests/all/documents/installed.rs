@@ -159,7 +159,7 @@ fn run(document: &Document, blocks: &[Block<'_>], installed: &Installed) -> Vec<
     wrong
 }
 
-/// Those that the last commit or what is not committed yet changes, and one in three of the others.
+/// Documents changed by the last commit or since, and one in three of the others.
 fn drawn(guides: Vec<Document>) -> Vec<Document> {
     let mut git = Command::new("git");
     git.args(["diff", "--name-only", "HEAD~1"])

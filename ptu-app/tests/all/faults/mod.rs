@@ -31,7 +31,7 @@ const WORKERS: usize = 2;
 /// The check runs the whole suite on one mode in so many.
 const ONE_IN: usize = 20;
 
-/// For each fault mode (or glob): procedure, and words in the name of a step that must fail.
+/// Procedure for each fault mode (or glob), and words in the name of a step that must fail.
 const FOUND_BY: &str = include_str!("found_by.txt");
 /// What is not as it is with the others, the fault mode (or glob), and why: the part that diagnosis names, the part that a
 /// stored fault names (of those that come and go none need be named), the side that a step suspects, a procedure of the
@@ -41,8 +41,8 @@ const PROTECTION: &str = include_str!("../../../../docs/protection.md");
 /// The mode of which the whole suite is run through the program itself, command line, printed reports and exit codes
 /// included.
 const WHOLE_THROUGH_THE_PROGRAM: &str = "eb_relay.slow";
-/// Those of which the procedures of the table are: of the train, of a link, a weak one, one that comes and goes, one
-/// that starts the unit again and again.
+/// Modes that run through the program with the procedures of the table: of the train, of a link, a weak one, one
+/// that comes and goes, one that starts the unit again and again.
 const THROUGH_THE_PROGRAM: [&str; 5] = [
     "brake_unit.dead",
     "rs485_link.receiver_errors",

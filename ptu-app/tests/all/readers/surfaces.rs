@@ -31,7 +31,7 @@ pub fn short(text: &str) -> Told {
     vec![fact("run", run), fact("planned", planned)]
 }
 
-/// Of what a record says that it is.
+/// Whether a record of this kind is a step.
 fn is_step(kind: &str) -> bool {
     ["step", "attempt", "again"].contains(&kind)
 }
@@ -304,7 +304,7 @@ pub fn junit(xml: &str) -> Told {
         }
     }
     told.extend(numbers("passed|failed|error", counts));
-    // It has no limits.
+    // The measurement has no limits.
     told.extend(measured(values.into_iter()).into_iter().take(1));
     told.extend([
         id(run),
@@ -332,7 +332,7 @@ pub fn texts(page: &str) -> Vec<String> {
     texts.map(read).filter(|text| !text.is_empty()).collect()
 }
 
-/// The same of a page as it is printed.
+/// Texts of a page as it is printed.
 pub fn printed_texts(page: &Page) -> Vec<String> {
     let text = |item: &Item| match item {
         Item::Text(text) => {
