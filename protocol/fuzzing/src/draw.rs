@@ -8,7 +8,7 @@ use crate::mutate::Dice;
 
 /// Names the seed of a draw, or [`ALL`].
 const SEED: &str = "CHECK_SEED";
-/// Of the last commit; asked for once.
+/// Seed made of the last commit, read once.
 static OF_THE_LAST_COMMIT: LazyLock<String> = LazyLock::new(of_the_last_commit);
 /// As a seed: everything is drawn.
 const ALL: &str = "all";
@@ -33,7 +33,7 @@ pub fn draws_all() -> bool {
     asked().is_some_and(|seed| seed == ALL)
 }
 
-/// What `CHECK_SEED` says.
+/// Value of `CHECK_SEED`.
 ///
 /// # Panics
 /// If the variable is neither a number nor [`ALL`].

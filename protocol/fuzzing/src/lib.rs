@@ -35,7 +35,7 @@ const PART_OF_A_CHECK: u64 = 4;
 /// Bytes of an input that are printed.
 const SHOWN: usize = 200;
 
-/// How much a campaign does: the amount of the check, times the number in `CAMPAIGN`.
+/// Size of a campaign: the amount of the check, times the number in `CAMPAIGN`.
 pub fn amount(of_the_check: u64) -> u64 {
     of_the_check * set("CAMPAIGN").unwrap_or(1)
 }
@@ -106,7 +106,7 @@ impl Fuzz {
             }
             watch.begins(&input);
             let mut fed = Ok(());
-            // Of this thread alone: other tests of the program take memory, too.
+            // Memory taken by this thread alone: other tests of the program take memory, too.
             let taken = allocation_counter::measure(|| {
                 fed = catch_unwind(AssertUnwindSafe(|| read(&input)));
             });

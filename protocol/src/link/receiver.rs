@@ -32,7 +32,7 @@ pub(super) struct Receiver {
     pub(super) out_of_place: u32,
 }
 
-/// What accepting a frame changes: the new state, the sequence numbers it skipped, and the frames rejected
+/// Changes by an accepted frame: the new state, the sequence numbers it skipped, and the frames rejected
 /// since the last accepted one.
 pub(super) struct Acceptance {
     pub(super) receiver: Receiver,

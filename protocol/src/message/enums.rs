@@ -35,15 +35,15 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// Why ATO failed: the parameter of event `ato_failed`.
+    /// Failure of ATO: the parameter of event `ato_failed`.
     AtoFailure {
-        /// It has not.
+        /// ATO has not failed.
         None = 0 "none",
-        /// Its processor does not work.
+        /// ATO's processor does not work.
         Processor = 1 "processor",
         /// The start-up self-test failed an item that ATO needs.
         SelfTest = 2 "self_test",
-        /// Its configuration or the track database does not pass its checks.
+        /// ATO's configuration or the track database does not pass its checks.
         StoredData = 3 "stored_data",
         /// TRA failed its test while the train stood; on the way the run is brought to its end.
         Tra = 4 "tra",
@@ -59,7 +59,7 @@ wire_enum! {
 }
 
 wire_bits! {
-    /// What ATO cannot believe: the parameter of event `ato_input_absurd`.
+    /// Inputs that ATO cannot believe: the parameter of event `ato_input_absurd`.
     AbsurdInputs {
         /// Speed that is no number, negative or beyond any train's.
         SPEED = 0,
@@ -217,7 +217,7 @@ wire_enum! {
 wire_enum! {
     /// Why the unit holds the emergency brake.
     EbCause {
-        /// It does not.
+        /// The unit does not hold the emergency brake.
         None = 0 "none",
         /// Start-up or no cab active: the brake has not been released yet.
         NotReleased = 1 "not_released",
@@ -249,7 +249,7 @@ wire_enum! {
 wire_enum! {
     /// Why the unit asks for the full service brake.
     FsbCause {
-        /// It does not.
+        /// The unit does not ask for the full service brake.
         None = 0 "none",
         /// Speed above the limit and its margin.
         Overspeed = 1 "overspeed",

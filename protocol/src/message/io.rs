@@ -126,11 +126,11 @@ layout! {
 layout! {
     /// A second code in the ATP antenna, of a neighbouring track circuit, I/O rack → unit; sent while it is there.
     Crosstalk, Io, 0x03 {
-        /// Its carrier, Hz.
+        /// Carrier, Hz.
         carrier_hz: u16,
-        /// Its code rate, 0.01 Hz; 0 = unmodulated.
+        /// Code rate, 0.01 Hz; 0 = unmodulated.
         code_rate_chz: u16,
-        /// Its level, mV; 0 = there is none any more.
+        /// Level, mV; 0 = the second code has gone.
         level_mv: u16,
     }
 }

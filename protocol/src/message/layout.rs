@@ -16,7 +16,7 @@ pub struct DecodeError {
     pub field: &'static str,
     /// Byte offset into the payload.
     pub offset: usize,
-    /// What went wrong there.
+    /// Kind of error.
     pub kind: DecodeErrorKind,
 }
 
@@ -43,7 +43,7 @@ pub struct FieldSpec {
     pub ty: &'static str,
     /// Bytes it takes.
     pub size: usize,
-    /// What it means.
+    /// Meaning of the field.
     pub doc: &'static str,
 }
 
@@ -56,7 +56,7 @@ pub struct MessageSpec {
     pub channel: super::Channel,
     /// First payload byte; from 0x80 on the unit is the sender, below it the receiver.
     pub code: u8,
-    /// What it is for.
+    /// Purpose of the message.
     pub doc: &'static str,
     /// Fields after the code, in order.
     pub fields: &'static [FieldSpec],
@@ -74,7 +74,7 @@ impl MessageSpec {
         len
     }
 
-    /// Whether the unit sends it.
+    /// Whether the unit sends the message.
     pub const fn sent_by_unit(&self) -> bool {
         self.code >= 0x80
     }
@@ -86,9 +86,9 @@ impl MessageSpec {
 pub struct WordSpec {
     /// Name of the type.
     pub name: &'static str,
-    /// What it says.
+    /// Meaning of the type.
     pub doc: &'static str,
-    /// Its values or bits.
+    /// Values or bits of the type.
     pub entries: &'static [(u8, &'static str, &'static str)],
 }
 

@@ -67,7 +67,7 @@ layout! {
     }
 }
 layout! {
-    /// Who the unit is. Unit → tester.
+    /// Identity of the unit. Unit → tester.
     Identity, Ptu, 0x81 {
         /// Serial number, ASCII, filled up with 0.
         serial: [u8; 16],
@@ -101,7 +101,7 @@ layout! {
         session: u32,
         /// 1 = armed.
         armed: u8,
-        /// Why not.
+        /// Reason for which the unit is not armed.
         refusal: ArmRefusal,
     }
 }
@@ -119,7 +119,7 @@ layout! {
     Taken, Ptu, 0x85 {
         /// IPv6 address of the client that has it; one of IPv4 is mapped, `::ffff:192.0.2.1`.
         address: [u8; 16],
-        /// Its port.
+        /// Port of the client that has the unit.
         port: u16,
         /// Time since that client came, ms.
         for_ms: u32,

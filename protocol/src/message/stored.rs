@@ -21,7 +21,7 @@ layout! {
     SetClock, Ptu, 0x24 {
         /// Time since 1970 without leap seconds, UTC, ms; from the year 2000 to the year 2100.
         utc_ms: u64,
-        /// It may be wrong by so much, ms.
+        /// Greatest error of the time, ms.
         uncertainty_ms: u16,
     }
 }
@@ -63,7 +63,7 @@ layout! {
         at_ms: u32,
         /// Time since 1970, UTC, ms.
         utc_ms: u64,
-        /// It may be wrong by so much, ms.
+        /// Greatest error of the time, ms.
         uncertainty_ms: u16,
     }
 }

@@ -92,7 +92,7 @@ layout! {
         order_state: OrderState,
         /// TWC frames for this train since power-up, refused ones among them, wrapping.
         received: u16,
-        /// Of those, frames that contradict the track database, wrapping.
+        /// TWC frames for this train that contradict the track database, wrapping.
         refused: u16,
         /// TWC frames for other trains since power-up, wrapping.
         others: u16,

@@ -264,7 +264,7 @@ const fn person(address: Address) -> &'static str {
     }
 }
 
-/// What is sent regularly: message, ms between two, and when.
+/// Messages sent regularly: name, interval in ms, and when.
 const REGULAR: [(&str, usize, &str); 15] = [
     ("IoInput", 10, "always"),
     ("TcmsToAtc", 50, "always"),
