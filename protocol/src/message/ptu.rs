@@ -33,18 +33,18 @@ wire_bits! {
 }
 
 layout! {
-    /// Asks who the unit is. Tester → unit.
+    /// Asks who the unit is.
     Identify, Ptu, 0x01 {}
 }
 layout! {
-    /// First half of the arm exchange. Tester → unit.
+    /// First half of the arm exchange.
     ArmRequest, Ptu, 0x02 {
         /// Session number, not 0.
         session: u32,
     }
 }
 layout! {
-    /// Second half: the challenge's answer, within 1 s. Tester → unit.
+    /// Second half: the challenge's answer, within 1 s.
     ArmConfirm, Ptu, 0x03 {
         /// Session number.
         session: u32,
@@ -53,21 +53,21 @@ layout! {
     }
 }
 layout! {
-    /// Ends the session: all stimuli off, outputs safe. Tester → unit.
+    /// Ends the session: all stimuli off, outputs safe.
     Disarm, Ptu, 0x04 {
         /// Session number.
         session: u32,
     }
 }
 layout! {
-    /// Keeps the status flowing, and an armed unit armed. Tester → unit, at least every 500 ms.
+    /// Keeps the status flowing, and an armed unit armed; at least every 500 ms.
     KeepAlive, Ptu, 0x05 {
         /// Session number; 0 = listening only.
         session: u32,
     }
 }
 layout! {
-    /// Identity of the unit. Unit → tester.
+    /// Identity of the unit.
     Identity, Ptu, 0x81 {
         /// Serial number, ASCII, filled up with 0.
         serial: [u8; 16],
@@ -86,7 +86,7 @@ layout! {
     }
 }
 layout! {
-    /// Challenge of the arm exchange. Unit → tester.
+    /// Challenge of the arm exchange.
     ArmChallenge, Ptu, 0x82 {
         /// Session number.
         session: u32,
@@ -95,7 +95,7 @@ layout! {
     }
 }
 layout! {
-    /// Outcome of arming, and notice when arming lapses. Unit → tester.
+    /// Outcome of arming, and notice when arming lapses.
     ArmState, Ptu, 0x83 {
         /// Session number.
         session: u32,
@@ -106,7 +106,7 @@ layout! {
     }
 }
 layout! {
-    /// Answer to a stimulus, release or clear request. Unit → tester.
+    /// Answer to a stimulus, release or clear request.
     StimulusAnswer, Ptu, 0x84 {
         /// Sequence number of the request.
         request_seq: u16,
@@ -115,7 +115,7 @@ layout! {
     }
 }
 layout! {
-    /// Another client has the unit: said once to a TCP client that is turned away. Unit → tester.
+    /// Another client has the unit: said once to a TCP client that is turned away.
     Taken, Ptu, 0x85 {
         /// IPv6 address of the client that has it; one of IPv4 is mapped, `::ffff:192.0.2.1`.
         address: [u8; 16],
@@ -128,7 +128,7 @@ layout! {
     }
 }
 layout! {
-    /// State of the unit, every 50 ms while a tester is heard. Unit → tester.
+    /// State of the unit, every 50 ms while a tester is heard.
     Status, Ptu, 0x90 {
         /// States.
         bits: StatusBits,

@@ -6,7 +6,7 @@ use super::log::LogEntry;
 
 layout! {
     /// Asks for what the unit has stored over power-ups, from a sequence number on; answered by `StoredEntry` and
-    /// `StoredClock`, or by `StoredRow`, then `StoredEnd`. Tester → unit.
+    /// `StoredClock`, or by `StoredRow`, then `StoredEnd`.
     ReadStored, Ptu, 0x23 {
         /// Which of the two stores.
         store: StoreKind,
@@ -17,7 +17,7 @@ layout! {
     }
 }
 layout! {
-    /// Tells the unit the time, which it stores with its own. Tester → unit, answered.
+    /// Tells the unit the time, which it stores with its own; answered.
     SetClock, Ptu, 0x24 {
         /// Time since 1970 without leap seconds, UTC, ms; from the year 2000 to the year 2100.
         utc_ms: u64,
@@ -26,7 +26,7 @@ layout! {
     }
 }
 layout! {
-    /// One stored entry of the event log. Unit → tester.
+    /// One stored entry of the event log.
     StoredEntry, Ptu, 0xA4 {
         /// Sequence number in the store, over all power-ups; never reused.
         sequence: u32,
@@ -53,7 +53,7 @@ layout! {
     }
 }
 layout! {
-    /// The time as a tester told it, among the stored entries of the event log. Unit → tester.
+    /// The time as a tester told it, among the stored entries of the event log.
     StoredClock, Ptu, 0xA5 {
         /// Sequence number in the store of events.
         sequence: u32,
@@ -68,7 +68,7 @@ layout! {
     }
 }
 layout! {
-    /// One stored row of the run record. Unit → tester.
+    /// One stored row of the run record.
     StoredRow, Ptu, 0xA6 {
         /// Sequence number in the store, over all power-ups; never reused.
         sequence: u32,
@@ -95,7 +95,7 @@ layout! {
     }
 }
 layout! {
-    /// End of a store as it stands. Unit → tester.
+    /// End of a store as it stands.
     StoredEnd, Ptu, 0xA7 {
         /// Which of the two stores.
         store: StoreKind,

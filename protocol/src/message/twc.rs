@@ -18,7 +18,7 @@ wire_bits! {
 }
 
 layout! {
-    /// Station data, wayside → unit.
+    /// Station data.
     TwcWayside, Twc, 0x01 {
         /// Route number.
         route: u16,
@@ -44,7 +44,7 @@ layout! {
 }
 
 layout! {
-    /// Train data in answer to each accepted `TwcWayside`, unit → wayside.
+    /// Train data in answer to each accepted `TwcWayside`.
     TwcTrain, Twc, 0x81 {
         /// Sequence number of the frame answered.
         answered_seq: u16,
@@ -62,7 +62,7 @@ layout! {
 }
 
 layout! {
-    /// Orders for a train, wayside → unit. A wayside that knows them sends them beside `TwcWayside`.
+    /// Orders for a train. A wayside that knows them sends them beside `TwcWayside`.
     TwcOrders, Twc, 0x02 {
         /// Train number.
         train_number: u16,
@@ -78,7 +78,7 @@ layout! {
 }
 
 layout! {
-    /// What the train made of its orders, in answer to each accepted `TwcOrders`, unit → wayside.
+    /// What the train made of its orders, in answer to each accepted `TwcOrders`.
     TwcReport, Twc, 0x82 {
         /// Sequence number of the frame answered.
         answered_seq: u16,
