@@ -54,7 +54,7 @@ impl<const ROWS: usize> Ring<ROWS> {
         self.rows.push_back(row);
     }
 
-    /// At most `ROWS`, oldest first, one a cycle.
+    /// Rows, at most `ROWS`, one a cycle, oldest first.
     pub fn rows(&self) -> &VecDeque<Row> {
         &self.rows
     }

@@ -14,7 +14,7 @@ use protocol::message::{AtoFailure, AtoState};
 /// KRN's checks of what ATO needs: processor, self-test, stored data, TRA.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Checks {
-    /// Not finished yet.
+    /// The checks have not finished.
     #[default]
     Running,
     Passed,
@@ -30,7 +30,7 @@ pub struct ArtInputs {
     pub run: bool,
     /// Standing still.
     pub standstill: bool,
-    /// At the stop point, or the run has ended away from it.
+    /// The train is at the stop point, or the run has ended away from it.
     pub arrived: bool,
 }
 

@@ -75,7 +75,8 @@ mod tests {
 
     use super::*;
 
-    /// On an approach of 35 ‰ down, with 3.3 kgf/t of rolling resistance: 31.7 kgf/t, 0.311 m/s²; level or up: nothing.
+    /// An approach of 35 ‰ down, with 3.3 kgf/t of rolling resistance, takes 31.7 kgf/t, 0.311 m/s²; level or up
+    /// nothing.
     #[test]
     fn an_approach_takes_of_the_brake_downhill_only() {
         let line8 = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();

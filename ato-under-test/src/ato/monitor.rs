@@ -61,7 +61,7 @@ pub struct MonitorInputs {
     /// Neither limit nor order nor brake keeps the train standing.
     pub may_go: bool,
     pub stands: bool,
-    /// As near to the stop point as ATO could bring the train.
+    /// The train is as near to the stop point as ATO could bring it.
     pub arrived: bool,
 }
 

@@ -280,7 +280,7 @@ mod tests {
             }
         }
 
-        /// To a speed at this rate, m/s and m/s².
+        /// Drives to a speed at this rate, m/s and m/s².
         fn go(&mut self, to: f64, mps2: f64, witness: Witness) {
             while (self.speed - to).abs() > 1e-9 {
                 let step = (to - self.speed).clamp(-mps2 * 0.01, mps2 * 0.01);

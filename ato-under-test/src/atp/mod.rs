@@ -61,7 +61,7 @@ pub struct ScanContext {
     /// The harness has been alive at least once.
     pub ever_alive: bool,
     pub aligned: bool,
-    /// On the arrival station's loop with valid station data.
+    /// The train is on the arrival station's loop, with valid station data.
     pub at_platform: bool,
     pub door_side: DoorSide,
     /// Sides on which ATO orders doors to open.

@@ -94,7 +94,7 @@ pub struct ModeSequence {
 }
 
 impl ModeSequence {
-    /// As at power-up: off, and what is given is not known to be new.
+    /// State at power-up: off; a departure that is given does not count as new.
     pub fn new() -> Self {
         Self {
             mode: Mode::Off,

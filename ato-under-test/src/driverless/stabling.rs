@@ -46,7 +46,7 @@ pub struct Stabling {
 }
 
 impl Stabling {
-    /// As after a power-up of a train that was put away, or was not.
+    /// State after a power-up of a train that was put away, or was not.
     pub fn at_power_up(put_away: bool) -> Self {
         Self {
             stage: match put_away {

@@ -65,7 +65,7 @@ impl FileFlash {
         }
     }
 
-    /// At least one block is a unit's, or all are erased.
+    /// Whether the flash holds a block of a unit, or is erased as a whole.
     fn is_ours(&self) -> Result<bool, FlashError> {
         let mut block = vec![0; BLOCK_BYTES];
         let mut erased = true;

@@ -42,7 +42,7 @@ pub struct Memory {
     /// `None`: the device failed.
     rings: Option<Rings>,
     power_up: u32,
-    /// As the tester sent it last.
+    /// The time that the tester sent last.
     clock: Option<StoredClock>,
     clocks: u8,
     /// Index since power-up of the next event to store.

@@ -31,7 +31,7 @@ use crate::test_board::TestBoard;
 /// The inputs of one scan, with the test signals and without.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ScannedInputs {
-    /// As the receiver and the pulse inputs have them: where the TEST board makes a signal, that.
+    /// Inputs of receiver and pulse inputs: the TEST board's signal where the board makes one.
     pub tested: Inputs,
     /// What comes from the train and the track alone. A receiver that hears a test signal hears no track.
     pub train: Inputs,

@@ -131,7 +131,7 @@ impl Locator {
         self.rescaled = true;
     }
 
-    /// At a departure loop a new section begins; whether one does.
+    /// Begins a new section at a departure loop; whether one begins.
     pub fn locate(&mut self, data: &TwcWayside, line: &Line, standstill: bool) -> bool {
         let Some(section) = line.section(data.section) else {
             return false;

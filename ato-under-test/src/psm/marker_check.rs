@@ -57,7 +57,7 @@ impl Wheels {
 pub enum MarkerCheck {
     /// The marker's place is the train's position.
     Accepted,
-    /// Not its turn: one that has been passed, or one at another's place.
+    /// The marker is out of turn: it has been passed, or lies at another marker's place.
     OutOfOrder,
     /// Away from its place by this, m, position ahead positive.
     Away(f64),

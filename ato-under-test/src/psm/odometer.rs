@@ -30,7 +30,7 @@ pub struct Odometer {
     counted_m: f64,
     beyond_m: f64,
     direction: f64,
-    /// At the last edge: speed, m/s, and its change, m/s².
+    /// Speed at the last edge, m/s, and its change, m/s².
     speed_mps: f64,
     accel_mps2: f64,
     edge_age_s: f64,

@@ -43,7 +43,7 @@ pub struct WheelMotion {
 pub struct MarkerSpan {
     /// Marker at its begin, 1 to 4.
     pub from: u8,
-    /// As the track database has it, m.
+    /// Length of the span in the track database, m.
     pub track_m: f64,
 }
 

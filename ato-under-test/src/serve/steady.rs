@@ -30,7 +30,7 @@ pub struct Steady {
 }
 
 impl Steady {
-    /// So many samples are to wait.
+    /// A buffer that keeps `aim` samples waiting.
     pub fn new(aim: usize) -> Self {
         let middle = (TAPS / 2 - 1) as f64;
         let tap = |place: usize, tap: usize| {

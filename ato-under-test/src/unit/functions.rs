@@ -65,7 +65,7 @@ pub struct Functions {
 }
 
 impl Functions {
-    /// As at power-up: nothing is known, the brake is applied.
+    /// Functions at power-up: nothing is known, the brake is applied.
     pub fn new(config: &UnitConfig) -> Self {
         Self {
             inputs: Inputs::default(),
@@ -217,7 +217,7 @@ impl Functions {
         self.atp.tachometers().standstill() && self.locator.aligned()
     }
 
-    /// On the arrival station's loop, with valid station data.
+    /// Whether the train is on the arrival station's loop, with valid station data.
     pub(super) fn at_platform(&self) -> bool {
         let on_loop = self.twc.data().zip(self.locator.section());
         self.twc.valid() && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)

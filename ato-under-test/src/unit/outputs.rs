@@ -13,7 +13,7 @@ const EITHER: Outputs = Outputs::FSB
     .union(Outputs::POWER_CUT)
     .union(Outputs::ALARM)
     .union(Outputs::HOLDING_BRAKE);
-/// Both must ask for these: what releases the train, or says that it is well.
+/// Outputs that both instances must set: they release the train, or say that the unit is well.
 const BOTH: Outputs = Outputs::EB_RELAY
     .union(Outputs::STANDSTILL)
     .union(Outputs::HEALTHY);

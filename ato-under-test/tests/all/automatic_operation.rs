@@ -243,7 +243,7 @@ fn a_processor_that_stops_on_the_way_is_noticed_by_the_watchdog() {
     assert_eq!(journey.parameters("ato_failed"), [processor]);
 }
 
-/// Both tachometers keep saying the same while ATO powers.
+/// Tachometers that both keep their value while ATO powers are frozen.
 #[test]
 fn a_frozen_speed_stops_the_train() {
     let mut journey = Journey::new(&[]).until_position(60.0);

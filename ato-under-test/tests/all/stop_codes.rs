@@ -160,14 +160,14 @@ fn code_lost() -> Bench {
     bench
 }
 
-/// At 200 m of section 61, ATO running, and this is done to it.
+/// A bench at 200 m of section 61 with ATO running, after `act`.
 fn on_the_way(faults: &[FaultMode], act: impl Fn(&mut Bench)) -> Bench {
     let mut journey = Journey::new(faults).until_position(200.0);
     act(&mut journey.bench);
     journey.bench
 }
 
-/// In the loop that it departs from.
+/// A bench that loses TWC in the loop of its departure.
 fn twc_lost() -> Bench {
     let mut bench = Journey::new(&[]).until_position(12.0).bench;
     bench.station = None;

@@ -84,7 +84,7 @@ fn the_one_that_counts_another_way_between_markers_is_named() {
     }
 }
 
-/// Both alike: the diameter that the unit is set to is wrong, and neither sensor.
+/// Tachometers that deviate alike name no sensor: the diameter set in the unit is wrong.
 #[test]
 fn wheels_of_another_size_name_no_sensor() {
     let mut journey = Journey::new(&[]);

@@ -54,7 +54,7 @@ pub enum Load {
     Empty,
     /// Full load of the train's data, kg.
     Full,
-    /// So many, kg.
+    /// Mass of the passengers, kg.
     Passengers(f64),
 }
 

@@ -60,7 +60,7 @@ pub enum Condition {
     Compare {
         /// Signal of the present sample.
         signal: Signal,
-        /// By value, or by bits ([`Comparison::is_bits`]).
+        /// Comparison by value, or by bits ([`Comparison::is_bits`]).
         comparison: Comparison,
         /// Right-hand side, in the signal's unit.
         operand: Operand,

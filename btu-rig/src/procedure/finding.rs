@@ -158,14 +158,14 @@ pub enum Finding {
     /// The tester's computer, or the link, stood still in an attempt at a step.
     StoodStill {
         by: Duration,
-        /// In which attempt, from 1.
+        /// Number of the attempt, from 1.
         attempt: u32,
     },
     /// A finding from before the tester's computer, or the link, stood still.
     BeforeStandstill(Box<Finding>),
-    /// In the actions before the first step.
+    /// A finding in the actions before the first step.
     InSetUp(Box<Finding>),
-    /// In the actions after the last step.
+    /// A finding in the actions after the last step.
     InCleanUp(Box<Finding>),
     /// Clean-up actions did not end in time.
     CleanUpTooLong {
@@ -231,13 +231,13 @@ pub enum Finding {
     SelfTestFailed {
         items: u16,
     },
-    /// More entries of logs than are kept.
+    /// Logs had more entries than are kept.
     TooManyEvents {
         more: u64,
     },
     /// The unit's clock goes wrong by the bench's.
     ClockWrong {
-        /// By how much it is faster, thousandths.
+        /// Excess of the unit's clock, thousandths.
         by_permille: i32,
     },
     /// A fault was found while the unit was brought up, or settled again.
@@ -268,7 +268,7 @@ pub enum Finding {
         turns: u32,
         findings: Findings,
     },
-    /// More that was found, and is not kept.
+    /// Number of further findings, which are not kept.
     More {
         n: u32,
     },

@@ -47,7 +47,7 @@ pub enum LinkTrouble {
     /// An instrument of the bench does not do its part.
     #[error("instrument {instrument} of the bench: {fault}")]
     Instrument {
-        /// As the bench file names it.
+        /// Name of the instrument in the bench file.
         instrument: String,
         /// What is wrong with the instrument.
         fault: Box<InstrumentFault>,
@@ -199,7 +199,7 @@ pub enum InstrumentFault {
     /// The right model with another serial number.
     #[error("another instrument: serial number {found} answers where {expected} is expected")]
     OtherSerial {
-        /// In its answer to `*IDN?`.
+        /// Serial number in its answer to `*IDN?`.
         found: String,
         /// `serial` of the bench file.
         expected: String,
@@ -230,12 +230,12 @@ pub enum InstrumentFault {
     /// The instrument reports an error after a command.
     #[error("it refused {command}: {error}")]
     Refused {
-        /// As it was sent.
+        /// Command as it was sent.
         command: String,
         /// The entry of its error queue, as it answered.
         error: String,
     },
-    /// More errors came than it keeps.
+    /// The instrument has more errors than its queue holds.
     #[error("its error queue is full: {0}")]
     QueueFull(String),
     /// A value beyond what its driver states.
@@ -243,7 +243,7 @@ pub enum InstrumentFault {
     OutOfRange {
         /// The driver's name of the value.
         what: String,
-        /// As the driver would have put it.
+        /// Value that the driver would have set.
         value: String,
         /// Least that the driver states.
         low: String,
@@ -253,9 +253,9 @@ pub enum InstrumentFault {
     /// What it answered cannot be read.
     #[error("{found} is no answer to {asked}")]
     NoAnswer {
-        /// As it was sent, or how much was asked for.
+        /// Command as it was sent, or number of bytes asked for.
         asked: String,
-        /// As it came.
+        /// Answer as it came.
         found: String,
     },
     /// The contact that proves a relay says otherwise.
@@ -291,9 +291,10 @@ pub enum GarbageCause {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Refused {
-    /// So many do not continue those before them, as those of a unit that starts again and again.
+    /// Number of frames that do not continue those before, as from a unit that starts again and
+    /// again.
     OfStarts(u64),
-    /// So many were refused for any reason.
+    /// Number of frames refused for any reason.
     Frames(u64),
 }
 
@@ -302,9 +303,9 @@ pub enum Refused {
 pub struct Changed {
     /// Which.
     pub property: Property,
-    /// As the unit said it first.
+    /// Value that the unit told first.
     pub was: String,
-    /// As it says it now.
+    /// Value that the unit tells now.
     pub is: String,
 }
 

@@ -52,7 +52,7 @@ pub struct StepResult {
     pub kind: ResultKind,
     /// Line of the `step()` call in the script, from 1.
     pub line: u32,
-    /// Over its expectations and measurements.
+    /// Verdict over the step's expectations and measurements.
     pub verdict: Verdict,
     /// Why, when it did not pass; may also be a note.
     pub findings: Findings,
@@ -202,7 +202,7 @@ pub enum RunEvent {
     },
     /// The unit's clock goes wrong, as the bench's tells.
     UnitClockWrong {
-        /// By how much it is faster, thousandths.
+        /// Excess of the unit's clock, thousandths.
         by_permille: i32,
         /// Bench time.
         at: Instant,
@@ -211,7 +211,7 @@ pub enum RunEvent {
     OutsideStep(OutsideStep),
     /// The procedure is over and outputs are safe, or could not be made so, which is an error.
     ProcedureFinished {
-        /// Over its steps and what stands beside them.
+        /// Verdict over the procedure's steps and what stands beside them.
         verdict: Verdict,
         /// Findings outside steps; empty if there are none.
         findings: Findings,

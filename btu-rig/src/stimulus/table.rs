@@ -226,7 +226,7 @@ stimuli! {
     } [Cab] => format!("cab active (HCR) {}", on_off(on));
     /// Maintenance key.
     MaintenanceKey {
-        /// On.
+        /// Position of the key.
         on: bool,
     } [Cab] => format!("maintenance key {}", on_off(on));
     /// Train number keyed in at the cab.
@@ -267,7 +267,7 @@ stimuli! {
     Switch {
         /// Which.
         switch: TrainSwitch,
-        /// On.
+        /// Position of the switch.
         on: bool,
     } [Cab] => format!("{} {}", switch.label(), on_off(on));
     /// Equipment of a car is cut out or in.

@@ -21,12 +21,12 @@ macro_rules! causes {
                 self.0 & one.0 == one.0
             }
 
-            /// None holds.
+            /// Whether no cause holds.
             pub fn is_empty(self) -> bool {
                 self.0 == 0
             }
 
-            /// As the signal has it.
+            /// Number of the set in the signal.
             pub fn bits(self) -> u16 {
                 self.0
             }

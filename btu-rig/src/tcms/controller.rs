@@ -29,7 +29,7 @@ pub struct ControllerInputs {
 }
 
 impl ControllerInputs {
-    /// More than one of its contacts is closed.
+    /// Whether contacts of the controller contradict each other.
     pub fn contradicts(&self) -> bool {
         self.power && self.brake || self.neutral && (self.power || self.brake)
     }

@@ -29,7 +29,7 @@ impl Driver {
 /// Mode TCMS drives in (S4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TcmsMode {
-    /// None: no cab counts, or its mode switch is off.
+    /// No cab counts, or its mode switch is off.
     #[default]
     None,
     /// Mode switch at emergency: the driver has the train.

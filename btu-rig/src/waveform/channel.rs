@@ -25,7 +25,7 @@ pub struct ChannelConfig {
     pub inverter_mv: f64,
     /// Limits of the line's sweep, Hz, up and down.
     pub inverter_hz: [f64; 2],
-    /// In this time, s.
+    /// Time of a sweep of that line, s.
     pub inverter_sweep_s: f64,
     /// Mean number of dropouts, 1/s.
     pub dropouts_per_s: f64,

@@ -18,7 +18,7 @@ pub enum Misplaced {
     /// The run is not in it.
     #[error("was written over, and does not hold the run as it was recorded")]
     WrittenOver,
-    /// There was one when the program began.
+    /// The file was there when the program began.
     #[error("is gone")]
     Gone,
 }

@@ -305,7 +305,7 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
-    /// Not the address of a server.
+    /// The text is no address of a server.
     #[error("bad server address: {reason}; write postgres://USER@HOST/DATABASE")]
     BadAddress {
         /// Fault of the address; never its password.

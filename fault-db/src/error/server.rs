@@ -23,7 +23,7 @@ pub enum ServerReason {
     /// The connection broke off.
     #[error("the connection is lost")]
     Lost,
-    /// None was given.
+    /// The address has no password.
     #[error("it wants a password")]
     NoPassword,
     /// The server offers no TLS, and the address demands TLS.

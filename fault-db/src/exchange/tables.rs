@@ -25,14 +25,14 @@ pub(super) struct Table {
     pub check: fn(&[Value<'_>]) -> Result<(), String>,
     /// Whether rows are inserted; rows of the other tables only say what to change.
     pub is_inserted: bool,
-    /// In a file, more columns and their values. `{column}` stands for the row's value.
+    /// Further columns in a file, with their values. `{column}` stands for the row's value.
     pub file_more: &'static [(&'static str, &'static str)],
     /// Rows for which this holds are not inserted into a file.
     pub file_unless: &'static str,
     /// Completes a row of a file that is known.
     pub file_complete: &'static str,
-    /// On a server, more columns and their values. `{rows}` stands for the rows sent, `x`; `{laptop}` for the
-    /// laptop.
+    /// Further columns on a server, with their values. `{rows}` stands for the rows sent, `x`; `{laptop}` for
+    /// the laptop.
     pub server_more: &'static [(&'static str, &'static str)],
     /// Rows for which this holds are not inserted on a server.
     pub server_unless: &'static str,

@@ -29,7 +29,7 @@ const PASSED: &str = "passed";
 const CONFIRMED: &str = "confirmed";
 /// What the note of such an event begins with, before the run's id.
 const IN_RUN: &str = "in run ";
-/// As many runs with the fault are evidence of its rate, the last ones.
+/// Number of runs with the fault, the last ones, that are evidence of its rate.
 const MOST_RUNS: i64 = 8;
 
 /// Runs `r` with their seals `s`; a copy of a file seals a run again.

@@ -56,7 +56,7 @@ pub struct Stay {
     pub place: String,
     /// Since when; `None`: it was there before anything was stored.
     pub from_us: Option<i64>,
-    /// Until when; `None`: it is still there.
+    /// End of the stay; `None`: it lasts.
     pub until_us: Option<i64>,
     /// Runs of the unit in this time.
     pub runs: u32,

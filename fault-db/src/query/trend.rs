@@ -27,9 +27,9 @@ pub struct TrendQuery {
     pub procedure: Option<String>,
     /// The step that measured it: each may have its own limits, too.
     pub step: Option<String>,
-    /// In a run that started at this time or later.
+    /// Start of the first run that counts.
     pub since_us: Option<i64>,
-    /// In a run that started before this time.
+    /// Time before which the last run that counts has started.
     pub until_us: Option<i64>,
 }
 
@@ -182,7 +182,7 @@ impl Store {
         Ok(days)
     }
 
-    /// By day, from single values.
+    /// Days of the trend, from single values.
     fn days(&self, query: &TrendQuery) -> Result<Vec<TrendDay>, StoreError> {
         let mut conditions = self.measured(query)?;
         conditions.require("m.value IS NOT NULL");

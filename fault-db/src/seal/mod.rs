@@ -150,7 +150,7 @@ pub(crate) fn begin(backend: &Backend, origin: Id) -> SqlResult<Id> {
     Ok(origin)
 }
 
-/// As lower-case hex digits.
+/// Bytes as lower-case hex digits.
 pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
@@ -166,7 +166,7 @@ pub(crate) struct RecountedPayload {
 }
 
 impl RecountedPayload {
-    /// As a sentence.
+    /// The recount as a sentence.
     pub fn text(&self) -> String {
         let at = chrono::DateTime::from_timestamp_micros(self.at_us).unwrap_or_default();
         format!(

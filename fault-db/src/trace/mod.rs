@@ -191,7 +191,7 @@ pub enum TraceError {
         /// Rows there are.
         rows: usize,
     },
-    /// More than [`MAX_ROWS`] or [`MAX_SAMPLES`].
+    /// The trace has more than [`MAX_ROWS`] or [`MAX_SAMPLES`].
     #[error(
         "{rows} rows of {columns} channels are too many (at most {MAX_ROWS} rows and {MAX_SAMPLES} samples)"
     )]

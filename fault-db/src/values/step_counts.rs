@@ -86,7 +86,7 @@ impl<K: Ord> StepCounter<K> {
         self.outside += u32::from(rank(verdict) > 1);
     }
 
-    /// So far, of so many steps that are due, or more if there are.
+    /// Counts so far, of `planned` steps that are due, or more if more ran.
     pub fn counts(&self, planned: usize) -> StepCounts {
         let of = |rank| self.steps.values().filter(|worst| **worst == rank).count() as u32;
         StepCounts {

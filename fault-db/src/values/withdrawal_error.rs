@@ -3,7 +3,7 @@
 /// Reason for which nothing is taken back.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WithdrawalError {
-    /// There is no event of a person, or all are withdrawn.
+    /// The fault has no event of a person, or all are withdrawn.
     #[error("nobody has written anything about it that could be withdrawn")]
     NothingWritten,
     /// Something else was written last.

@@ -13,7 +13,7 @@ use fault_db::{
 };
 use tempfile::tempdir;
 
-/// With other writers: a busy machine may hold one up in the middle of a commit.
+/// Time a store waits for other writers: a busy machine may hold one up in the middle of a commit.
 const PATIENCE_MS: u32 = 30_000;
 
 #[test]

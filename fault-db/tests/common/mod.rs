@@ -38,7 +38,7 @@ impl Random {
         self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
     }
 
-    /// In -1 … 1, most often near 0.
+    /// A number in -1 … 1, most often near 0.
     pub fn noise(&mut self) -> f64 {
         let uniform = |bits: u64| (bits >> 11) as f64 / (1u64 << 53) as f64;
         uniform(self.next()) + uniform(self.next()) - 1.0

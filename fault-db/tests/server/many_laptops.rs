@@ -44,7 +44,7 @@ const ONE_KILLED_IN: usize = 10;
 const STAGES: u64 = 3;
 /// A process is killed so long after such a line, at most, ms.
 const LATEST_KILL_MS: u64 = 60;
-/// So often the server is killed and started again.
+/// Number of times the server is killed and started again.
 const RESTARTS: usize = 2;
 /// Shortest time for which a laptop is away.
 const AWAY: Duration = Duration::from_secs(1);
@@ -114,7 +114,7 @@ struct Tally {
     /// Seconds of each completed sync, its process included.
     completed: Vec<f64>,
     killed: u32,
-    /// By what the laptop was told.
+    /// Numbers of failures by the message that the laptop got.
     failed: BTreeMap<String, u32>,
 }
 

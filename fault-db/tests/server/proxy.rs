@@ -11,7 +11,7 @@ pub enum When {
     BeforeCommit(u32),
     /// The server has done the `n`th commit, the laptop has not heard of it.
     AfterCommit(u32),
-    /// So many bytes have gone to the server.
+    /// After this number of bytes to the server.
     AfterBytes(u64),
     Never,
 }

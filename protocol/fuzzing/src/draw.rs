@@ -10,7 +10,7 @@ use crate::mutate::Dice;
 const SEED: &str = "CHECK_SEED";
 /// Seed made of the last commit, read once.
 static OF_THE_LAST_COMMIT: LazyLock<String> = LazyLock::new(of_the_last_commit);
-/// As a seed: everything is drawn.
+/// Seed with which everything is drawn.
 const ALL: &str = "all";
 
 /// One in so many of what there is, one at least. Prints the seed by which the same are drawn again: a test that fails shows

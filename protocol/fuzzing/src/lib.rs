@@ -28,7 +28,7 @@ use mutate::Dice;
 const HANG: Duration = Duration::from_secs(10);
 /// From one look at the clock to the next.
 const LOOK: Duration = Duration::from_millis(500);
-/// More memory than this no reader may hold at a time, bytes.
+/// Memory that a reader may hold at a time, bytes.
 const MOST_MEMORY: u64 = 512 << 20;
 /// A check feeds one in so many of the damaged inputs.
 const PART_OF_A_CHECK: u64 = 4;

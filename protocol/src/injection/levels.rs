@@ -25,7 +25,7 @@ pub enum FaultKind {
 }
 
 impl FaultKind {
-    /// As catalogues and reports write it.
+    /// Word in catalogues and reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Permanent => "permanent",

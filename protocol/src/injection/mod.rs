@@ -233,7 +233,7 @@ pub enum Place {
 }
 
 impl Place {
-    /// On the train around the unit.
+    /// Whether the place is on the train around the unit.
     pub const fn on_train(self) -> bool {
         matches!(
             self,
@@ -252,7 +252,7 @@ impl Place {
         )
     }
 
-    /// In the bench or its wires to the unit: the unit is not at fault.
+    /// Whether the place is in the bench or its wires to the unit: the unit is not at fault.
     pub const fn on_bench(self) -> bool {
         matches!(
             self,
@@ -271,7 +271,8 @@ impl Place {
         )
     }
 
-    /// In the unit, which applies the fault mode itself; the bench applies all others.
+    /// Whether the place is in the unit, which applies the fault mode itself; the bench applies all
+    /// others.
     pub const fn in_unit(self) -> bool {
         !self.on_train() && !self.on_bench()
     }
@@ -281,7 +282,7 @@ impl Place {
         matches!(self, Self::TrackDatabase | Self::WheelParameter)
     }
 
-    /// On one of the train's cars, which the mode must name.
+    /// Whether the place is on one of the train's cars, which the mode must name.
     pub const fn on_car(self) -> bool {
         matches!(
             self,

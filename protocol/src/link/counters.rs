@@ -9,7 +9,7 @@ pub struct Counters {
     pub(super) accepted: [u64; CHANNELS],
     pub(super) gaps: [u64; CHANNELS],
     pub(super) out_of_place: [u64; CHANNELS],
-    /// By reason, then by channel; the last place is for frames of no channel of this end.
+    /// Counts by reason, then by channel; the last place is for frames of no channel of this end.
     pub(super) rejected: [[u64; CHANNELS + 1]; Reject::ALL.len()],
     pub(super) garbage: u64,
 }

@@ -145,7 +145,7 @@ wire_enum! {
 wire_enum! {
     /// How far a train has carried out its last order.
     OrderState {
-        /// None is under way.
+        /// No order is under way.
         Idle = 0 "idle",
         /// TCMS is asked for the change of cabs, the train is held.
         TurningBack = 1 "turning_back",
@@ -159,7 +159,7 @@ wire_enum! {
         Waking = 5 "waking",
         /// Ready for a departure.
         Ready = 6 "ready",
-        /// Not carried out; the train stays held.
+        /// The order was not carried out; the train stays held.
         Failed = 7 "failed",
     }
 }
@@ -261,7 +261,7 @@ wire_enum! {
         TcmsLost = 4 "tcms_lost",
         /// ATO failed in automatic run.
         AtoFailed = 5 "ato_failed",
-        /// In automatic run TCMS took its permission back, or said that the train cannot run.
+        /// TCMS took its permission back in automatic run, or said that the train cannot run.
         NotPermitted = 6 "not_permitted",
         /// Armed for maintenance.
         TestMode = 7 "test_mode",
@@ -303,7 +303,7 @@ wire_enum! {
 wire_enum! {
     /// Why arming was refused or lapsed.
     ArmRefusal {
-        /// Not refused.
+        /// The request is not refused.
         None = 0 "none",
         /// The maintenance key is off.
         KeyOff = 1 "key_off",

@@ -105,8 +105,8 @@ fn cells(
 }
 
 impl Cell {
-    /// As it stands in the file, where a text acts on nothing: no formula, no control characters but line
-    /// feeds and tabs.
+    /// Text of the cell in the file, where a text acts on nothing: no formula, no control characters but
+    /// line feeds and tabs.
     pub fn written(self) -> String {
         match self {
             Self::Number(number) => number,

@@ -118,7 +118,7 @@ fn day_us(date: &str) -> Option<i64> {
 mod tests {
     use super::*;
 
-    /// By hand: 3 000 km in the 30 days of June are 100 km a day; 10 days of them are 1 000 km.
+    /// 3 000 km in the 30 days of June are 100 km a day; 10 days of them are 1 000 km.
     #[test]
     fn a_train_runs_evenly_between_its_readings_and_not_beyond_them() {
         let text = "\u{feff}train,date,km\r\n\"612\", 2026-07-01 ,103000\r\n612,2026-06-01,100000\r\n\r\n613,2026-06-01,5\r\n";

@@ -8,7 +8,7 @@ use crate::words::{Words, fill};
 #[derive(Clone, Copy, PartialEq)]
 enum Group {
     Proven,
-    /// More of such runs can prove it.
+    /// Further runs of this kind can prove the repair.
     Claimed,
     /// The fault does not show in such runs.
     NotShown,

@@ -34,7 +34,7 @@ pub struct Recording {
     pub reading: Reading,
     /// Picture of each channel.
     pub pictures: Vec<Picture>,
-    /// By which command, and when.
+    /// Command that made the page, and time.
     pub made: String,
 }
 

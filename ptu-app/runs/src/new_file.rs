@@ -13,7 +13,7 @@ use crate::platform;
 /// Names tried beside one that is taken.
 const BESIDE: u32 = 1000;
 
-/// So many bytes tell what a file is.
+/// Bytes that tell what a file is.
 const HEAD: u64 = 64;
 
 /// Beginnings of a file of a kind, spaces aside. A file of this kind replaces such a file or an empty one, and no
@@ -76,7 +76,7 @@ pub fn head(text: &[u8]) -> String {
 #[derive(Debug)]
 pub struct NewFile {
     file: BufWriter<File>,
-    /// None once it has its name.
+    /// The part of the file that is written; none once the file has its name.
     part: Option<AtomicFile>,
     place: PathBuf,
     heads: Vec<String>,

@@ -34,7 +34,7 @@ pub enum Place {
 /// A file that a place has.
 #[derive(Clone, Debug)]
 pub enum Found {
-    /// On the disk.
+    /// A file on the disk.
     File(PathBuf),
     Embedded(&'static str, &'static [u8]),
 }
@@ -133,7 +133,7 @@ impl fmt::Display for Place {
 }
 
 impl Found {
-    /// As it is named to a person.
+    /// Path or name, for people.
     pub fn shown(&self) -> String {
         match self {
             Self::File(path) => path.display().to_string(),

@@ -14,7 +14,7 @@ use ptu_runs::clock;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Exit, Failure};
 
-/// By this variable a shell asks the program.
+/// Variable by which a shell asks the program.
 const VARIABLE: &str = "PTU_COMPLETE";
 /// Newest entries of a history that are offered.
 const NEWEST: u32 = 100;

@@ -225,7 +225,7 @@ fn list(keys: &KeysOption, json: Json) -> Result<Exit, Failure> {
     json.answer(document, || table(&list, &files, now))
 }
 
-/// In which files a key is, its private key's file first.
+/// Files in which a key is, the file of its private key first.
 struct FilesOfKeys(BTreeMap<String, Vec<String>>);
 
 impl FilesOfKeys {

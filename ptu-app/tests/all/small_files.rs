@@ -83,7 +83,7 @@ fn zeros(bytes: u64) -> Vec<u8> {
     .concat()
 }
 
-/// So many messages of ten texts and a number.
+/// A file of `count` messages of ten texts and a number.
 fn messages(count: u32, encoding: &str) -> Vec<u8> {
     let mut file = std::io::Cursor::new(Vec::new());
     let options = mcap::WriteOptions::new().compression(Some(mcap::Compression::Lz4));

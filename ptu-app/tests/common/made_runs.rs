@@ -54,7 +54,7 @@ pub struct Maker {
 }
 
 impl Maker {
-    /// In this file, with the fault dictionary of these scripts.
+    /// A maker of runs in this file, with the fault dictionary of these scripts.
     pub fn new(file: PathBuf, scripts: &Path) -> Self {
         let packed = std::fs::read(scripts.join("dictionary.zst")).expect("a dictionary");
         Self {
@@ -242,7 +242,7 @@ impl<'a> Making<'a> {
         }
     }
 
-    /// Has it recorded; what makes an end of it before its time.
+    /// Records the run; returns what ends it before its time.
     fn collect(&mut self, to: &mut Collector<'_>) -> Option<Verdict> {
         let tasks = self.plan.tasks.iter();
         let all: Vec<_> = tasks.map(|task| task.procedure.clone()).collect();

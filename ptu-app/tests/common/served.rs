@@ -33,12 +33,12 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// On a new pseudo-terminal.
+    /// A unit on a new pseudo-terminal.
     pub fn on_pty(arguments: &[&str]) -> Self {
         Self::serve(&[&["--pty"], arguments].concat(), "serial:")
     }
 
-    /// On a new pseudo-terminal, scan by scan with its tester.
+    /// A unit on a new pseudo-terminal, in lock step with its tester.
     pub fn in_lock_step(arguments: &[&str]) -> Self {
         Self::serve(
             &[&["--pty", "--lock-step"], arguments].concat(),
@@ -46,12 +46,12 @@ impl Unit {
         )
     }
 
-    /// On a free TCP port.
+    /// A unit on a free TCP port.
     pub fn on_tcp(arguments: &[&str]) -> Self {
         Self::serve(&[&["--tcp", "127.0.0.1:0"], arguments].concat(), "tcp:")
     }
 
-    /// On a free TCP port, with these programs before those of the system.
+    /// A unit on a free TCP port, with these programs before those of the system.
     pub fn with_programs(programs: &str, arguments: &[&str]) -> Self {
         let path = format!("PATH={programs}:/usr/bin:/bin");
         let unit = super::program("ato-under-test").display().to_string();
@@ -121,7 +121,7 @@ impl Unit {
         self.child.wait().expect("its end").code()
     }
 
-    /// As if its computer did something else for so long.
+    /// Stops the process for this time, as a busy computer would.
     pub fn stand_still(&self, time: Duration) {
         stand_still(&self.child, time);
     }
@@ -195,7 +195,7 @@ impl<'a> Running<'a> {
         kill_process(Pid::from_child(&self.child), Signal::INT).expect("a signal");
     }
 
-    /// As if its computer did something else for so long.
+    /// Stops the process for this time, as a busy computer would.
     pub fn stand_still(&self, time: Duration) {
         stand_still(&self.child, time);
     }

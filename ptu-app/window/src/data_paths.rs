@@ -51,7 +51,7 @@ impl DataPaths {
         self.server.is_some()
     }
 
-    /// There is something to read.
+    /// Whether there is a history to read.
     pub fn is_there(&self) -> bool {
         self.is_server() || self.database.exists()
     }

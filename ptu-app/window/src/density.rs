@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub enum Density {
     /// Large text and targets; nothing that only scripts name.
     Operator,
-    /// As much as there is room for.
+    /// Shows as much as there is room for.
     #[default]
     Engineer,
 }

@@ -36,14 +36,14 @@ pub enum About {
 
 #[derive(Debug)]
 pub struct Message {
-    /// In the language chosen when it happened.
+    /// Text, in the language chosen when the message came.
     pub text: String,
     /// The trouble; empty if the text says it all.
     pub detail: Trouble,
     pub bad: bool,
     /// µs since 1970.
     pub at_us: i64,
-    /// None = until the next.
+    /// Subject of the message; none = shown until the next message.
     about: Option<About>,
     /// The matter is over: the message is only listed.
     pub over: bool,

@@ -99,8 +99,8 @@ impl SpeedController for Pss {
         }
     }
 
-    /// At the greatest brake, built up at the jerk limit, until the force goes down with the error: the last of
-    /// that is gone after two time constants.
+    /// Distance in which the train slows, m: at the greatest brake, built up at the jerk limit, until the force
+    /// goes down with the error. The last of the force is gone after two time constants.
     fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64 {
         let rate_mps2 = self.gain_per_s * self.near_mps;
         let seconds = (from_mps - to_mps).max(0.0) / rate_mps2

@@ -13,7 +13,7 @@ const CONFIG: DriverlessConfig = DriverlessConfig {
     reopen_ms: 2000,
     close_tries: 3,
 };
-/// At a platform on the left, held.
+/// A train at a platform on the left, held.
 const HELD: StationInputs = StationInputs {
     driverless: true,
     standstill: true,

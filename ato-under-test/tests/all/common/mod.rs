@@ -189,7 +189,7 @@ impl Bench {
         self.input.code_rate_chz = 0;
     }
 
-    /// Both wheels at a speed, reached at 3 m/s².
+    /// Brings both wheels to a speed at 3 m/s².
     pub fn speed_kmh(&mut self, kmh: f64) {
         let goal = kmh / 3.6;
         while (self.speeds[0] - goal).abs() > 0.03 {
@@ -200,7 +200,7 @@ impl Bench {
         self.speeds = [goal; 2];
     }
 
-    /// Both wheels to a stop at 3 m/s².
+    /// Brings both wheels to a stop at 3 m/s².
     pub fn stop(&mut self) {
         while self.speeds != [0.0; 2] {
             self.speeds = self.speeds.map(|speed| speed - speed.clamp(-0.03, 0.03));

@@ -23,9 +23,9 @@ pub(super) enum Item {
     /// A speed code, a section, or a part of the configuration.
     Record(Arc<Record>),
     Actions(Vec<Action>),
-    /// With the source of the numbers it compares with.
+    /// A condition, with the source of the numbers it compares with.
     Condition(Condition, Origin),
-    /// With the source of its numbers.
+    /// An expectation, with the source of its numbers.
     Expectation(Expectation, Origin),
     Measure(Box<Measure>),
     /// A value measured by an earlier step, by name, and what is added to it.

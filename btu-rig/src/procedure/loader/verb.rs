@@ -38,7 +38,7 @@ pub(super) const fn takes(name: &'static str, want: ParamType) -> Param {
 /// A word of the script language.
 #[derive(Debug)]
 pub(super) struct Verb {
-    /// As written, namespace included.
+    /// Name as written, namespace included.
     pub name: &'static str,
     pub params: &'static [Param],
     pub make: fn(&Args<'_>) -> Result<Item, String>,

@@ -354,8 +354,8 @@ impl Runner {
         }
     }
 
-    /// Over all steps and what stands beside them. Where nothing could be judged any more, what was
-    /// judged before is no verdict on the unit.
+    /// Verdict over all steps and what stands beside them. Where nothing could be judged any more,
+    /// what was judged before is no verdict on the unit.
     fn overall(&self) -> Verdict {
         match self.verdict {
             Verdict::Aborted => Verdict::Aborted,

@@ -15,7 +15,7 @@ const ALONE: Duration = Duration::from_ms(500);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Harness {
-    /// To be found out from what the unit says.
+    /// Whether there is a harness follows from what the unit says.
     #[default]
     Auto,
     /// Only the maintenance channel.

@@ -87,7 +87,7 @@ pub struct LineWatch {
     lateness: Lateness,
     /// When a frame came last, and how late it was.
     late: (Instant, Duration),
-    /// Until when the unit refuses what is damaged on purpose.
+    /// Time until which the unit refuses what is damaged on purpose.
     on_purpose_until: Instant,
     /// Counts of the last seconds, oldest first.
     past: VecDeque<(Instant, Counts)>,
@@ -243,7 +243,7 @@ impl LineWatch {
         self.settles_until.is_some_and(|until| now >= until)
     }
 
-    /// By how much the unit's clock is faster than the bench's, thousandths, if it is wrong.
+    /// Excess of the unit's clock over the bench's, thousandths, if the unit's clock is wrong.
     pub fn clock_wrong_by_permille(&self) -> Option<i32> {
         self.rate.wrong_by_permille()
     }

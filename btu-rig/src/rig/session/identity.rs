@@ -40,7 +40,7 @@ struct Compared {
     signal: Signal,
     /// `None` = nothing says what it should be.
     same: Option<bool>,
-    /// Both sides, or why there is only one.
+    /// Both sides of the comparison, or why there is only one.
     said: String,
 }
 

@@ -46,7 +46,7 @@ pub struct StoredData {
 pub enum StoreState {
     /// Whether the unit has a store is not known yet.
     Unknown,
-    /// There is none: the unit is an older one.
+    /// The unit has no store: it is an older one.
     Missing,
     Reading,
     /// All is read that was there when it was first asked for.

@@ -37,7 +37,7 @@ pub struct TcmsPort {
 }
 
 impl Default for TcmsPort {
-    /// In order, ATO permitted, no passengers.
+    /// A TCMS in order: ATO permitted, no passengers.
     fn default() -> Self {
         Self {
             condition: TcmsCondition::Good,

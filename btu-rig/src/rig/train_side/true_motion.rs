@@ -38,7 +38,7 @@ pub struct SpeedHistory {
 }
 
 impl Default for SpeedHistory {
-    /// At rest for long.
+    /// History of a train at rest for long.
     fn default() -> Self {
         Self {
             speeds_mps: [0.0; HISTORY],

@@ -154,7 +154,7 @@ pub struct Resistance {
     pub tunnel_kgf_t: f64,
     /// Curve resistance times radius, kgf·m/t.
     pub curve_kgf_m_t: f64,
-    /// In place of rolling and air resistance, which are 0 then.
+    /// Davis formula in place of rolling and air resistance, which are 0 then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub davis: Option<Davis>,
 }

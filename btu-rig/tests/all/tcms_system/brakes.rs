@@ -70,7 +70,7 @@ fn a_brake_at_speed_never_becomes_the_holding_brake() {
     assert!(!bench.view().holding);
 }
 
-/// By message or by contact; P is masked for as long.
+/// ATO asks for the holding brake by message or by contact; P is masked for as long.
 #[test]
 fn ato_asks_for_it_and_is_refused_power_meanwhile() {
     let asks = AtcToTcmsBits::POWER | AtcToTcmsBits::HOLDING_BRAKE;

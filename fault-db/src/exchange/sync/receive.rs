@@ -20,7 +20,7 @@ pub(super) struct PullScope {
     pub until: i64,
     /// Only of faults that are new to the laptop, however old the event.
     pub fresh: bool,
-    /// Also those that the laptop sent itself: its file was restored from a backup.
+    /// Rows that the laptop sent itself are received, too: its file was restored from a backup.
     pub own_events: bool,
 }
 

@@ -17,7 +17,7 @@ pub enum Damage {
     /// The words of SQLite or of a decoder.
     #[error("{0}")]
     Told(String),
-    /// More of the same kind are not listed.
+    /// Further findings of a kind, which are not listed.
     #[error("and {0} more of this kind")]
     More(u32),
     /// Reading broke off.
@@ -102,10 +102,10 @@ pub enum Damage {
     /// A sealed run has no verdict.
     #[error("run {0} has a seal and no verdict: the verdict was taken away")]
     NoVerdict(Id),
-    /// So many runs are not there.
+    /// Number of runs that are not there.
     #[error("{0} runs that were recorded here are not there any more")]
     NoRuns(i64),
-    /// So many rows of a derived table differ.
+    /// Number of differing rows in a derived table.
     #[error("{0} {1} are not what the history says")]
     Miscounted(i64, Derived),
     /// No occurrence says what a fault is.

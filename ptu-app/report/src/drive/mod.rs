@@ -25,7 +25,7 @@ pub struct Results {
     pub outcomes: Outcomes,
     /// Several were asked for, so that there is a list even of one.
     pub list: bool,
-    /// By which command the report was made, and when; the window says neither.
+    /// Command that made the report, and time; the window says neither.
     pub made: Option<String>,
 }
 

@@ -43,7 +43,7 @@ pub enum Block {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
     Left,
-    /// At its right: numbers.
+    /// Numbers, at the right end of the cell.
     Right,
 }
 

@@ -46,7 +46,7 @@ impl Code {
         })
     }
 
-    /// As a drawing, dark on light also where the page is dark.
+    /// Drawing of the code, dark on light also where the page is dark.
     pub fn svg(&self) -> Markup {
         let stretch =
             |(x, y, length): &(usize, usize, usize)| format!("M{x} {y}h{length}v1h-{length}z");

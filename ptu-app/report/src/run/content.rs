@@ -361,7 +361,7 @@ fn decision_rule(sheet: &Sheet, words: &Words) -> &'static str {
     }
 }
 
-/// With what was measured, and whether its calibration held.
+/// Instruments that measured, and whether their calibration was valid.
 fn instruments(sheet: &Sheet, words: &Words) -> String {
     let report = &words.report;
     let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);

@@ -66,7 +66,7 @@ impl TraceInfo {
         (row as i64 - self.trigger_row.unwrap_or(0)).saturating_mul(self.period_us)
     }
 
-    /// As one line of JSON.
+    /// Head of the trace as one line of JSON.
     pub fn json(&self) -> String {
         // Texts, whole numbers and finite steps: there is nothing JSON cannot say.
         serde_json::to_string(self).unwrap_or_default()

@@ -21,7 +21,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// By the ending of a file's name.
+    /// Format by the ending of a file's name.
     ///
     /// # Errors
     /// There is no such format.

@@ -41,7 +41,7 @@ struct Topic {
     table: Table,
     /// Place of a field's column, by its path.
     places: BTreeMap<String, usize>,
-    /// So many names of signals are known to be short enough.
+    /// Number of signal names known to be short enough.
     checked: usize,
 }
 
@@ -153,7 +153,7 @@ struct Reading<'a> {
     known: &'a [Channel],
     asked: &'a Columns,
     names: KnownSignals,
-    /// By the number of the file's channel.
+    /// Topics by the number of the file's channel.
     topics: BTreeMap<u16, Topic>,
     /// Encodings of messages that are passed over.
     others: BTreeSet<String>,

@@ -44,7 +44,7 @@ pub struct ListedTrace {
 /// A fault that a trace shows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ListedFault {
-    /// As `9000 check_failed eb_relay`.
+    /// Code, name and part, as `9000 check_failed eb_relay`.
     pub code: String,
     /// What people call it, in each language.
     said: [String; 2],

@@ -24,7 +24,7 @@ pub enum Statistics {
         /// Share of the known rows per value, the longest first, 0 to 1.
         shares: Vec<(f64, f64)>,
     },
-    /// Not one row is known.
+    /// No row has a known value.
     Unknown,
 }
 

@@ -215,7 +215,7 @@ impl TracePlot {
         self.before.push(self.window());
     }
 
-    /// Has in view what was before the last zoom; false when there was none.
+    /// Restores the view before the last zoom; false when there was none.
     pub fn zoom_back(&mut self) -> bool {
         let before = self.before.pop();
         if let Some(window) = before {
@@ -224,7 +224,7 @@ impl TracePlot {
         before.is_some()
     }
 
-    /// There is a zoom to undo.
+    /// Whether a zoom can be undone.
     pub fn can_zoom_back(&self) -> bool {
         !self.before.is_empty()
     }

@@ -25,7 +25,7 @@ pub enum Summary {
     Choice(Runs),
     /// On or off.
     Bit(Runs),
-    /// Not one sample is known.
+    /// No sample is known.
     Unknown,
 }
 

@@ -55,13 +55,13 @@ impl VisibleRange {
         self.set(self.window.from + share * length, length);
     }
 
-    /// Has a place in the middle.
+    /// Puts this place in the middle of the view.
     pub fn centre(&mut self, place: f64) {
         let length = self.window.length();
         self.set(place - length / 2.0, length);
     }
 
-    /// Has a stretch in view, with some room around it.
+    /// Shows a stretch, with some room around it.
     pub fn show(&mut self, from: f64, to: f64) {
         let length = ((to - from) * 1.2).clamp(self.least, self.whole.length());
         self.set(f64::midpoint(from, to) - length / 2.0, length);

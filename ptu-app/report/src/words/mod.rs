@@ -264,7 +264,7 @@ mod tests {
         .concat()
     }
 
-    /// With what is refused, and what the command line answers.
+    /// All wordings, with those of refusals and of the command line.
     fn all_told() -> Vec<(&'static str, &'static str, &'static str)> {
         let refused = ptu_runs::words::all().map(|[key, english, korean]| (key, english, korean));
         let answers = [Terminal::all(), Counts::all(), Doctor::all(), Verify::all()].concat();

@@ -75,7 +75,7 @@ impl UnitAboard {
         aboard
     }
 
-    /// Gives the unit the flash that it had before; no scan may have been made yet.
+    /// Gives the unit the flash that the unit had before; no scan may have been made yet.
     pub fn set_flash(&mut self, flash: Box<dyn BlockDevice>) {
         self.train.link_mut().set_flash(flash);
     }
@@ -101,10 +101,10 @@ impl UnitAboard {
         self.apply(&Stimulus::Wayside(WaysideCondition::Good))
     }
 
-    /// Does something to train or track, from the next scan on.
+    /// Applies a stimulus to train or track, from the next scan on.
     ///
     /// # Errors
-    /// What the train cannot do, and what only a tester does.
+    /// The stimulus is impossible for the train, or is for a tester alone.
     pub fn apply(&mut self, stimulus: &Stimulus) -> Result<(), Refusal> {
         let now = self.train.now();
         self.train.rig_mut().apply(now, stimulus)

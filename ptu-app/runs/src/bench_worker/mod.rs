@@ -105,10 +105,10 @@ impl BenchWorker {
         self.send(Order::Disconnect);
     }
 
-    /// Does something to the unit by hand.
+    /// Applies a stimulus by hand.
     ///
     /// # Errors
-    /// It is not possible now, or not with this connection; see [`permit`].
+    /// The stimulus is not possible now, or not with this connection; see [`permit`].
     pub fn apply(&self, stimulus: Stimulus) -> Result<(), Refused> {
         self.permits(&stimulus)?;
         let bench_epoch = self.live_state.read().bench_epoch;

@@ -30,7 +30,7 @@ pub enum ClockState {
 }
 
 impl ClockState {
-    /// As the system says it now.
+    /// State of the system's clock now.
     pub fn now() -> Self {
         Self::said_in(Path::new(TIMESYNC))
     }

@@ -206,7 +206,7 @@ impl MonteCarlo {
         trials
     }
 
-    /// At least 99.9 % within the door tolerance, none far past the stop point.
+    /// Whether at least 99.9 % stopped within the door tolerance, and none far past the stop point.
     pub fn passed(&self) -> bool {
         self.within(self.case.tolerance_m()) >= ENOUGH && self.past_1m() == 0
     }

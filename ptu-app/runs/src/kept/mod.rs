@@ -47,7 +47,7 @@ impl Keep {
 pub enum Made<R> {
     /// All runs, in the plan's order.
     All(Vec<R>),
-    /// So many runs, those of the shard, made now or before.
+    /// Number of runs of the shard, made now or before.
     Part(usize),
     /// Stopped: the runs made so far, in the plan's order.
     Stopped(Vec<Option<R>>),

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// At most so many parts.
+/// Greatest number of parts.
 const MOST: u32 = 100_000;
 /// The word for a number that a scheduler gives.
 const AUTO: &str = "auto";

@@ -67,7 +67,7 @@ impl Standing {
         *self == Self::Held
     }
 
-    /// In words, after "the key".
+    /// Standing in words, after "the key".
     pub fn text(&self) -> String {
         match self {
             Self::Held => "is in the list and was valid then".to_owned(),

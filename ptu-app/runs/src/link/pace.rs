@@ -20,7 +20,7 @@ impl Pace {
         Self::slower(1)
     }
 
-    /// So many times slower than the clock, beginning now.
+    /// A pace `slower` times slower than the clock, beginning now.
     pub fn slower(slower: u32) -> Self {
         Self::Real {
             began: WallClock::now(),

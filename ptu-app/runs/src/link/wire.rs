@@ -154,13 +154,13 @@ impl WireLink {
         })
     }
 
-    /// To a unit that goes so many times slower than the clock.
+    /// Sets the pace of a unit that goes `slower` times slower than the clock.
     pub fn slower(mut self, slower: u32) -> Self {
         self.slower = slower;
         self
     }
 
-    /// With instruments that take a part of the stimuli and give a part of the readings.
+    /// Adds instruments, which take a part of the stimuli and give a part of the readings.
     pub fn with_instruments(mut self, placed: Placed) -> Self {
         self.placed = Some(placed);
         self

@@ -224,7 +224,8 @@ pub fn compare(
     })
 }
 
-/// By time, and within one report of the unit by their place on the way through it.
+/// Sorts deviations by time, and within one report of the unit by their place on the way through
+/// the unit.
 fn in_order(deviations: &mut [Deviation]) {
     deviations.sort_by_key(|deviation| deviation.row);
     let mut from = 0;

@@ -57,7 +57,7 @@ pub struct BenchContents {
     /// The bench file that said where stimuli go and readings come from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub places: Option<BenchFile>,
-    /// At the wall clock's pace.
+    /// The bench runs at the wall clock's pace.
     pub realtime: bool,
     /// Only the maintenance port was connected: the train did all else by itself.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

@@ -76,7 +76,7 @@ pub struct BenchSetup {
 
 /// The embedded unit where it is built in.
 pub enum SimUnit {
-    /// On a bench, all of whose channels reach it.
+    /// The unit is on a bench, all of whose channels reach the unit.
     OnBench(Box<SimLink>),
     /// Aboard a train, reached at its maintenance port alone.
     Aboard(Box<UnitAboard>),

@@ -42,7 +42,7 @@ impl Listener for () {
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub id: Id,
-    /// Over all procedures.
+    /// Verdict over all procedures.
     pub verdict: Verdict,
     /// Bench time of all procedures.
     pub bench_time: Duration,

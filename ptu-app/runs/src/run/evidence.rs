@@ -33,14 +33,15 @@ pub struct Evidence {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "serde_json::Value")]
 pub struct InstrumentEvidence {
-    /// As it was registered.
+    /// Instrument as registered.
     #[serde(flatten)]
     pub of: Instrument,
     /// The calibration was valid.
     pub is_calibrated: bool,
 }
 
-/// By hand: what serde flattens loses the numbers that serde_json keeps with all their digits.
+/// Written by hand: flattening by serde loses the numbers that serde_json keeps with all their
+/// digits.
 impl TryFrom<Value> for InstrumentEvidence {
     type Error = serde_json::Error;
 
@@ -64,7 +65,7 @@ pub struct ClockEvidence {
 }
 
 impl Evidence {
-    /// With the clock as it is now.
+    /// Evidence of a run that begins now, with the state of the clock.
     pub fn now(
         bench: BenchContents,
         used: Vec<Instrument>,
@@ -101,13 +102,13 @@ impl Evidence {
         self.instruments.iter().find(measures)
     }
 
-    /// As a run keeps it.
+    /// Evidence as JSON, as a run stores it.
     pub fn text(&self) -> String {
         // Structures of text and numbers: this cannot fail.
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// As a run has kept it.
+    /// Evidence from the JSON of a run.
     pub fn of(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
     }

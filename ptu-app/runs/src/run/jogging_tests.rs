@@ -174,7 +174,7 @@ impl Stop {
         self.watch()
     }
 
-    /// Until the run is over.
+    /// Watches the train until the run is over.
     fn watch(&mut self) -> Recovery {
         let mut seen = Recovery {
             tries: 0,

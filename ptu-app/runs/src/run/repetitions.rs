@@ -18,7 +18,7 @@ pub(super) struct RepetitionTally {
 }
 
 impl RepetitionTally {
-    /// None over of so many.
+    /// A tally of `of` repetitions, before the first.
     pub(super) fn new(of: u32) -> Self {
         Self {
             of,

@@ -27,14 +27,14 @@ use crate::failure::{Near, Trouble};
 /// Language and extent of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Manner {
-    /// In Korean, not in English.
+    /// Korean instead of English.
     pub korean: bool,
-    /// With the commands and options that help.
+    /// The text names commands and options that help.
     pub commands: bool,
 }
 
 impl Manner {
-    /// As a text that no window shows has it.
+    /// Manner of a text that no window shows.
     pub const COMMAND_LINE: Self = Self {
         korean: false,
         commands: true,

@@ -207,7 +207,7 @@ pub(super) fn database(file: &Path, words: &Words) -> Vec<Finding> {
     findings
 }
 
-/// There is room for runs.
+/// Checks the room on the disk for runs.
 pub(super) fn disk(file: &Path, words: &Words) -> Finding {
     let doctor = &words.doctor;
     let subject = doctor.disk;

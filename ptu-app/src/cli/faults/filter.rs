@@ -61,7 +61,7 @@ impl FilterArguments {
         self.when.unwrap_or_default()
     }
 
-    /// As the history takes it.
+    /// The filter, as the history takes it.
     pub fn filter(&self, store: &Store) -> Result<FaultFilter, Failure> {
         if let Some(unit) = &self.serial_no {
             check_unit(store, unit)?;

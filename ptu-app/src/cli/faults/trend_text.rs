@@ -149,7 +149,7 @@ fn mean(days: &[TrendDay]) -> f64 {
         / n
 }
 
-/// As many bars as fit, each the mean of its share.
+/// As many bars as fit into a row, each the mean of its share of the values.
 fn bars(values: &[Option<f64>]) -> String {
     let share = values.len().div_ceil(BARS).max(1);
     let mean = |values: &[Option<f64>]| {

@@ -52,7 +52,8 @@ impl RunArguments {
     }
 }
 
-/// Until when a departure test holds; of one that does not, why, and how the part is found.
+/// Time until which a departure test holds; else the reason why it does not, and how the part is
+/// found.
 pub(super) fn say_validity(run: &RunDetail) -> Result<(), Failure> {
     let Some(departure) = Departure::of(run) else {
         return Ok(());

@@ -152,7 +152,7 @@ impl Findings {
         }));
     }
 
-    /// Until when a departure test holds, or why it does not: then it is no good one.
+    /// Time until which a departure test holds, or why it does not: then it is no good one.
     pub(super) fn say_departure(&mut self, departure: Departure) {
         let verify = &self.words.verify;
         if departure.why_not.is_empty() {

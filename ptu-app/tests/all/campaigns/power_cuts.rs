@@ -97,7 +97,7 @@ impl Entry {
 struct Disk {
     folder: PathBuf,
     files: Vec<OnDisk>,
-    /// As the program sees them, and as the disk has them for sure.
+    /// Files as the program sees them, and as the disk has them for sure.
     names: Names,
     synced: Names,
     asked: Vec<Entry>,

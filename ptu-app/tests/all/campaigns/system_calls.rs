@@ -38,9 +38,9 @@ pub enum Deed {
         file: PathBuf,
         to: PathBuf,
     },
-    /// On its standard output.
+    /// Writes to standard output.
     Says(Vec<u8>),
-    /// On its standard error output.
+    /// Writes to standard error.
     Notes(Vec<u8>),
 }
 

@@ -25,9 +25,9 @@ use ptu_runs::bench_worker::Phase;
 /// Width of it, and height of what was found, points.
 const WIDE: f32 = 640.0;
 const HIGH: f32 = 420.0;
-/// As many of a kind are shown.
+/// Number of entries of a kind that are shown.
 const MOST: usize = 6;
-/// As many faults are looked through, the latest.
+/// Number of faults that are looked through, the latest.
 const FAULTS: u32 = 500;
 
 /// What is typed, and what it is looked for in.

@@ -119,8 +119,8 @@ impl Frame {
         Find::show(self, ui, procedures, context);
     }
 
-    /// Over everything while the window is being closed; true once the person has taken note that
-    /// outputs were not confirmed safe.
+    /// Shows, over everything, that the window is being closed; true once the person has taken note
+    /// that outputs were not confirmed safe.
     pub fn closing(&self, ui: &mut Ui, words: &Words, not_safe: bool) -> bool {
         let mut noted = false;
         over_everything(ui.ctx(), |ui| {

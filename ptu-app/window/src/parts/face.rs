@@ -122,7 +122,7 @@ impl<'a> Face<'a> {
         self
     }
 
-    /// In this colour, whatever it looks like otherwise.
+    /// Sets the colour of the letters, whatever the look.
     pub fn ink(mut self, ink: Color32) -> Self {
         self.ink = Some(ink);
         self

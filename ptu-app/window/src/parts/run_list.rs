@@ -16,7 +16,7 @@ use ptu_runs::clock;
 use ptu_runs::coverage::counts_of;
 use ptu_runs::stored::from_stored;
 
-/// As many runs as are listed.
+/// Number of runs that are listed.
 const MOST: u32 = 2_000;
 
 /// The list's own state.

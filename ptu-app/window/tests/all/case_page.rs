@@ -67,7 +67,7 @@ impl Counted {
         self.click(case.find_part);
     }
 
-    /// As far as the dialog in which the sheet of a found part is signed.
+    /// Leads as far as the dialog in which the sheet of a found part is signed.
     fn open_sign(&mut self) {
         let case = &Language::English.words().case;
         self.look_for_part();

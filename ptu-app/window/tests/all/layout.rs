@@ -304,13 +304,13 @@ fn ends_with_scrolling(clip: Rect, bars: &[Rect]) -> bool {
     })
 }
 
-/// There is a bar by which this is scrolled up and down.
+/// Whether a bar scrolls this area up and down.
 fn scrolls(rect: Rect, bars: &[Rect]) -> bool {
     bars.iter()
         .any(|bar| bar.width() <= 20.0 && bar.height() >= 40.0 && bar.center().x >= rect.left())
 }
 
-/// There is a bar by which what is seen here is scrolled to the side.
+/// Whether a bar scrolls this area to the side.
 fn scrolls_sideways(seen: Rect, bars: &[Rect]) -> bool {
     bars.iter()
         .any(|bar| bar.height() <= 20.0 && bar.width() >= 40.0 && bar.center().y >= seen.top())

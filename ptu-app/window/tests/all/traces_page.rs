@@ -21,7 +21,7 @@ fn window(settings: Settings) -> Window {
     Window::with(place, scripts(), settings)
 }
 
-/// Has the view written as CSV, and reads it: heads and rows.
+/// Writes the view as CSV, and reads it: heads and rows.
 fn csv(window: &mut Window, save: &str, field: &str) -> (Vec<String>, Vec<Vec<String>>) {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     // A new name each time: the message about the last file is still shown.

@@ -79,7 +79,7 @@ impl Display {
         Picture { width, height, rgb }
     }
 
-    /// There is no window manager here, so the test sends what one would send.
+    /// The test sends what a window manager would send; none runs here.
     pub fn ask_to_close(&self) {
         let (connection, screen) = x11rb::connect(Some(&self.name)).expect("the server");
         let atom = |name: &str| {

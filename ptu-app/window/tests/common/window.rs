@@ -28,7 +28,7 @@ const STEP: Duration = Duration::from_millis(15);
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
 /// No page has more to press.
 const MOST_STOPS: usize = 200;
-/// So far around it is marked what has the keyboard, points.
+/// Width around a widget within which the mark of the keyboard lies, points.
 const AROUND: f32 = 4.0;
 
 /// A window in a place of its own.

@@ -259,7 +259,7 @@ fn or_dash(text: &str) -> &str {
     if text.is_empty() { "–" } else { text }
 }
 
-/// At most this many letters.
+/// The first `most` letters.
 pub(super) fn clipped(text: &str, most: usize) -> String {
     let text = text.trim();
     match text.char_indices().nth(most) {

@@ -28,7 +28,7 @@ pub struct CaseSheet {
     pub fault: FaultDetail,
     /// Where the unit is kept; empty: a line to write on.
     pub depot: String,
-    /// With all that the two runs say.
+    /// The sheet has an annex with all that the two runs say.
     pub with_annex: bool,
     /// The run that saw it.
     pub before: Sheet,
@@ -63,7 +63,7 @@ pub enum Standing {
     Claimed,
     /// The fault was seen again after it.
     CameBack,
-    /// There is none.
+    /// No repair is recorded.
     NotRepaired,
 }
 

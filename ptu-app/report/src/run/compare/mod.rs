@@ -52,7 +52,7 @@ impl<'a> Compared<'a> {
         }
     }
 
-    /// By how much the value is greater in the second run; none where either has none, or another unit of measure.
+    /// Increase of the value in the second run; none where either run has no value, or another unit of measure.
     pub fn change(&self) -> Option<f64> {
         let (before, after) = (self.before?, self.after?);
         let change = after.value? - before.value?;

@@ -125,7 +125,7 @@ pub(super) fn allowed(one: &Compared<'_>, words: &Words) -> String {
     }
 }
 
-/// By how much a value is greater now, with its sign.
+/// Increase of a value, with its sign.
 pub(super) fn change(one: &Compared<'_>) -> Option<String> {
     let change = short(one.change()?);
     Some(match change.as_str() {

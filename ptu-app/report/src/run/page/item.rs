@@ -24,7 +24,7 @@ pub(super) const INSIDE: f32 = WIDTH - 2.0 * MARGIN;
 pub enum Ink {
     /// Words.
     Black,
-    /// Less weight.
+    /// Text of less weight.
     Soft,
     /// Passed.
     Good,

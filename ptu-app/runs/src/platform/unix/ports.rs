@@ -33,7 +33,7 @@ pub fn open_alone(
     Ok(port)
 }
 
-/// By its name on Linux, or on macOS.
+/// Whether the path is a pseudo-terminal, by its name on Linux or macOS.
 fn is_pseudo_terminal(path: &str) -> bool {
     let places = ["/dev/pts/", "/dev/ttys"];
     std::fs::canonicalize(path).is_ok_and(|real| {

@@ -24,11 +24,11 @@ const UNDER_WAY_KMH: f64 = 1.08 + 0.4;
 /// The greatest limits that may be in force, km/h, and how much faster than measured the train may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Permitted {
-    /// By any code that was in the antenna.
+    /// Limit of any code that was in the antenna, km/h.
     pub most_kmh: f64,
-    /// By any that was there for as long as a detection takes.
+    /// Limit of any code that was there for as long as a detection takes, km/h.
     pub confirmed_kmh: f64,
-    /// By what the table takes of two codes at once.
+    /// Limit by what the table takes of two codes at once, km/h.
     pub selected_kmh: f64,
     /// True speed over that measured, by any wheel diameter that was keyed in: 1 at least.
     pub keyed: f64,

@@ -224,7 +224,7 @@ impl Plan {
     }
 }
 
-/// None, one or two parts that have failed. A time base may be off by any factor.
+/// Draws none, one or two parts that have failed. A time base may be off by any factor.
 fn faults(catalogue: &[FaultMode], always: bool, random: &mut Random) -> Vec<FaultMode> {
     use protocol::injection::{Effect, Place};
     let count = match [0, 0, 0, 1, 1, 2][random.below(6)] {

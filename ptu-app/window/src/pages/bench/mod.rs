@@ -49,7 +49,7 @@ struct Sheet {
 
 #[derive(Default)]
 pub struct BenchPage {
-    /// By the unit's id.
+    /// Sheets by the unit's id.
     sheets: BTreeMap<u64, Sheet>,
     plot: Plot,
 }

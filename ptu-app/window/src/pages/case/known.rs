@@ -11,9 +11,9 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
 use ptu_runs::failure::Failure;
 
-/// As many faults are read for their repairs, the latest first.
+/// Number of faults that are read for their repairs, the latest first.
 const MOST: u32 = 50;
-/// As many lines of each kind are shown.
+/// Number of lines of each kind that are shown.
 const SHOWN: usize = 5;
 
 /// The history of one unit, read when it is asked for.

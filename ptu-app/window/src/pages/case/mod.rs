@@ -109,7 +109,7 @@ impl CasePage {
         };
     }
 
-    /// Goes on when the run of this stage is over and it is known what it says.
+    /// Goes on when the run of this stage is over and its outcome is known.
     fn take_run(
         &mut self,
         concluded: Option<(Id, &Request<Concluded>)>,

@@ -33,7 +33,7 @@ pub struct Found {
     /// When it ended, µs since 1970.
     pub ended_us: i64,
     pub told: Told,
-    /// In the language of the window.
+    /// Headline in the language of the window.
     headline: String,
     /// The conclusion of the diagnosis, likewise.
     concluded: String,

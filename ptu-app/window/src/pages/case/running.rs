@@ -12,7 +12,7 @@ use crate::{Density, PageContext, Palette, Sizes};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Phase, Progress};
 
-/// As many failures are shown, the latest first.
+/// Number of failures that are shown, the latest first.
 const FAILURES: usize = 4;
 
 impl CasePage {

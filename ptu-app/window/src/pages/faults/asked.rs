@@ -22,7 +22,7 @@ pub struct Asked {
 /// Which button of the dialog was clicked.
 pub enum Chosen {
     Cancel,
-    /// With this note.
+    /// Write the change, with this note.
     Write(String),
 }
 
@@ -39,7 +39,7 @@ pub fn going_with(detail: &FaultDetail, to: FaultState) -> Vec<&FaultSummary> {
 }
 
 impl Asked {
-    /// With a note that is there already.
+    /// A dialog with a note that is there already.
     pub fn new(to: FaultState, note: &str) -> Self {
         Self {
             to,

@@ -125,7 +125,7 @@ pub fn rest(
     }
 }
 
-/// To the trace, the sheet and the diagnosis of one time that it was seen.
+/// Links to the trace, the sheet and the diagnosis of one occurrence.
 fn ways(ui: &mut Ui, words: &Words, seen: &Occurrence, go_to: &mut Vec<Destination>) {
     let faults = &words.faults;
     let all = [

@@ -18,7 +18,8 @@ pub struct Filter {
 }
 
 impl Filter {
-    /// As it is saved with the unit; what a bar of the statistics stands for is not.
+    /// Choices of the filter, as they are saved with the unit; the choice of a bar of the
+    /// statistics is not saved.
     pub fn question(&self, unit: Option<&str>) -> FaultsQuestion {
         FaultsQuestion {
             unit: unit.map(str::to_owned),

@@ -25,7 +25,7 @@ use ptu_report::naming::PartNames;
 use ptu_report::words::fill;
 use ptu_runs::clock;
 
-/// As many faults as are listed.
+/// Number of faults that are listed.
 const MOST: u32 = 20_000;
 /// Width of one fault in a window of this one, points; in a narrower one it takes the place of the table.
 const DETAIL: [[f32; 2]; 2] = [[1600.0, 440.0], [1100.0, 344.0]];

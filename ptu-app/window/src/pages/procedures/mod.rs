@@ -230,7 +230,7 @@ impl ProceduresPage {
         chosen.unwrap_or_default()
     }
 
-    /// Has an order of what is chosen made for a unit.
+    /// Orders the chosen procedures on a unit.
     fn order(&mut self, unit: u64, adaptive: bool, context: &mut PageContext<'_>) {
         let how = RunSettings {
             operator: context.settings.operator.clone(),

@@ -18,7 +18,7 @@ pub struct RunSettings {
     pub repeat: u32,
     /// End after the first step that does not pass.
     pub stop_on_fail: bool,
-    /// As few steps as it takes to find the part.
+    /// The run takes as few steps as it takes to find the part.
     pub adaptive: bool,
     /// What who brought the unit said is wrong with it.
     pub symptom: Option<Symptom>,

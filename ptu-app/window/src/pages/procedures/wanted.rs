@@ -16,7 +16,7 @@ pub(super) enum Wanted {
         procedure: String,
         step: String,
     },
-    /// As few steps as it takes to find the faulty part, or else all.
+    /// Procedures for a faulty part: as few steps as it takes to find the part, or else all.
     Part {
         symptom: Option<Symptom>,
         adaptive: bool,

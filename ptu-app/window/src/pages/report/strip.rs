@@ -119,7 +119,7 @@ fn name_of(words: &Words, ending: &str) -> &'static str {
     }
 }
 
-/// To the diagnosis and to the traces.
+/// Links to the diagnosis and to the traces.
 fn ways_on(ui: &mut Ui, words: &Words, shown: &Shown, go_to: &mut Vec<Destination>) {
     let words = &words.report;
     let diagnosis = Face::new(Look::Quiet, words.to_diagnosis).icon(ICON_TROUBLESHOOT);

@@ -18,7 +18,7 @@ use ptu_runs::signal::{Picture, Reading};
 
 /// Most rows of what was heard.
 const MOST: usize = 200;
-/// So many drawings are in view at once.
+/// Number of drawings in view at once.
 const IN_VIEW: f32 = 3.0;
 /// The bar by which they are scrolled, points.
 const BAR: f32 = 16.0;

@@ -67,12 +67,12 @@ impl OverlayRequest {
         }
     }
 
-    /// Has the good twin laid behind.
+    /// Asks for the good twin behind the trace.
     pub fn ask_twin(&mut self, scene: &mut TracePlot, context: &PageContext<'_>) {
         self.ask(Some(OverlaySource::Twin), scene, context);
     }
 
-    /// Has a file laid behind.
+    /// Asks for a file behind the trace.
     pub fn ask_file(&mut self, file: &Path, scene: &mut TracePlot, context: &PageContext<'_>) {
         self.ask(Some(OverlaySource::File(file.into())), scene, context);
     }

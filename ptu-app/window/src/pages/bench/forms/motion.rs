@@ -3,7 +3,7 @@
 use btu_rig::stimulus::{Stimulus, TachoCondition};
 use protocol::Speed;
 
-/// Both inputs of the TEST board's speed signal.
+/// Bits of both inputs of the TEST board's speed signal.
 const BOTH_CHANNELS: u8 = 0b11;
 
 #[derive(Clone, Debug)]

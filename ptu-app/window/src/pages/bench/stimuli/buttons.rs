@@ -90,7 +90,7 @@ impl StimulusPanel<'_> {
         }
     }
 
-    /// Gives it, unless something has changed since the frame began.
+    /// Applies the stimulus, unless something has changed since the frame began.
     pub fn give(&mut self, stimulus: Stimulus) {
         match self.bench.apply(stimulus) {
             Ok(()) => match stimulus {
