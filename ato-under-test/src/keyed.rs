@@ -10,7 +10,7 @@ pub const ENTRY_OVER: Duration = Duration::from_ms(300);
 pub struct Keyed(Option<(u16, u8, Instant)>);
 
 impl Keyed {
-    /// Takes a frame; whether it is the last of so many in a row that say the same.
+    /// Takes a frame; whether it is the last of `frames` in a row with one value.
     pub fn hear(&mut self, now: Instant, value: u16, frames: u8) -> bool {
         let alike = self
             .0

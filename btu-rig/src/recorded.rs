@@ -19,7 +19,7 @@ pub const MAX_RECORDED: usize = 100_000;
 pub enum BenchAction {
     /// A stimulus, whether the bench took it or refused it.
     Apply(Stimulus),
-    /// The bench was made safe in so many scans one after the other.
+    /// Number of scans in a row in which the bench was made safe.
     MakeSafe {
         /// Number of scans of 10 ms.
         scans: u32,

@@ -26,7 +26,7 @@ impl ScanDeadlines {
         self.due.max(now + MAKE_UP.times(self.slower))
     }
 
-    /// The next scans are due so many µs of the bench later, or earlier.
+    /// Moves the deadlines of the next scans by this number of µs of the bench, later or earlier.
     pub fn shift(&mut self, later_us: i64) {
         let by = Duration::from_us(later_us.unsigned_abs()).times(self.slower);
         self.due = match later_us >= 0 {

@@ -63,11 +63,11 @@ enum Phase {
     /// The run's own controller drives.
     #[default]
     Idle,
-    /// Held before a try, for so many cycles.
+    /// Cycles for which the train is held before a try.
     Rests(u32),
-    /// Held, the direction ordered, for so many cycles.
+    /// Cycles for which the train is held with the direction ordered.
     Turns(u32),
-    /// Powered for so many cycles; whether the train has moved.
+    /// Cycles for which the train is powered; whether it has moved.
     Goes(u32, bool),
 }
 

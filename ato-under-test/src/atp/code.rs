@@ -56,7 +56,7 @@ pub struct CodeDecoder {
 }
 
 impl CodeDecoder {
-    /// Nothing received yet.
+    /// A decoder that has received no code.
     pub fn new() -> Self {
         Self {
             code: Code::None,

@@ -51,7 +51,7 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// Frames every so many milliseconds of the unit's clock; by what share the clock is ahead.
+    /// Share by which a clock seems ahead whose frames come every `period_ms` of that clock.
     fn ahead(period_ms: u64, frames: u64, held_up: impl Fn(u64) -> u64) -> f64 {
         let mut pace = Pace::default();
         for frame in 0..frames {

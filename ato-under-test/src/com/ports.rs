@@ -31,7 +31,7 @@ pub struct Ports {
 }
 
 impl Ports {
-    /// Nothing was received on any.
+    /// Ports on which nothing was received.
     pub fn new() -> Self {
         Self {
             harness: Link::new(End::Unit),

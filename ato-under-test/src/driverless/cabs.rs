@@ -47,7 +47,7 @@ pub struct CabInputs {
     pub departure: bool,
 }
 
-/// Which cab has the train, as far as turn-backs change it.
+/// Decides which cab has the train, as far as turn-backs change that.
 #[derive(Clone, Debug, Default)]
 pub struct Cabs {
     stage: Stage,

@@ -85,7 +85,7 @@ impl Faults {
         self.random.chance(p)
     }
 
-    /// Nothing works at a place now.
+    /// Whether nothing works at a place now.
     pub fn dead(&self, place: Place) -> bool {
         matches!(self.at(place), Some(Effect::Dead))
     }

@@ -54,7 +54,7 @@ struct Count {
     loosened: u32,
 }
 
-/// Nothing is compared at first.
+/// Compares the tachometers; at first there is nothing to compare.
 #[derive(Clone, Debug, Default)]
 pub struct TachoCompare {
     total: Count,

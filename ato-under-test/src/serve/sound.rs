@@ -85,7 +85,7 @@ pub struct Listener {
 }
 
 impl Listener {
-    /// Listens at a device, of which a whole sample stands for so many mV.
+    /// Listens at a device, a whole sample of which stands for this number of mV.
     ///
     /// # Errors
     /// Nothing here carries sound.

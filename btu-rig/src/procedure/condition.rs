@@ -13,7 +13,7 @@ pub enum Operand {
     Literal(f64),
     /// Measured by an earlier step.
     Measured {
-        /// Which of the procedure's measurements.
+        /// Place of the measurement in the procedure.
         slot: usize,
         /// Name of the measurement, for people.
         name: String,
@@ -25,7 +25,7 @@ pub enum Operand {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Comparison {
     Equal,
-    /// Another recorded step.
+    /// Recorded steps differ.
     NotEqual,
     /// Less.
     Below,

@@ -14,7 +14,7 @@ use super::plan::{
 use crate::stimulus::text::number;
 use crate::tcms::{EbSources, Lamps, PowerCuts};
 
-/// What a clock of the unit does that is faster than the bench's by so many thousandths.
+/// Behaviour of a clock of the unit that is faster than the bench's by this number of thousandths.
 pub fn clock_wrong(by_permille: i32) -> String {
     let way = if by_permille > 0 { "fast" } else { "slow" };
     let percent = f64::from(by_permille.abs()) / 10.0;

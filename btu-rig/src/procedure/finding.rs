@@ -262,7 +262,7 @@ pub enum Finding {
         procedure: String,
         /// Name of the step.
         step: String,
-        /// Which repetition of it, from 1.
+        /// Number of the repetition, from 1.
         turn: u32,
         /// Number of repetitions that were asked for.
         turns: u32,

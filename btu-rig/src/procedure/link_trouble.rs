@@ -62,7 +62,7 @@ pub enum LinkTrouble {
         /// Time for which the other tester has been silent, if that is long.
         silent: Option<Duration>,
     },
-    /// Nothing at all came.
+    /// Not one byte came.
     #[error("unit silent: not one byte in {:.1} s — check the cable, the port and the unit's power", .within.as_secs())]
     NotOneByte {
         /// The time it had.
@@ -188,7 +188,7 @@ pub enum InstrumentFault {
         /// `uncertainty_ms` of the bench file.
         stated: Duration,
     },
-    /// Another model answers.
+    /// An instrument of another model answers.
     #[error("wrong model: {found} answers where {expected} is expected")]
     OtherModel {
         /// Answer to `*IDN?`.
@@ -301,7 +301,7 @@ pub enum Refused {
 /// A property of a unit that is not what it was.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Changed {
-    /// Which.
+    /// The property that differs.
     pub property: Property,
     /// Value that the unit told first.
     pub was: String,

@@ -94,7 +94,7 @@ pub trait Driver {
 #[error("{0}")]
 pub struct Refusal(pub String);
 
-/// Whose log an event stands in.
+/// Unit that logs an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EventSource {
@@ -106,7 +106,7 @@ pub enum EventSource {
 /// An entry of the unit's event log as received, or of TCMS's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitEvent {
-    /// Whose log it stands in.
+    /// Unit that logs it.
     pub source: EventSource,
     /// Place in the log.
     pub index: u32,

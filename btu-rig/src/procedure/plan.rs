@@ -259,7 +259,8 @@ impl What {
 }
 
 impl Measure {
-    /// Lowers the least and raises the greatest permitted value by so much; the other way round if negative.
+    /// Lowers the least and raises the greatest permitted value by this amount; the other way round if
+    /// negative.
     pub fn widen(&mut self, by: f64) {
         let shift = |limit: &mut Operand, by: f64| match limit {
             Operand::Literal(number) => *number += by,

@@ -45,7 +45,7 @@ pub struct StepResult {
     pub index: usize,
     /// Name that the script gives the step.
     pub name: String,
-    /// Which repetition, from 1.
+    /// Number of the repetition, from 1.
     pub turn: u32,
     /// Number of repetitions that were asked for.
     pub turns: u32,
@@ -159,7 +159,7 @@ pub enum RunEvent {
         index: usize,
         /// Name that the script gives the step.
         name: String,
-        /// Which repetition, from 1.
+        /// Number of the repetition, from 1.
         turn: u32,
         /// Number of repetitions that were asked for.
         turns: u32,

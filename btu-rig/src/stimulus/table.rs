@@ -210,7 +210,7 @@ stimuli! {
     } [Cab] => format!("obstacle in the doors on the {} for {times} closings", side(left));
     /// A door train line says this to the unit, whatever the doors are.
     DoorLine {
-        /// Which.
+        /// Door line.
         line: DoorLine,
         /// Energised; `None` = as the doors have it.
         on: Option<bool>,
@@ -265,7 +265,7 @@ stimuli! {
     };
     /// Switch of the train.
     Switch {
-        /// Which.
+        /// Switch.
         switch: TrainSwitch,
         /// Position of the switch.
         on: bool,

@@ -91,7 +91,7 @@ pub struct EquipmentMonitor {
 }
 
 impl EquipmentMonitor {
-    /// Nothing found yet. `full_service_n` is each car's share of full service, N.
+    /// A monitor that has found nothing. `full_service_n` is each car's share of full service, N.
     pub fn new(data: &TcmsData, full_service_n: PerCar) -> Self {
         let mut monitor = Self {
             silent_after: Duration::from_secs(data.silent_after_s),

@@ -62,7 +62,7 @@ impl OnDelayCars {
     }
 }
 
-/// Detects events that come often: at least so many within a time.
+/// Detects frequent events: at least a given number within a time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BurstDetector {
     at_least: u32,

@@ -207,7 +207,7 @@ pub enum StoreError {
     /// A text exceeds its limit.
     #[error("{what} has {length} characters, and at most {most} are kept; shorten it")]
     TextTooLong {
-        /// Which text, as "the note".
+        /// Name of the text, as "the note".
         what: &'static str,
         /// Length of the text, characters.
         length: usize,
@@ -290,7 +290,7 @@ pub enum StoreError {
     /// The result exceeds a limit.
     #[error("the query was given up: {limit}")]
     QueryExceeds {
-        /// Which limit.
+        /// The limit.
         limit: QueryLimit,
     },
     /// The operation needs a file, and this is a server.

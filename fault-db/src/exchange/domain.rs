@@ -39,7 +39,7 @@ pub struct Refusals {
 /// A row that was refused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
-    /// Which row, as "run 0197…".
+    /// Name of the row, as "run 0197…".
     pub what: String,
     /// Reason of the refusal.
     pub reason: String,

@@ -54,7 +54,7 @@ impl Signer {
         &self.who
     }
 
-    /// Whose it is.
+    /// Kind of the owner.
     pub fn kind(&self) -> &str {
         &self.kind
     }

@@ -37,7 +37,7 @@ pub struct Statement {
     /// Name of the person who signed.
     #[serde(default)]
     pub who: String,
-    /// Whose key it is: of a technician or a bench.
+    /// Kind of the key's owner: technician or bench.
     #[serde(default)]
     pub kind: String,
     /// The public key.

@@ -132,7 +132,7 @@ pub struct StepRecord {
     pub place: Option<u32>,
     /// Name that the procedure gives the step, or the place outside steps.
     pub name: String,
-    /// Which repetition, from 1.
+    /// Number of the repetition, from 1.
     pub turn: u32,
     /// Number of repetitions that were asked for.
     pub turns: u32,

@@ -13,8 +13,8 @@ static OF_THE_LAST_COMMIT: LazyLock<String> = LazyLock::new(of_the_last_commit);
 /// Seed with which everything is drawn.
 const ALL: &str = "all";
 
-/// One in so many of what there is, one at least. Prints the seed by which the same are drawn again: a test that fails shows
-/// what was printed.
+/// Draws one in `one_in` of all, at least one. Prints the seed by which the same are drawn again: a test that fails
+/// shows what was printed.
 pub fn drawn<T>(all: impl IntoIterator<Item = T>, one_in: usize) -> Vec<T> {
     let mut waiting: Vec<T> = all.into_iter().collect();
     let seed = seed();

@@ -10,10 +10,11 @@ pub struct TachoConfig {
     pub pulses_per_turn: u32,
     /// Wheel diameter, mm.
     pub wheel_diameter_mm: f64,
-    /// A diameter keyed in may be smaller than that by so much, mm: a wheel worn to its limit.
+    /// Wear: a diameter keyed in may be smaller than the configured one by this, mm.
     #[serde(default = "TachoConfig::default_worn_mm")]
     pub worn_mm: f64,
-    /// And greater by so much, mm: as wheels are measured.
+    /// A diameter keyed in may be greater than the configured one by this, mm: as wheels are
+    /// measured.
     #[serde(default = "TachoConfig::default_over_mm")]
     pub over_mm: f64,
     /// Averaging time of the speed measurement, ms.

@@ -131,7 +131,7 @@ wire_enum! {
 wire_enum! {
     /// What the wayside orders a train to do beside running [S0, S4].
     TrainOrder {
-        /// Nothing.
+        /// No order.
         None = 0 "none",
         /// Turn back: hand the train over to the other cab.
         TurnBack = 1 "turn_back",

@@ -8,7 +8,7 @@ layout! {
     /// Asks for what the unit has stored over power-ups, from a sequence number on; answered by `StoredEntry` and
     /// `StoredClock`, or by `StoredRow`, then `StoredEnd`.
     ReadStored, Ptu, 0x23 {
-        /// Which of the two stores.
+        /// Store to read from.
         store: StoreKind,
         /// First entry wanted; 4294967295 asks for the end alone.
         from_sequence: u32,
@@ -97,7 +97,7 @@ layout! {
 layout! {
     /// End of a store as it stands.
     StoredEnd, Ptu, 0xA7 {
-        /// Which of the two stores.
+        /// Store that was read.
         store: StoreKind,
         /// Sequence number that the next entry will get.
         next_sequence: u32,

@@ -57,7 +57,7 @@ pub fn seen_in_short((data, message): (&Option<String>, &str), words: &Words) ->
     }
 }
 
-/// Which repetition of this step failed, if what was seen is that one did.
+/// Number of the repetition of this step that failed, if the finding is such a failure.
 pub fn failed_turn(seen: &Findings, procedure: &str, step: &str) -> Option<u32> {
     seen.iter().find_map(|found| match &found.finding {
         Finding::CheckFailed {

@@ -17,7 +17,8 @@ pub fn embed(files: Embedded) {
     EMBEDDED.get_or_init(|| files);
 }
 
-/// Nothing in its place: a program without procedures and data would say that each is missing, and not why.
+/// Embedded files; nothing stands in for them: a program without procedures and data would say that each is
+/// missing, and not why.
 fn embedded() -> Embedded {
     let files = EMBEDDED.get();
     files.expect("main calls script_files::embed before files are looked for")

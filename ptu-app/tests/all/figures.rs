@@ -14,7 +14,7 @@ const PRINTED_POLES: &str =
     "--set 'ato.servo.poles=[[0.6982, 0.0], [0.9682, 0.0], [0.92, 0.0332], [0.92, -0.0332]]'";
 /// Deceleration that ATO asks for at most [S0 §4], km/h/s.
 const MOST_KMH_S: f64 = 3.5;
-/// ATO knows brakes and resistance of the train of cars to so much of it.
+/// Share to which ATO knows brakes and resistance of the train of cars.
 const KNOWN_TO: f64 = 1.02;
 /// Where `pss` begins to slow for S2's step at 235 m at the earliest: 80 m suffice from 50 to 40 km/h, so it does reach 50.
 const SLOWS_FROM_M: f64 = 150.0;

@@ -160,7 +160,7 @@ struct Making<'a> {
     faults: usize,
     /// Verdict of what was read of a unit.
     read_as: Option<&'static str>,
-    /// Which repetition the results are of that did not pass.
+    /// Repetition of each result that did not pass.
     turns: Vec<String>,
     turn: usize,
     measured: usize,

@@ -71,7 +71,8 @@ pub fn numbers(names: &str, numbers: impl IntoIterator<Item = impl ToString>) ->
     names.map(|(name, number)| fact(name, number)).collect()
 }
 
-/// Which of so many repetitions, and what it is if not the result that counts; empty where it is run once.
+/// Number of the repetition and kind of the result, if the result does not count; empty where the step is
+/// run once.
 pub fn turn_of(turn: u64, turns: u64, kind: &str) -> String {
     let kind = match kind {
         "step" => "",

@@ -77,7 +77,7 @@ impl DataWatch {
     }
 }
 
-/// Which file it is and how it was left.
+/// Identity of the file and its log, with the time of the last change.
 #[derive(PartialEq, Eq)]
 struct Stamp([Option<(u64, u64, Option<SystemTime>)>; 2]);
 

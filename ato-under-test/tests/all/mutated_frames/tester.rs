@@ -110,7 +110,7 @@ impl Tester {
         }
     }
 
-    /// Says nothing but what is due until something is so, for so many scans at most.
+    /// Sends only what is due until the condition holds, for at most this number of scans.
     fn until(&mut self, scans: u32, so: impl Fn(&Self) -> bool) -> bool {
         for _ in 0..scans {
             if so(self) {

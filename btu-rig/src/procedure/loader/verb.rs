@@ -64,7 +64,7 @@ pub(super) fn members(space: &str) -> Vec<String> {
 #[derive(Debug)]
 pub(super) struct CallError {
     pub message: String,
-    /// Which argument, if it is one: in the order given, positional first.
+    /// Place of the wrong argument, if an argument is wrong: in the order given, positional first.
     pub argument: Option<usize>,
 }
 

@@ -50,7 +50,7 @@ pub struct Exchange {
 }
 
 impl Exchange {
-    /// Nothing asked, not armed; `session` must not be 0.
+    /// An exchange without requests, not armed; `session` must not be 0.
     pub fn new(session: u32) -> Self {
         Self {
             session,

@@ -43,7 +43,7 @@ impl DoorGear {
         }
     }
 
-    /// An obstacle stops so many closings of a side.
+    /// Number of closings of a side that an obstacle stops.
     pub fn obstruct(&mut self, left: bool, times: u8) {
         self.sides[usize::from(!left)].obstacles = times;
     }

@@ -75,7 +75,7 @@ impl Tacho {
         self.await_noise();
     }
 
-    /// Sets how a good channel with a wheel of so many teeth differs from an ideal one.
+    /// Sets how a good channel with a wheel of this number of teeth differs from an ideal one.
     pub fn set_sensors(&mut self, sensors: &Sensors, teeth: u32, random: &mut Random) {
         let places = (0..teeth).map(|_| sensors.tooth_pitch * normal(random));
         self.teeth = places

@@ -186,7 +186,7 @@ pub fn antenna_signal(carrier: f64, rate: f64, level: f64) -> Result<(f64, f64, 
     ))
 }
 
-/// A frequency that is there is off by so much; one that is not stays away.
+/// Adds to a frequency that is there; one that is not stays away.
 fn off_by(hz: f64, off_hz: f64) -> f64 {
     if hz > 0.0 { hz + off_hz } else { 0.0 }
 }

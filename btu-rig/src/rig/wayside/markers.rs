@@ -64,7 +64,7 @@ impl Markers {
             .map(|at| Some(position_m + at - section.start_m));
     }
 
-    /// Moves one of the markers along the way by so many metres, or takes it away.
+    /// Moves one of the markers along the way by this number of metres, or takes it away.
     ///
     /// # Errors
     /// When it does not lie along the way.

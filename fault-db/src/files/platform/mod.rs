@@ -18,7 +18,7 @@ pub(crate) use system::{
     special_kind,
 };
 
-/// Which file it is, whatever it is called.
+/// Identity of a file, whatever its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Identity {
     device: u64,

@@ -219,7 +219,7 @@ text_enum! {
 /// A table, index, view or trigger.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SchemaObject {
-    /// Which of these, as SQLite says.
+    /// Kind of the object, as SQLite says.
     pub kind: String,
     /// Name of the object.
     pub name: String,

@@ -36,7 +36,7 @@ pub(super) fn position_error(seal: &Seal, before: Option<&Seal>) -> Option<Damag
     (hash != seal.hash[..]).then(|| Damage::Unchained(seal.place(), seal.what.clone(), seal.id))
 }
 
-/// Times of one clock may differ by so much from the order in which they are sealed, µs.
+/// Tolerance between times of one clock and the order in which they are sealed, µs.
 const IN_ORDER_US: i64 = 60_000_000;
 
 /// How the clock went backward between a run or note and the one sealed before it in the same chain. What was sealed as found

@@ -13,7 +13,7 @@ pub struct KeyUse {
     pub key: String,
     /// Name that the key's signatures give.
     pub who: String,
-    /// Whose key it is: of a technician or a bench.
+    /// Kind of the key's owner: technician or bench.
     pub kind: String,
     /// Runs that it signed.
     pub runs: u32,

@@ -46,7 +46,7 @@ pub enum StatKey {
 pub struct StatQuery {
     /// The key.
     pub by: StatKey,
-    /// Which faults, and the span of time.
+    /// Filter of the faults, and the span of time.
     pub filter: FaultFilter,
     /// The present time, µs since 1970: the end of the observation.
     pub now_us: i64,

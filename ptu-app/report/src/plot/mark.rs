@@ -31,7 +31,7 @@ pub enum Role {
     Bars(usize),
 }
 
-/// Which point of a text its place is.
+/// Point of a text that lies at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     Start,
@@ -58,7 +58,7 @@ pub enum Mark {
         role: Role,
         /// Where, on the base line.
         at: (f64, f64),
-        /// Which of its points is there.
+        /// Point of the text that lies there.
         anchor: Anchor,
         /// Runs upwards.
         turned: bool,

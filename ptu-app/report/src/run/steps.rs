@@ -145,7 +145,7 @@ pub fn tone(verdict: Verdict) -> Tone {
     }
 }
 
-/// Nothing is to be said against it.
+/// Whether the verdict speaks against nothing.
 pub fn passed(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::Passed | Verdict::Skipped)
 }

@@ -106,7 +106,7 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
     })
 }
 
-/// Which of a table's rows stands at each row of a trace.
+/// Row of a table that stands at each row of a trace.
 struct RowAlignment {
     places: Vec<Option<usize>>,
     /// Rows of the trace from the first to the last that has one.

@@ -1,4 +1,4 @@
-//! Which column of a table has the times, in which unit, and what a cell of it says.
+//! Column of a table with the times, its unit, and the times of its cells.
 
 use std::str::FromStr;
 

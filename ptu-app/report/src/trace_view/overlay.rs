@@ -1,4 +1,5 @@
-//! Another trace, or that of a good unit, behind a trace, and where the two first differ.
+//! A trace of another run or of a good unit behind a trace, and the place where the two first
+//! differ.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -24,7 +25,7 @@ pub enum OverlaySource {
     File(Arc<Path>),
 }
 
-/// Which trace is shown behind another.
+/// A trace that is shown behind another one.
 #[derive(Debug)]
 pub struct Overlay {
     pub against: OverlaySource,

@@ -5,7 +5,7 @@ use super::Window;
 /// Part of the whole by which it may be left at either end.
 const BEYOND: f64 = 0.02;
 
-/// Which part of the axis is in view, and how far it may go.
+/// Part of the axis in view, and its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibleRange {
     window: Window,

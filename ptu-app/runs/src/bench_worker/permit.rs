@@ -54,7 +54,7 @@ pub fn permit(stimulus: &Stimulus, live: &LiveData) -> Result<(), Refused> {
 mod tests {
     use super::*;
 
-    /// Which way a stimulus takes, and with that what it needs.
+    /// Way of a stimulus, and with that its needs.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum Needs {
         Harness,

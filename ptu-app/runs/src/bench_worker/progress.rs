@@ -74,7 +74,7 @@ pub struct RunPosition {
     pub step: Option<usize>,
     /// The step's name.
     pub name: String,
-    /// Which repetition of it, from 1, of so many.
+    /// Number of the repetition of the step, from 1, and number of repetitions.
     pub turn: [u32; 2],
     /// What is waited for, and until when.
     pub waiting: Option<Waiting<Action>>,

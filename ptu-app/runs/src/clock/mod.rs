@@ -10,8 +10,8 @@ use fault_db::{IdSource, OpenOptions};
 
 pub use span::{Span, months};
 
-/// A time that a unit is sent may be wrong by so much, ms, a value of this program: a laptop that is set by the network now and then,
-/// and the way to the unit.
+/// Greatest error of a time that a unit is sent, ms, a value of this program: a laptop that is set by the network
+/// now and then, and the way to the unit.
 pub const UNCERTAINTY_MS: u16 = 500;
 /// The uncertainty of a time whose error is unknown.
 pub const NOT_KNOWN_MS: u16 = u16::MAX;

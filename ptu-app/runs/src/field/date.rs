@@ -8,8 +8,7 @@ use protocol::message::StoredClock;
 
 use crate::clock::NOT_KNOWN_MS;
 
-/// An entry may be so much younger than the uptime it is dated by, ms: it was logged while the log was
-/// read.
+/// An entry may be younger than the uptime it is dated by, ms: it was logged while the log was read.
 const YOUNGER_MS: u64 = 60_000;
 
 /// The unit's clock beside ours.
@@ -21,7 +20,7 @@ pub struct ClockPair {
     pub at_us: i64,
 }
 
-/// Two oscillators may go apart by so much: 100 ppm.
+/// Drift between two oscillators: 100 ppm.
 const DRIFT: i64 = 10_000;
 
 /// What a store of the unit says of the times it was sent.

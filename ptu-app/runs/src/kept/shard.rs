@@ -20,7 +20,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// A part of so many, if there is such a one.
+    /// Part `number` of `of`, if there is one.
     pub fn new(number: u32, of: u32) -> Result<Self, String> {
         if (1..=MOST).contains(&of) && (1..=of).contains(&number) {
             return Ok(Self { number, of });

@@ -236,7 +236,7 @@ impl KeyEntry {
         }
     }
 
-    /// Whose it is, in words.
+    /// Owner of the key, in words.
     pub fn name(&self) -> String {
         format!("{} ({})", self.who, self.kind)
     }

@@ -36,7 +36,7 @@ impl Pace {
         }
     }
 
-    /// The next scans are due so many µs of the bench later, or earlier.
+    /// Moves the deadlines of the next scans by this number of µs of the bench, later or earlier.
     pub fn shift(&mut self, later_us: i64) {
         if let Self::Real { deadlines, .. } = self {
             deadlines.shift(later_us);

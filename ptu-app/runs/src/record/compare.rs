@@ -15,10 +15,10 @@ use protocol::signal::Signal;
 use crate::drive::{Case, drive};
 use crate::failure::{Failure, RecordTrouble};
 
-/// A speed may be beside the one expected by so much, km/h, for so many rows [default: 1 s].
+/// Tolerance of a speed, km/h, for this number of rows [default: 1 s].
 const SPEED_KMH: f64 = 3.0;
 const FOR_ROWS: usize = 20;
-/// A brake is late that begins so much later than the sound unit's, m [default].
+/// Distance by which a late brake begins behind the sound unit's, m [default].
 const LATE_M: f64 = 10.0;
 /// Efforts below this are braking.
 const BRAKES: f64 = -20.0;
@@ -182,7 +182,7 @@ impl RecordComparison {
             .is_some_and(|error_m| error_m.abs() > self.stop.aligned_m)
     }
 
-    /// Nothing parts, the stop is right and no brake is late.
+    /// Whether no curve parts, the stop is right and no brake is late.
     pub fn is_as_expected(&self) -> bool {
         self.partings.is_empty()
             && !self.is_misaligned()

@@ -45,7 +45,7 @@ pub struct RecordedRun {
 /// What may still come of the last run of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rest {
-    /// Nothing: it was read to its end, and is over.
+    /// The rest is complete: the record was read to its end, and the run is over.
     Nothing,
     /// The unit may still add to a run of its present power-up.
     OfUnit,

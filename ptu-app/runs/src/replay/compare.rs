@@ -12,7 +12,7 @@ use crate::failure::{Failure, RecordTrouble, Unknown, did_you_mean};
 /// any other value is another thing.
 const PLAIN_QUANTITIES: [&str; 2] = ["effort", "tcms_value"];
 
-/// Where a unit runs by a clock of its own, a value may come so many rows sooner or later.
+/// Rows by which a value may come sooner or later where a unit runs by a clock of its own.
 const CLOCK_ROWS: usize = 2;
 
 /// Where a unit runs by a clock of its own, numbers may be so far apart, by their unit; what two runs of
@@ -32,7 +32,7 @@ const CLOCK_LEFT_OUT: [&str; 3] = ["N", "m/s²", "m/s³"];
 /// own.
 const CLOCK_TOLERANCE_PLAIN: f64 = 30.0;
 
-/// What the bench was left in before the procedure shows for so many rows.
+/// Rows in which the state of the bench before the procedure shows.
 const LEFT_ROWS: i64 = 20;
 
 /// Signals that go on counting from power-up: what counts is what was added since the procedure began.
@@ -45,7 +45,7 @@ const FRAME_COUNTS: [&str; 4] = ["rejected_frames", "twc_received", "twc_answers
 /// bits by any difference, a known value from an unknown one always.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
-    /// A value that came so many rows sooner or later is the same.
+    /// Rows by which a value may come sooner or later.
     slack_rows: usize,
     /// Numbers have the tolerances of a clock of its own, and counters begin at 0 in the first row.
     wall_clock: bool,
@@ -244,7 +244,7 @@ struct Rows {
     /// First row that is compared; those before it only say what came around it.
     from: usize,
     last: usize,
-    /// From a row of the first to that of the second.
+    /// Rows of the second trace less rows of the first.
     shift: i64,
     trigger: i64,
     period_us: i64,

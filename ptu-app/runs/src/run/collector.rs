@@ -50,7 +50,7 @@ pub struct Outcome {
     pub exit: Exit,
     /// The history does not hold the run: why, and where it is kept.
     pub lost: Option<Trouble>,
-    /// Nothing was begun: why.
+    /// Why nothing was begun.
     pub prevented: Option<Trouble>,
     /// How many of the run's steps were due, passed, failed and so on.
     pub counts: StepCounts,

@@ -25,7 +25,8 @@ use crate::platform;
 /// The word that makes the program load scripts and nothing else.
 pub const WORD: &str = "load-scripts";
 
-/// Processor time that all scripts together may take, s: so much, and a second more for so many of them.
+/// Processor time that all scripts together may take, s, with one more second for each
+/// [`SCRIPTS_A_SECOND`] of them.
 const MOST_TIME_S: u64 = 9;
 /// See [`MOST_TIME_S`].
 const SCRIPTS_A_SECOND: u64 = 50;

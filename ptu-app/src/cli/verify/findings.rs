@@ -33,7 +33,7 @@ pub(super) struct Findings {
     pub(super) departure: Option<Departure>,
 }
 
-/// A clock may be ahead of this one by so much, µs.
+/// Time by which a clock may be ahead of this one, µs.
 const AHEAD_US: i64 = 86_400_000_000;
 
 /// What to say of a signature that is dated in the future.
@@ -46,7 +46,7 @@ pub(super) fn dated_ahead(name: &str, at_us: i64, words: &Words) -> Option<Strin
 }
 
 impl Findings {
-    /// Nothing yet, of a `run`, `database`, `sheet` or `certificate`.
+    /// No findings yet about a `run`, `database`, `sheet` or `certificate`.
     pub(super) fn of(what: &'static str, words: &'static Words) -> Self {
         Self {
             words,

@@ -28,7 +28,7 @@ const AFTER_S: f64 = 5.0;
 /// Suites run side by side.
 const WORKERS: usize = 2;
 
-/// The check runs the whole suite on one mode in so many.
+/// The check runs the whole suite on one mode in this number.
 const ONE_IN: usize = 20;
 
 /// Procedure for each fault mode (or glob), and words in the name of a step that must fail.

@@ -55,7 +55,7 @@ impl ActionPlace {
         }
     }
 
-    /// Nothing has changed or acted here for a moment.
+    /// Whether nothing has changed or acted here for a moment.
     fn is_ready(&self) -> bool {
         self.now_s - self.remembered.at_s >= MOMENT_S
     }

@@ -22,7 +22,7 @@ const CLICKS: usize = 10;
 struct Counted {
     window: Window,
     clicks: usize,
-    /// Nothing but keys is used.
+    /// The window is used by keys alone.
     by_key: bool,
     /// What can be clicked is to be so high, points.
     lowest: f32,

@@ -65,7 +65,7 @@ impl Window {
         Self::on(size, place, paths, settings)
     }
 
-    /// Another one on the history of this one.
+    /// A second window on the history of this one.
     pub fn beside(&self, settings: Settings) -> Self {
         let scripts = ScriptsDirectory::find(Some(&scripts())).expect("scripts");
         let paths = DataPaths::new(self.place.path("history.db"), scripts);

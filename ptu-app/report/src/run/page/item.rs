@@ -69,7 +69,7 @@ pub enum Item {
 pub struct Text {
     /// From the left to the anchor.
     pub x: f32,
-    /// Which point of each line that is.
+    /// Point of each line that lies there.
     pub anchor: Anchor,
     /// Height of letters.
     pub size: f32,

@@ -10,7 +10,7 @@ const LINE: f32 = 10.0;
 /// Free above and below a row's words, and between columns.
 const ABOVE: f32 = 2.2;
 const BETWEEN: f32 = 8.0;
-/// Details begin so much further right.
+/// Indent of details.
 const INDENT: f32 = 10.0;
 /// Width and height of a bar.
 const BAR: (f32, f32) = (64.0, 5.0);

@@ -170,7 +170,7 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
     }
 }
 
-/// Which of these parts, and so many more, has failed.
+/// Sentence which says that one of these parts, or of `more` others, has failed.
 fn cannot_tell(shown: &[Both], more: usize, can_go_on: bool) -> Both {
     let [more, more_ko] = match more {
         0 => [String::new(), String::new()],

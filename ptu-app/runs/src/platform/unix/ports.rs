@@ -86,7 +86,7 @@ fn locked_by(place: &str) -> Option<String> {
     })
 }
 
-/// Other systems do not tell.
+/// Systems other than Linux do not tell.
 #[cfg(not(target_os = "linux"))]
 pub fn holder(_: &str) -> Option<String> {
     None

@@ -201,7 +201,7 @@ impl<L: UnitLink> Session<L> {
         }
     }
 
-    /// Hands rows on once there are so many.
+    /// Hands rows on once there are `at_least` of them.
     fn hand_rows(&mut self, at_least: usize, sink: &mut dyn FnMut(SessionEvent)) {
         if let Some(rows) = self.rows.as_mut().filter(|rows| rows.len() >= at_least) {
             sink(SessionEvent::Rows(std::mem::take(rows)));

@@ -19,7 +19,7 @@ pub struct Asked {
     pub serial_new: String,
 }
 
-/// Which button of the dialog was clicked.
+/// Button of the dialog that was clicked.
 pub enum Chosen {
     Cancel,
     /// Write the change, with this note.

@@ -46,7 +46,7 @@ pub struct ProceduresPage {
     suite: Request<Arc<Suite>>,
     /// Choice for which the suite was loaded.
     loaded_for: Option<BenchChoice>,
-    /// Nothing = everything but what is on request.
+    /// Chosen procedures and steps; none = all except those on request.
     selection: Option<Selection>,
     parts: Request<PartNames>,
     find: String,

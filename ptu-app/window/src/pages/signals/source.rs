@@ -247,7 +247,7 @@ fn name(channel: Side) -> &'static str {
     }
 }
 
-/// Which channels nobody has calibrated.
+/// Channels that nobody has calibrated.
 fn uncalibrated(
     known: &Calibrations,
     device: &str,

@@ -28,7 +28,7 @@ pub struct Export {
 }
 
 impl Export {
-    /// Another trace is open; this is the name for what is exported of it.
+    /// Takes the name for exports of another trace, which is open now.
     pub fn name_after(&mut self, name: String) {
         self.name = name;
     }
