@@ -45,9 +45,9 @@ impl Towards {
 /// Adds up the distance run against the reverser.
 #[derive(Clone, Debug, Default)]
 pub struct Rollback {
-    /// Distance rolled back by each tachometer, m: one that is dead hides nothing.
+    /// Distance rolled back by each tachometer, m: a dead tachometer hides nothing.
     against_m: [f64; 2],
-    /// What it was when the wheels stood last: a lone pulse since then is spurious.
+    /// `against_m` when the wheels stood last: a lone pulse since then is spurious.
     stood_m: [f64; 2],
     towards: Option<Towards>,
     tripped: Edge,

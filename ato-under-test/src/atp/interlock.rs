@@ -15,7 +15,8 @@ const SLOWS: Duration = Duration::from_ms(2_500);
 /// Time in which the line alone follows the relay when it is released [default].
 const LINE_FOLLOWS: Duration = Duration::from_ms(300);
 
-/// Power that was asked for when something held the train is not given when that has gone: a person has to ask again.
+/// Interlock of power: power demanded while something held the train is not given afterwards. A person has to ask
+/// again.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Interlock {
     open: OnDelay,
@@ -48,8 +49,8 @@ pub struct BrakePath {
 }
 
 impl BrakePath {
-    /// One scan: the brake is asked for, its line is energised all the same, what TCMS tells of it, and whether the train
-    /// moves and does not slow.
+    /// One scan. `asked` = the brake is demanded; `line_stays` = its line is energised all the same; `tcms` = the
+    /// brake as TCMS tells it; `unslowed` = the train moves and does not slow.
     pub fn step(
         &mut self,
         now: Instant,

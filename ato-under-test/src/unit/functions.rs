@@ -24,7 +24,7 @@ use crate::signals::{Inputs, MarkerPulse};
 use crate::timer::Edge;
 use crate::twc::{TrainState, Twc};
 
-/// What the functions look at beside their inputs.
+/// Data that the functions need beside their inputs.
 pub struct Surroundings<'a> {
     pub setup: &'a Setup,
     pub self_tester: &'a SelfTester,
@@ -32,7 +32,7 @@ pub struct Surroundings<'a> {
     pub tra: &'a Tra,
     pub faults: &'a Faults,
     pub guards: Guards,
-    /// The brake line has followed the relay, and others have opened it since.
+    /// The brake line has followed the relay, and something else has opened the line since.
     pub line_fell: bool,
     /// The harness has been alive at least once.
     pub ever_heard: bool,
@@ -47,7 +47,7 @@ pub struct Functions {
     pub twc: Twc,
     pub locator: Locator,
     debounce: Debounce,
-    /// Station data are of another place than that at which the train is known to stand.
+    /// Station data name another place than the known place of the standing train.
     elsewhere: Edge,
     /// A section began in this cycle.
     relocated: bool,
@@ -152,7 +152,8 @@ impl Functions {
             tcms_holds: around.tcms.overrides(),
             ato_powers: self.ato_outputs.effort > 0,
             jogs_backward: self.ato_outputs.jogs_backward,
-            // Behind its last marker alone; wheels may be wrong by more than an overrun.
+            // An overrun counts only behind the section's last marker: wheels may be wrong by more
+            // than an overrun.
             overrun_m: self
                 .locator
                 .to_stop_m()
@@ -287,13 +288,14 @@ impl Functions {
         self.twc.data().filter(|_| !refused)
     }
 
-    /// Departure as valid station data have it, given or withheld; `None` = nothing is heard, or no run may begin.
+    /// Departure in valid station data, given or withheld; `None` = no data, or no run may begin.
     fn departure(&self, around: &Surroundings<'_>) -> Option<bool> {
         let data = self.station_data()?;
         (!around.barred).then_some(data.departure == 1)
     }
 
-    /// ATO holds the train, driving or at a station; so it stays when ATO has failed, until the driver takes it.
+    /// ATO holds the train, while driving or at a station. After a failure of ATO the train stays held until the
+    /// driver moves the controller.
     pub fn holds(&self) -> bool {
         let left_alone = self.atp.sequence().failed()
             && self.atp.tachometers().standstill()
@@ -347,7 +349,8 @@ impl Functions {
                 ModeSwitch::Off
             },
             lacking,
-            // At its stop point it has nowhere to run: data of the next section are still to come.
+            // A train at its stop point has nowhere to run: data of the next section are still to
+            // come.
             departure: heard == Some(true) && !self.aligned(),
             heard,
             start: !around.barred && lines.contains(TrainLines::START),
@@ -361,7 +364,8 @@ impl Functions {
         }
     }
 
-    /// The reverser is not forward, where ATO drives. ATP itself refuses a jog with it at neutral, and tells that.
+    /// The reverser is not forward while ATO drives. A jog with the reverser at neutral is refused by ATP itself,
+    /// which reports it.
     fn turned(&self) -> bool {
         let lines = self.inputs.lines;
         let forward = lines.contains(TrainLines::FORWARD) && !lines.contains(TrainLines::BACKWARD);

@@ -1,5 +1,5 @@
-//! Errors of the store, each with the file or server it concerns and the next move. A message that ends with
-//! another file to choose does not say how: that is the caller's to add.
+//! Errors of the store, each with the file or server it concerns and the next move. A message that tells to
+//! choose another file does not say how: the caller adds that.
 
 mod misplaced;
 mod query_limit;
@@ -52,7 +52,7 @@ pub enum StoreError {
     ForeignDatabase {
         /// The file.
         path: PathBuf,
-        /// The application id it carries.
+        /// Application id of the file.
         application_id: i32,
     },
     /// Written by a later version of this program.
@@ -62,7 +62,7 @@ pub enum StoreError {
         path: PathBuf,
         /// Schema version of the file.
         found: i32,
-        /// The newest this crate knows.
+        /// The newest schema version that this crate knows.
         known: i32,
     },
     /// The file holds a table, index, view or trigger that this program did not make, or an altered one.
@@ -88,12 +88,12 @@ pub enum StoreError {
     EarlierCopy {
         /// The database file.
         path: PathBuf,
-        /// Entries in it.
+        /// Entries in the file.
         here: i64,
         /// Entries known elsewhere.
         there: i64,
     },
-    /// The file and the copy known elsewhere have forked: each has entries the other has not.
+    /// The file and the copy known elsewhere have forked: each has entries that the other lacks.
     #[error("{} is a copy that went on by itself after entry {after} of its chain of seals: what is known there of it after that is not in it; bring what is new in it into the file itself with `db import`, or give it a name of its own with `db sync --as-copy`", .path.display())]
     ForkedCopy {
         /// The database file.
@@ -120,7 +120,7 @@ pub enum StoreError {
         path: PathBuf,
         /// Schema version of the file.
         found: i32,
-        /// The one this crate reads.
+        /// The schema version that this crate reads.
         known: i32,
     },
     /// There is no such file; reading does not create one.
@@ -185,7 +185,7 @@ pub enum StoreError {
         what: &'static str,
         /// The name that was asked for.
         asked: String,
-        /// A few of those that fit.
+        /// A few rows that fit.
         matches: Vec<Id>,
     },
     /// A search text without any word.
@@ -219,10 +219,10 @@ pub enum StoreError {
     Transition {
         /// The fault.
         fault: Id,
-        /// From where to where.
+        /// The states of the transition.
         source: TransitionError,
     },
-    /// What was written about the fault stays.
+    /// A withdrawal is refused.
     #[error("fault {0}: {1}")]
     Withdrawal(Id, #[source] WithdrawalError),
     /// Steps of a run must have rising indexes.
@@ -374,7 +374,7 @@ pub enum StoreError {
         path: PathBuf,
         /// Schema version of the server.
         found: i32,
-        /// The one this crate knows.
+        /// The schema version that this crate knows.
         known: i32,
     },
     /// The server's tables are of a later version.
@@ -410,7 +410,7 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// There is no row of this id.
+    /// Error for an id without a row.
     pub(crate) fn not_found(what: &'static str, id: Id) -> Self {
         Self::NotFound {
             what,

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-/// What is wrong with a payload, said so that a person with a hex dump finds the place.
+/// Error in a payload, with its place for a person with a hex dump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{message}: {kind} at offset {offset} (field {field})")]
 pub struct DecodeError {
@@ -47,7 +47,7 @@ pub struct FieldSpec {
     pub doc: &'static str,
 }
 
-/// What `WIRE.md` says about a message.
+/// Description of a message, as in `WIRE.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MessageSpec {
     /// Name.
@@ -65,7 +65,7 @@ pub struct MessageSpec {
 impl MessageSpec {
     /// Bytes of the payload, code included.
     pub const fn payload_len(&self) -> usize {
-        // `const`, so that it is settled at compile time that every message fits a frame.
+        // `const`, so that the compiler checks that every message fits a frame.
         let (mut len, mut i) = (1, 0);
         while i < self.fields.len() {
             len += self.fields[i].size;
@@ -80,7 +80,7 @@ impl MessageSpec {
     }
 }
 
-/// What `WIRE.md` says about an enumeration: code, label and meaning of each value; or about a
+/// Description of an enumeration, as in `WIRE.md`: code, label and meaning of each value; or of a
 /// set of bits: number, name and meaning of each bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordSpec {
@@ -104,7 +104,7 @@ pub trait Layout: Sized {
     fn show(&self) -> Vec<String>;
 }
 
-/// A reader over a payload that knows where it is.
+/// A reader of a payload, with its position.
 pub struct Cursor<'a> {
     pub(super) payload: &'a [u8],
     pub(super) offset: usize,
@@ -270,7 +270,7 @@ macro_rules! wire_enum {
             }
             /// Whether this version knows the value.
             pub const fn is_known(self) -> bool { !matches!(self, Self::Unknown(_)) }
-            /// The word for it.
+            /// Label of the value.
             pub fn label(self) -> &'static str {
                 match self { $( Self::$variant => $label, )* Self::Unknown(_) => "unknown" }
             }

@@ -1,4 +1,5 @@
-//! Texts of procedures that a Korean reader meets in English: who adds a step to `scripts/` adds them to `korean.toml`.
+//! Texts of procedures that have no Korean: a Korean reader sees them in English until they are added to
+//! `korean.toml`.
 
 use std::collections::BTreeSet;
 

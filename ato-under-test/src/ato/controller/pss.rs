@@ -52,7 +52,7 @@ impl Pss {
         }
     }
 
-    /// The printed target where the train is now: the situation is that much ahead.
+    /// The printed target at the train's present place; the inputs are predicted `ahead_s` ahead.
     fn target_mps(&self, input: &ControllerInput) -> f64 {
         let ahead_m = input.speed_mps * self.ahead_s;
         input.to_stop_m.map_or(input.cruise_mps, |distance| {
@@ -61,7 +61,7 @@ impl Pss {
         })
     }
 
-    /// The reference: the cruising speed, or what leads from there to the curve and along it.
+    /// The reference: the cruising speed, or a profile from there to the curve and along it.
     fn reference(&mut self, input: &ControllerInput) -> Setpoint {
         let cruise = Setpoint {
             speed_mps: input.cruise_mps.max(0.0),

@@ -104,8 +104,8 @@ impl Servo {
         }
     }
 
-    /// What is to be followed instead of the station stop's profile because the cruising speed is lower.
-    /// When it rises again the profile goes on from where the train is.
+    /// Setpoint to follow in place of the station stop's profile where the cruising speed is lower. When
+    /// the cruising speed rises again the profile goes on from where the train is.
     fn ordered(&mut self, from: Setpoint, input: &ControllerInput, dt: f64) -> Option<Setpoint> {
         let profile = self.reference;
         let lower = input.cruise_mps < profile.speed_mps - ORDER_MPS;
@@ -193,7 +193,7 @@ impl Servo {
         self.phase = Phase::Cruise(SCurve::hold(input.speed_mps));
     }
 
-    /// Compensator [S0 eq. 7], conditioned on what was granted of the last demand.
+    /// Compensator [S0 eq. 7], conditioned on the granted part of the last demand.
     fn compensate(&mut self, granted_mps2: f64) {
         let t = CYCLE.as_secs();
         let input = [t * t * t / 6.0, t * t / 2.0, t];
@@ -232,7 +232,7 @@ impl SpeedController for Servo {
         } else {
             self.config.correction_mps2
         };
-        // What is beyond is a wheel that slides, and no effort helps.
+        // A larger correction means a sliding wheel, against which no effort helps.
         let given = correction.clamp(-self.config.correction_mps2, most);
         Demand {
             target_mps: reference.speed_mps,

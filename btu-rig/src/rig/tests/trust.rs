@@ -179,8 +179,9 @@ fn frames_that_are_late_to_a_fast_clock_are_not_the_lines() {
     assert_eq!(bench.rig().link_error(), None);
 }
 
-/// Goal: the same after the tester's computer stood still, when the clock is compared from the beginning; and the rate of the clock is
-/// measured, from 13 s on. Method: a clock 3 % fast, which refuses frames for seconds on end, and stalls.
+/// Goal: a fast clock is at fault, not the line, also after the tester's computer stood still, when the clock is
+/// compared from the beginning; the rate of the clock is measured from 13 s on. Method: a clock 3 % fast, which
+/// refuses frames for seconds on end, and stalls.
 #[test]
 fn a_fast_clock_is_measured_and_stays_wrong_over_a_stall() {
     let mut bench = bench(FakeUnit {
@@ -223,7 +224,7 @@ fn a_log_that_is_never_answered_is_an_error_with_the_count_of_questions() {
     assert_eq!(bench.rig().link_error(), None);
 }
 
-/// Nothing is logged, and so nothing is there to be read; but that it could be is not known.
+/// A unit whose log is empty and is never answered: whether it could be read is not known.
 #[test]
 fn a_unit_that_never_shows_its_log_is_an_error_though_nothing_is_in_it() {
     let mut bench = bench(FakeUnit {
@@ -351,7 +352,7 @@ fn failed_self_test_items_are_known_from_identity_and_status() {
     bench.run_ms(3_000);
     let both = SelfTest::TRA | SelfTest::MEMORY;
     assert_eq!(bench.rig().evidence().self_test, both);
-    // What it said before it was started again does not hold.
+    // The self-test result from before the restart does not hold.
     bench.link_mut().restart();
     bench.run_ms(4_000);
     assert_eq!(bench.rig().evidence().self_test, SelfTest::empty());

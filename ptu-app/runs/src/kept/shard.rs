@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 
 /// Greatest number of parts.
 const MOST: u32 = 100_000;
-/// The word for a number that a scheduler gives.
+/// Word in place of a number that a job scheduler gives.
 const AUTO: &str = "auto";
 
 /// The `number`-th of `of` parts, from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Shard {
-    /// From 1.
+    /// Number of the part, from 1.
     pub number: u32,
     /// Parts in all.
     pub of: u32,
@@ -41,10 +41,11 @@ impl Shard {
         Self::of_run(run, self.of) == self
     }
 
-    /// `k/n`; `auto` or `auto/n` where Slurm or Kubernetes gives the number, found in what `variable` gives.
+    /// Reads `k/n`; or `auto` or `auto/n`, where Slurm or Kubernetes gives the number in a variable, which
+    /// `variable` looks up.
     ///
     /// # Errors
-    /// It is none of them, or the scheduler's numbers do not fit.
+    /// The text has none of these forms, or the scheduler's numbers do not fit.
     pub fn parse(text: &str, variable: &dyn Fn(&str) -> Option<String>) -> Result<Self, String> {
         let (number, of) = text
             .split_once('/')

@@ -56,7 +56,7 @@ pub struct FilterArguments {
 }
 
 impl FilterArguments {
-    /// The span of time it asks for.
+    /// The span of time of the filter.
     pub fn span(&self) -> Span {
         self.when.unwrap_or_default()
     }
@@ -108,7 +108,7 @@ impl FilterArguments {
         .to_owned())
     }
 
-    /// What to say of the first code that no fault has.
+    /// Refusal of the first code that no fault has.
     fn unknown_code(&self, store: &Store) -> Result<Option<Asked>, Failure> {
         let Some(codes) = &self.code else {
             return Ok(None);
@@ -132,7 +132,8 @@ impl FilterArguments {
         }))
     }
 
-    /// The first name that neither something here nor the scripts have, and the nearest that something here has.
+    /// Refusal of the first name that neither the history nor the scripts have, with the nearest name in the
+    /// history.
     fn unknown(&self, store: &Store) -> Result<Option<Asked>, Failure> {
         if let Some(said) = self.unknown_code(store)? {
             return Ok(Some(said));

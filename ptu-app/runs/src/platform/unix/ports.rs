@@ -13,7 +13,7 @@ use rustix::fs::{Access, OFlags, access};
 use rustix::termios::ioctl_tiocnxcl;
 use serialport::SerialPort;
 
-/// Opens a port and locks it until it is closed. Reads and writes wait for so long.
+/// Opens a port and locks it until it is closed. Reads and writes wait for `waits` at most.
 pub fn open_alone(
     path: &str,
     baud: u32,
@@ -92,7 +92,7 @@ pub fn holder(_: &str) -> Option<String> {
     None
 }
 
-/// Whether this user may not read and write a port that is there: then the group whose members may, if there is one.
+/// Whether this user may not read and write an existing port; if so, the group whose members may, if there is one.
 pub fn closed_to_user(path: &str) -> Option<Option<String>> {
     if access(path, Access::READ_OK | Access::WRITE_OK).is_ok() {
         return None;
