@@ -33,8 +33,8 @@ pub use art::{ArtInputs, Checks};
 pub use jog::JogOutcome;
 pub use monitor::{Findings, TrainReport};
 
-/// Speed that is none: no pulse for half a second. Standstill as ATP means it is up to 0.3 m/s, at which a
-/// train that is stopping still has a second to go.
+/// Speed that counts as zero: no pulse for half a second. Standstill as ATP means it is up to 0.3 m/s, at
+/// which a train that is stopping still has a second to go.
 const STOPPED: Speed = Speed::from_kmh(0.2);
 /// Speed below which a train has come to its end, m/s.
 const ENDING_MPS: f64 = 0.05;

@@ -181,7 +181,7 @@ impl ModeSequence {
         self.departs_anew &= !departs;
     }
 
-    /// Whether a departure is heard that was heard withheld before.
+    /// Whether a departure is given now after it was withheld.
     fn new_departure(&mut self, heard: Option<bool>) -> bool {
         match heard {
             Some(true) => core::mem::take(&mut self.withheld),

@@ -11,7 +11,7 @@ const FELT_OVER: Duration = Duration::from_ms(200);
 /// The faults of this unit and how much of each acts at present.
 ///
 /// All chances of faults are drawn here, and each mode's spells from a generator of its own: whatever
-/// is injected, the rest of the unit draws as without it.
+/// is injected, the other random draws of the unit stay the same.
 #[derive(Debug)]
 pub struct Faults {
     modes: Vec<Injected>,

@@ -57,7 +57,7 @@ impl ChannelConfig {
     /// Reads a channel.
     ///
     /// # Errors
-    /// It does not parse, or a value is out of its range; with the key.
+    /// The text does not parse, or a value is out of its range; the error names the key.
     pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
         let channel: Self =
             toml::from_str(text).map_err(|error| ConfigError::Syntax(error.to_string()))?;

@@ -26,7 +26,7 @@ impl Store {
     /// Stores a dictionary.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The database cannot be written.
     pub fn put_dictionary(&self, record: &DictionaryRecord) -> Result<Id, StoreError> {
         const DOING: &str = "storing a fault dictionary";
         let id = self.mint()?;

@@ -76,11 +76,11 @@ impl Store {
         })
     }
 
-    /// The instruments of this file's own bench, by serial number, as they were stated last; those of other files that
-    /// were brought in are not among them.
+    /// The instruments of this file's own bench, by serial number, as they were stated last, without those of merged
+    /// files.
     ///
     /// # Errors
-    /// They cannot be read.
+    /// The database cannot be read.
     pub fn instruments(&self) -> Result<Vec<Instrument>, StoreError> {
         let read = self.statements();
         let all = read.map_err(|error| self.failed("reading the instruments", error))?;

@@ -104,10 +104,10 @@ impl Store {
         })
     }
 
-    /// Notes that nobody has signed, or whose signature does not hold, and in whose name they are.
+    /// Notes without a signature that holds, each with the name of its author.
     ///
     /// # Errors
-    /// They cannot be read.
+    /// The database cannot be read.
     pub fn unsigned_notes(&self) -> Result<Vec<(Id, String)>, StoreError> {
         const DOING: &str = "looking for notes that are not signed";
         let sql = "SELECT r.id, n.id, n.who FROM run_note n JOIN run r ON r.seq = n.run ORDER BY n.run, n.seq";

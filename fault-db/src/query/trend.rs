@@ -273,7 +273,7 @@ impl Store {
         })
     }
 
-    /// The steps that measured it in the latest runs, with their limits.
+    /// The steps that made the measurement in the latest runs, with their limits.
     ///
     /// # Errors
     /// As [`trend`](Self::trend).
@@ -300,7 +300,7 @@ impl Store {
     /// The names of all measurements.
     ///
     /// # Errors
-    /// Of the file or server.
+    /// The file or server cannot be read.
     pub fn measurement_names(&self) -> Result<Vec<String>, StoreError> {
         // Goes from one name to the next by index, without reading all values.
         let sql = "WITH RECURSIVE c(name) AS (
@@ -311,10 +311,10 @@ impl Store {
         self.select("listing measurements", sql, &[], |row| row.get(0))
     }
 
-    /// The procedures that measured it.
+    /// The procedures that made the measurement.
     ///
     /// # Errors
-    /// Of the file or server.
+    /// The file or server cannot be read.
     pub fn measuring_procedures(&self, measurement: &str) -> Result<Vec<String>, StoreError> {
         let sql = match self.backend() {
             Backend::File(_) => {

@@ -165,7 +165,7 @@ impl Store {
     /// way in the background may wait longer rather than lose what it has.
     ///
     /// # Errors
-    /// Of a server, which has none.
+    /// The store is on a server, which has no such time-out.
     pub fn set_busy_timeout_ms(&self, busy_timeout_ms: u32) -> Result<(), StoreError> {
         let timeout = std::time::Duration::from_millis(busy_timeout_ms.into());
         let set = self.file()?.busy_timeout(timeout);

@@ -31,7 +31,7 @@ impl Distances {
     /// Reads a file of comma-separated values with the columns train, date and km in its first line.
     ///
     /// # Errors
-    /// It cannot be read, or a value is not what it should be: the message names its line and column.
+    /// The file cannot be read, or a value is wrong: the message names its line and column.
     pub fn read(file: &Path) -> Result<Self, Failure> {
         let text = read_regular_file(file, LONGEST_FILE)
             .map_err(|error| Failure::usage(FileTrouble::unread(file, error)))?;

@@ -196,7 +196,7 @@ pub fn fault_json(fault: &FaultSummary) -> Value {
 /// A value as one document, indented.
 ///
 /// # Errors
-/// It is none that JSON can say.
+/// JSON cannot express the value.
 pub fn json_text(value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| Failure::bench(FileTrouble::NotPrinted("JSON", Why::of(error))))?;

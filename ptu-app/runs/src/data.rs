@@ -84,7 +84,7 @@ impl ScriptsDirectory {
     /// The file's text.
     ///
     /// # Errors
-    /// It is missing, cannot be read, is too long or not UTF-8.
+    /// The file is missing, cannot be read, is too long or not UTF-8.
     pub fn text(&self, name: &str) -> Result<String, Failure> {
         match self.0.file(name) {
             Some(found) => text(&found),
@@ -106,7 +106,7 @@ impl ScriptsDirectory {
     /// The file's bytes, at most `most` of them.
     ///
     /// # Errors
-    /// It is missing or cannot be read.
+    /// The file is missing or cannot be read.
     pub fn bytes(&self, name: &str, most: u64) -> Result<Vec<u8>, Failure> {
         match self.0.file(name) {
             Some(found) => content(&found, most),
@@ -402,10 +402,10 @@ fn cannot_read(file: &Path, why: Why) -> Failure {
     Failure::usage(FileTrouble::Unread(file.display().to_string(), why))
 }
 
-/// Finds out whether a file of a kind can be written, leaving what is there as it is.
+/// Finds out whether a file of a kind can be written, leaving an existing file as it is.
 ///
 /// # Errors
-/// It cannot, and why.
+/// The file cannot be written; the error says why.
 pub fn check_writable(file: &Path, kind: Kind<'_>) -> Result<(), Failure> {
     NewFile::begin(file, kind).map(drop)
 }

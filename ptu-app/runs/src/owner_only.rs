@@ -40,7 +40,7 @@ pub fn told_if_shared(file: &Path) -> Option<FileTrouble> {
 /// Refuses a secret that others can read.
 ///
 /// # Errors
-/// They can.
+/// Others can read the secret.
 pub fn refuse_shared(secret: &Path) -> Result<(), Failure> {
     let Some((rights, command)) = platform::readable_by_others(secret) else {
         return Ok(());

@@ -61,10 +61,10 @@ impl DataPaths {
         self.was_there.load(Ordering::Relaxed) && !self.is_there()
     }
 
-    /// The database, to be written to; made if it is not there yet, but never in place of one that was.
+    /// Opens the database for writing. A missing one is made, but never in place of one that was there.
     ///
     /// # Errors
-    /// It cannot be opened, is gone, or is a server.
+    /// The database cannot be opened, is gone, or is a server.
     pub fn open(&self) -> Result<Store, Failure> {
         if self.is_server() {
             let path = self.database.clone();
@@ -83,11 +83,11 @@ impl DataPaths {
         store
     }
 
-    /// The database, to be read; one that is not there yet is made, one of an older schema is copied
-    /// and brought up to date.
+    /// Opens the database for reading. A missing one is made; one of an older schema is copied and
+    /// brought up to date.
     ///
     /// # Errors
-    /// It cannot be opened.
+    /// The database cannot be opened.
     pub fn read(&self) -> Result<Store, Failure> {
         if let Some(server) = &self.server {
             return Ok(self.seen(Store::connect_read_only(server)?));

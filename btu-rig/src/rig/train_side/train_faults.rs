@@ -48,7 +48,8 @@ pub struct TrainFaults {
 
 /// Fault modes around the unit, and how much of each acts.
 ///
-/// Each has a generator of its own: whatever is injected, the bench draws as without it.
+/// Each fault has a generator of its own: whatever is injected, the other random draws of the bench
+/// stay the same.
 #[derive(Debug)]
 pub struct Injected {
     modes: Vec<ActiveFault>,

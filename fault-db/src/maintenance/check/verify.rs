@@ -68,7 +68,7 @@ impl Store {
     /// Signatures of a run and of the notes on it that hold, as they are stored: signed documents.
     ///
     /// # Errors
-    /// They cannot be read.
+    /// The database cannot be read.
     pub fn signatures(&self, run: Id) -> Result<Vec<String>, StoreError> {
         let read = signatures_of(self.backend(), run);
         let read = read.map_err(|error| self.failed("reading signatures", error))?;

@@ -226,7 +226,7 @@ impl Store {
     /// history.
     ///
     /// # Errors
-    /// Of the file or server.
+    /// The file or server cannot be read.
     pub fn history_span(&self) -> Result<Option<(i64, i64)>, StoreError> {
         // Each time by its own index: two in one query would use none.
         let found = self.first(

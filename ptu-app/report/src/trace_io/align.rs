@@ -33,7 +33,7 @@ pub struct Aligned {
 /// sample that came until then. A file with dates of another time begins with the trace.
 ///
 /// # Errors
-/// They have no time in common, or one signal comes twice.
+/// File and trace have no time in common, or one signal comes twice.
 pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Aligned, Failure> {
     let trigger = i64::from(trace.trigger_row.unwrap_or(0));
     let period_us = trace.period_us.max(1);

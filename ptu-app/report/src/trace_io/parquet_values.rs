@@ -100,7 +100,7 @@ impl Values {
     /// A number of several bytes, the highest first, or a half float.
     ///
     /// # Errors
-    /// It is longer than any number here, or none.
+    /// The bytes are longer than any number here, or no number.
     pub fn of_bytes(self, bytes: &[u8]) -> Result<f64, String> {
         match (self, bytes) {
             (Self::Numbers(Numbers::Half), [low, high]) => {

@@ -171,7 +171,7 @@ impl ListedTrace {
 /// Reads a trace of this run; where no run is named, of the one its recording names.
 ///
 /// # Errors
-/// It is gone or damaged, or the database fails.
+/// The trace is gone or damaged, or the database fails.
 pub fn open(
     store: &Store,
     parts: &PartNames,

@@ -165,10 +165,10 @@ impl UnitReading {
         Ok(ImportedLog { judged, imported })
     }
 
-    /// Why it ended before all was read, if it did.
+    /// Checks that all was read.
     ///
     /// # Errors
-    /// That, for a person.
+    /// Reading ended before; the error says why.
     pub fn complete(&self) -> Result<(), Failure> {
         match &self.read.broken_off {
             None => Ok(()),

@@ -1,11 +1,11 @@
-//! What the runs of a file are: made by what, of which plan, and which part of it.
+//! Description of a file's runs: their maker, their plan, and the part of the plan.
 
 use serde::{Deserialize, Serialize};
 
 use super::Shard;
 use crate::data::sha256;
 
-/// All that is to be known of a file of runs.
+/// Head of a file of runs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Head {
     /// Version of the program.
@@ -50,7 +50,7 @@ impl Head {
         }
     }
 
-    /// Why runs of the other are none for this, if so.
+    /// Why runs under the other head do not fit this one; none if they fit.
     pub fn other_maker(&self, other: &Self) -> Option<String> {
         if self.app_version != other.app_version {
             return Some(format!(

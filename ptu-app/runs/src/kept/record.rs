@@ -92,7 +92,7 @@ impl<R: DeserializeOwned> Found<R> {
     /// Reads a file's bytes.
     ///
     /// # Errors
-    /// It does not say what its runs were made by.
+    /// The file does not say what its runs were made by.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
         let (first, length) = content(bytes).ok_or_else(|| match bytes.starts_with(MARK) {
             true => "its record 1, which says what its runs were made by, is damaged".to_owned(),

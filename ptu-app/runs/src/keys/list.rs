@@ -173,10 +173,11 @@ impl KeyList {
         text
     }
 
-    /// Adds a key; of one that is there already the narrowest days hold. What it is then.
+    /// Adds a key; a key that is there already is valid on the days that both entries allow.
+    /// Returns the entry as it is then.
     ///
     /// # Errors
-    /// It is there as another's.
+    /// The list has the key under another name.
     pub fn add(&mut self, entry: KeyEntry) -> Result<KeyEntry, KeyTrouble> {
         let Some(known) = self.keys.iter_mut().find(|known| known.key == entry.key) else {
             self.keys.push(entry.clone());
@@ -267,10 +268,10 @@ impl KeyEntry {
     }
 }
 
-/// A name that a key signs by: composed (NFC), and without what cannot be seen.
+/// Name of a key's owner: composed (NFC), and without invisible characters.
 ///
 /// # Errors
-/// It is empty or in another form.
+/// The name is empty or in another form.
 pub fn name_argument(text: &str) -> Result<String, String> {
     let hidden = |c: char| {
         (c != ' ' && c.is_whitespace()) || matches!(c, '\u{fe00}'..='\u{fe0f}' | '\u{2800}')
@@ -288,7 +289,7 @@ pub fn name_argument(text: &str) -> Result<String, String> {
 /// A day, as 2026-11-26.
 ///
 /// # Errors
-/// It is none.
+/// The text is no day.
 pub fn day_argument(text: &str) -> Result<String, String> {
     let day = NaiveDate::parse_from_str(text, DAY)
         .ok()

@@ -39,7 +39,7 @@ impl CompareRequest {
     /// Compares a stored trace of a unit's run record.
     ///
     /// # Errors
-    /// It is none, its section is not known, or a file is not there.
+    /// The trace is no run record, its section is not known, or a file is missing.
     pub fn compare(
         &self,
         store: &Store,

@@ -129,7 +129,7 @@ impl BenchContents {
     /// Reads a recording back.
     ///
     /// # Errors
-    /// It was written by another version, or more was done than could be kept.
+    /// The recording is of another version, or has lost stimuli.
     pub fn read(recording: &Recording) -> Result<(Self, Stimuli), Failure> {
         let other = |error: serde_json::Error| {
             Failure::bench(RecordTrouble::OtherVersion(

@@ -129,7 +129,7 @@ impl BenchSetup {
     /// Reaches the unit. A unit on a port is identified and brought to a known state.
     ///
     /// # Errors
-    /// It cannot be reached, is another one, or has another configuration.
+    /// The unit cannot be reached, is another one, or has another configuration.
     pub fn connect(&self, stop: &Stop) -> Result<Connected, Failure> {
         if self.endpoint == Endpoint::Sim {
             return Ok(Connected::Sim(Box::new(self.clone())));

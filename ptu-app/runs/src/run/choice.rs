@@ -199,7 +199,7 @@ impl BenchChoice {
 /// Reads a software version, `MAJOR.MINOR.PATCH`.
 ///
 /// # Errors
-/// It is not three numbers up to 255.
+/// The text is not three numbers up to 255.
 pub fn software_version(text: &str) -> Result<[u8; 3], RunTrouble> {
     let parts: Vec<u8> = text
         .split('.')
@@ -215,7 +215,7 @@ pub fn software_version(text: &str) -> Result<[u8; 3], RunTrouble> {
 /// Checks a serial number that was given.
 ///
 /// # Errors
-/// It is empty, too long for the unit's identity, or not ASCII.
+/// The number is empty, too long for the unit's identity, or not ASCII.
 pub fn check_serial(serial: &str) -> Result<(), Failure> {
     let longest = size_of_val(&Identity::default().serial);
     if serial.is_empty() || serial.len() > longest || !serial.is_ascii() {

@@ -47,7 +47,7 @@ impl BenchSetup {
     /// Reaches the unit on its port, identifies it and brings it to a known state.
     ///
     /// # Errors
-    /// It cannot be reached, is another one, or has another configuration.
+    /// The unit cannot be reached, is another one, or has another configuration.
     pub(super) fn reach(&self, stop: &Stop) -> Result<ReadyUnit, Failure> {
         let mut link = WireLink::open(&self.endpoint)?.slower(self.slower);
         if let Some(places) = &self.places {

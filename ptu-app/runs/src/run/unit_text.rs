@@ -26,7 +26,7 @@ pub fn of_serial(bytes: &[u8]) -> String {
 /// Compares the unit at `endpoint` with the serial number that is expected there, if one is.
 ///
 /// # Errors
-/// It is another unit.
+/// Another unit is there.
 pub fn check_expected(
     endpoint: &Endpoint,
     identity: &Identity,

@@ -19,7 +19,7 @@ impl FontMetrics {
     /// Reads the shipped font.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// The font cannot be read.
     pub fn new() -> Result<Self, Failure> {
         let face = Face::parse(PRETENDARD, 0)
             .map_err(|error| Failure::bench(FileTrouble::FontUnread(Why::of(error))))?;
