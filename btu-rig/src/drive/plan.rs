@@ -97,7 +97,7 @@ pub struct DrivePlan {
     pub train: TrainData,
     /// Passengers, kg.
     pub load_kg: f64,
-    /// How train and track differ from the unit's configuration.
+    /// Differences of train and track from the unit's configuration.
     pub conditions: Conditions,
     /// The tester listens: unit's own position, refusals and log. Without it a run is quicker.
     pub tester: bool,
@@ -135,7 +135,7 @@ impl DrivePlan {
         })
     }
 
-    /// What the departure station's loop sends, departure given.
+    /// Station data of the departure station's loop, departure given.
     pub(super) fn at_departure(&self) -> StationData {
         StationData {
             departure: true,
@@ -143,7 +143,7 @@ impl DrivePlan {
         }
     }
 
-    /// What the arrival station's loop sends.
+    /// Station data of the arrival station's loop.
     pub(super) fn at_arrival(&self) -> StationData {
         StationData::at_arrival(&self.section, self.onward_station)
     }

@@ -14,7 +14,7 @@ use super::{Driver, UnitTime};
 /// How often a wait is reported.
 const WAITING_EVERY: Duration = Duration::from_ms(500);
 
-/// What one scan gives to everything that watches.
+/// Data of one scan for everything that watches.
 #[derive(Clone, Copy)]
 pub(super) struct Scan<'a> {
     pub now: Instant,
@@ -60,7 +60,7 @@ impl Problem {
     }
 }
 
-/// How far a list of actions is.
+/// Progress of a list of actions.
 #[derive(Debug, PartialEq)]
 pub(super) enum Progress {
     /// An action takes its time.

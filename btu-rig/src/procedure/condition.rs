@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::Driver;
 use super::names::{Name, Part};
 
-/// What a signal is compared with, or a limit: a number in the unit of the thing compared.
+/// Comparison value of a signal, or a limit: a number in the unit of the thing compared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Operand {
     /// Written in the script.
@@ -133,7 +133,7 @@ impl Condition {
         }
     }
 
-    /// What is behind the first of its signals that has more to say than its value.
+    /// Detail behind the first of the condition's signals that has one.
     pub(super) fn said<'a>(&self, driver: &'a dyn Driver) -> Option<&'a str> {
         let mut said = None;
         self.for_each_signal(&mut |signal| said = said.or_else(|| driver.said(signal)));

@@ -172,7 +172,7 @@ pub fn bit_names(signal: Signal, bits: u16) -> Option<String> {
     }
 }
 
-/// What the bits that are set in a word of the wire mean.
+/// Meanings of the bits that are set in a word of the wire.
 pub fn meanings(word: &WordSpec, bits: u16) -> String {
     let found = words_of(word, bits);
     if found.is_empty() {
@@ -181,7 +181,7 @@ pub fn meanings(word: &WordSpec, bits: u16) -> String {
     found.join("; ")
 }
 
-/// What each of the bits that are set in a word of the wire means.
+/// Meaning of each bit that is set in a word of the wire.
 fn words_of(word: &WordSpec, bits: u16) -> Vec<String> {
     let meaning = |bit: u8| {
         let known = word.entries.iter().find(|entry| entry.0 == bit);

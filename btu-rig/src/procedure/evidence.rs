@@ -11,7 +11,7 @@ use protocol::Duration;
 use protocol::event::Event;
 use protocol::message::{AtoFailure, SelfTest};
 
-/// How far the unit's log is read.
+/// Progress of reading the unit's log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LogState {
     /// Every event the unit says it has logged.
@@ -64,7 +64,7 @@ pub struct UnitTime {
     pub answered_ms: Option<u32>,
 }
 
-/// How far a driver can trust what it receives.
+/// Evidence by which a driver can trust the data that it receives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Evidence {
     /// The unit's log.

@@ -11,7 +11,7 @@ use super::evidence::LogState;
 use super::finding::Finding;
 use super::plan::Expectation;
 
-/// What is known about an expectation so far.
+/// State of an expectation so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ExpectationRun {
     decided: bool,

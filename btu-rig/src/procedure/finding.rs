@@ -1,4 +1,5 @@
-//! What a run finds, as data: stored as JSON, told in English here and in other languages by whoever shows it.
+//! Findings of a run, as data: stored as JSON, told in English here and in other languages by whoever shows
+//! it.
 
 mod english;
 mod list;
@@ -19,7 +20,7 @@ pub struct LoggedEvent {
     pub source: EventSource,
     /// Number in the event dictionary, also one that this version does not know.
     pub code: u16,
-    /// What the dictionary says it is.
+    /// Parameter; its meaning is in the dictionary of events.
     pub parameter: i32,
 }
 
@@ -30,7 +31,7 @@ pub struct LimitMissed {
     pub measurement: String,
     /// Measured value.
     pub value: f64,
-    /// How far the true value may be off.
+    /// Uncertainty of the true value.
     pub uncertainty: Option<f64>,
     /// Least value allowed.
     pub low: Option<f64>,
@@ -105,7 +106,7 @@ pub enum Finding {
     NoValue {
         /// Name in its script.
         measurement: String,
-        /// How many others of the step have none for the same reason.
+        /// Number of other measurements of the step without a value for the same reason.
         others: u32,
         why: WhyNoValue,
     },
@@ -295,12 +296,12 @@ pub enum Finding {
 #[serde(rename_all = "snake_case")]
 pub enum WhyNoValue {
     Missing(MissingData),
-    /// What ends it did not come about.
+    /// The condition that ends the measurement did not come true.
     NeverEnded(Condition),
     NotMeasured,
 }
 
-/// What a unit is brought up for, or settles again for.
+/// Purpose of bringing a unit up, or of letting it settle again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Before {
@@ -312,7 +313,7 @@ pub enum Before {
     Repetition,
 }
 
-/// What a step was waiting for when its time was over.
+/// Condition that a step was waiting for when its time was over.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WaitedFor {

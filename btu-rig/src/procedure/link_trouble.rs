@@ -13,7 +13,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[error("{link}: {why}")]
 pub struct LinkFailure {
-    /// What it is connected by, as the user named it.
+    /// Port of the link, as the user named it.
     pub link: String,
     /// Failure of the port.
     pub why: PortFailure,
@@ -37,7 +37,7 @@ pub enum PortFailure {
     NotInLockStep(String),
 }
 
-/// What is wrong with the connection, with who answers, or with reading the unit's log.
+/// Trouble of the connection, of the unit that answers, or of reading the unit's log.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LinkTrouble {
@@ -49,7 +49,7 @@ pub enum LinkTrouble {
     Instrument {
         /// Name of the instrument in the bench file.
         instrument: String,
-        /// What is wrong with the instrument.
+        /// Fault of the instrument.
         fault: Box<InstrumentFault>,
     },
     /// Another tester has the unit.
@@ -88,7 +88,7 @@ pub enum LinkTrouble {
         channel: Channel,
         /// Duration of the silence.
         silence: Duration,
-        /// What came in the place of frames.
+        /// Refused frames in place of good ones.
         refused: Option<Refused>,
     },
     /// The line loses or damages more than one may.
@@ -114,7 +114,7 @@ pub enum LinkTrouble {
     /// The log grows faster than it can be read.
     #[error("the unit logs without end: {entries} entries came beyond what a log can hold")]
     LogWithoutEnd {
-        /// How many came that are not kept.
+        /// Number of entries that are not kept.
         entries: u64,
     },
     /// The unit does not answer questions for its log.
@@ -162,7 +162,7 @@ impl LinkTrouble {
     }
 }
 
-/// What an instrument of the bench does wrong: never a fault of the unit. Texts are the instrument's or the system's own.
+/// Fault of an instrument of the bench: never a fault of the unit. Texts are the instrument's or the system's own.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum InstrumentFault {
@@ -183,7 +183,7 @@ pub enum InstrumentFault {
     /// The instrument answers later than the bench file says.
     #[error("slow: it took {:.0} ms, and the bench file states {:.0} ms", ms(*.took), ms(*.stated))]
     Slow {
-        /// What a command or a reading took.
+        /// Time that a command or a reading took.
         took: Duration,
         /// `uncertainty_ms` of the bench file.
         stated: Duration,
@@ -250,7 +250,7 @@ pub enum InstrumentFault {
         /// Greatest that the driver states.
         high: String,
     },
-    /// What it answered cannot be read.
+    /// The instrument's answer cannot be read.
     #[error("{found} is no answer to {asked}")]
     NoAnswer {
         /// Command as it was sent, or number of bytes asked for.
@@ -272,7 +272,7 @@ fn ms(duration: Duration) -> f64 {
     duration.as_secs() * 1000.0
 }
 
-/// What bytes without a valid frame look like.
+/// Probable cause of bytes without a valid frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GarbageCause {

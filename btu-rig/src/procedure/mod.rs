@@ -73,17 +73,17 @@ pub trait Driver {
         true
     }
 
-    /// How far what it hears of the unit can be trusted.
+    /// Evidence by which data from the unit can be trusted.
     fn evidence(&self) -> Evidence {
         Evidence::default()
     }
 
-    /// What the last self-test asked for found of an item; `None` before its result came.
+    /// Result of an item in the last requested self-test; `None` before the result came.
     fn self_test_item(&self, _item: SelfTest) -> Option<SelfTestItem> {
         None
     }
 
-    /// What is behind a signal that says only whether the unit is as it should be.
+    /// Detail behind a signal which says only whether the unit matches its record.
     fn said(&self, _signal: Signal) -> Option<&str> {
         None
     }
@@ -114,7 +114,7 @@ pub struct UnitEvent {
     pub code: u16,
     /// Time of the unit or TCMS that logged it, ms since its start.
     pub at_ms: u32,
-    /// What the dictionary says it is.
+    /// Parameter; its meaning is in the dictionary of events.
     pub parameter: i32,
     /// Measured speed at that time.
     pub speed: Speed,
@@ -124,7 +124,7 @@ pub struct UnitEvent {
     pub position_m: f64,
     /// Operating mode at that time.
     pub mode: Mode,
-    /// Why the emergency brake was applied.
+    /// Cause of the emergency brake.
     pub eb_cause: EbCause,
 }
 
@@ -161,7 +161,7 @@ impl UnitEvent {
         }
     }
 
-    /// What its parameter says, in words; empty for an event without one.
+    /// Parameter in words; empty for an event without one.
     pub fn said(&self) -> String {
         Event::from_code(self.code).map_or_else(
             || format!("parameter {}", self.parameter),

@@ -52,7 +52,7 @@ impl Origin {
         self.lacks = false;
     }
 
-    /// What a bench makes of the limit beside where it comes from.
+    /// Adds a source of the limit, such as a change by the bench.
     pub fn add(&mut self, source: String) {
         self.sources.insert(source);
     }
@@ -72,7 +72,7 @@ impl Origin {
 /// Between the sources of one limit, which have none of it.
 pub const SEPARATOR: &str = "; ";
 
-/// What a source is, by its first word.
+/// Kind of a source, by its first word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SourceKind {
     /// A paper, `S0` to `S4`, with its section, equation, table or figure.
@@ -93,7 +93,7 @@ pub enum SourceKind {
     Default,
 }
 
-/// What stands before the name of each kind; of a paper, its number does.
+/// Word before the name of each kind; a paper has its number there.
 const WORDS: [(&str, SourceKind); 7] = [
     ("configuration ", SourceKind::Configuration),
     ("track database ", SourceKind::Track),

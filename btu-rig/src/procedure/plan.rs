@@ -21,8 +21,8 @@ pub enum Connection {
 }
 
 impl Connection {
-    /// Why what needs this connection cannot be done on another, if so: the harness can do all that the
-    /// maintenance port can.
+    /// Reason for which a thing that needs this connection cannot be done on another; none if it can.
+    /// The harness can do all that the maintenance port can.
     pub fn lacks(self, on: Self) -> Option<Finding> {
         (self == Self::Btu && on == Self::Ptu).then_some(Finding::NeedsHarness)
     }
@@ -46,7 +46,7 @@ pub struct Procedure {
     pub needs: Connection,
     /// Run only when it is asked for by name: too long for a run of everything.
     pub on_request: bool,
-    /// What unit type, line or train lack for it: all its steps are skipped, and this is why.
+    /// Reason in unit type, line or train for which all steps of the procedure are skipped.
     pub lacks: Option<String>,
     /// Part to suspect when a step fails that names none itself.
     pub suspect: Option<LruId>,
@@ -59,7 +59,7 @@ pub struct Procedure {
     /// Done after the last step, whatever happened.
     pub cleanup: Vec<Action>,
     pub steps: Vec<Step>,
-    /// How many measurements its steps make: the number of slots to capture them.
+    /// Number of measurements in the steps: the number of slots to capture them.
     pub slots: usize,
 }
 
@@ -79,11 +79,11 @@ pub struct Step {
     pub provokes: Vec<Event>,
     /// Run only if this holds when the step's turn comes; else skipped.
     pub when: Option<Condition>,
-    /// What unit type, line or train lack for it: it is skipped, and this is why.
+    /// Reason in unit type, line or train for which the step is skipped.
     pub lacks: Option<String>,
     /// Number of repetitions, each of which must pass.
     pub repeat: u32,
-    /// What happens after it did not pass.
+    /// Course after a failure of the step.
     pub on_fail: OnFail,
     /// The step begins in the state that the step before left, and cannot be run without that step.
     pub continues: bool,
@@ -97,7 +97,7 @@ pub struct Step {
     pub note: Option<String>,
 }
 
-/// What happens after a step that did not pass.
+/// Course of a procedure after a step that did not pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OnFail {
     /// The next step is run.
@@ -137,7 +137,7 @@ pub enum Action {
     OnTrain(Box<Action>),
 }
 
-/// What must be seen for a step to pass.
+/// Observation that a step needs to pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Expectation {
     /// True at the end of the actions or at some time after.
@@ -210,7 +210,7 @@ pub enum What {
     Minimum(Signal),
     /// Value at the end of the step less value at its beginning.
     Change(Signal),
-    /// What the unit's self-test found of an item, with the unit's own limits.
+    /// Result of an item in the unit's self-test, with the unit's own limits.
     SelfTest {
         /// Number of the item's bit.
         bit: u8,

@@ -19,7 +19,8 @@ pub struct Measurement {
     pub low: Option<f64>,
     /// Greatest value allowed, in `unit`.
     pub high: Option<f64>,
-    /// How far the true value may be off, in `unit`; `None` = less than the steps in which it is given.
+    /// Uncertainty of the true value, in `unit`; `None` = less than the steps in which the value is
+    /// given.
     pub uncertainty: Option<f64>,
     /// Where its limits come from, [`Origin::text`](super::origin::Origin::text).
     pub limit_source: Option<String>,
@@ -54,13 +55,13 @@ pub struct StepResult {
     pub line: u32,
     /// Verdict over the step's expectations and measurements.
     pub verdict: Verdict,
-    /// Why, when it did not pass; may also be a note.
+    /// Findings for which the step did not pass, or notes.
     pub findings: Findings,
     /// Part to suspect if it failed: one that an event of the unit or of TCMS named, else the script's.
     pub suspect: Option<LruId>,
     /// Bench time at which it began.
     pub started: Instant,
-    /// How long it took on the bench.
+    /// Time that the step took on the bench.
     pub bench_time: Duration,
     /// Where the numbers of its expectations come from, as [`Measurement::limit_source`].
     pub limit_source: Option<String>,
@@ -133,7 +134,7 @@ impl Outside {
     }
 }
 
-/// What failed outside the steps of a procedure.
+/// Failure outside the steps of a procedure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutsideStep {
     pub place: Outside,

@@ -158,7 +158,7 @@ impl TrainSwitch {
     }
 }
 
-/// What equipment of a car does wrong when a bench makes it.
+/// Failure of a car's equipment that a bench makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CarFailure {

@@ -16,7 +16,7 @@ pub struct OrderData {
     pub length_dm: u32,
     /// Station at which the train's run ends; 0 = none.
     pub destination: u16,
-    /// What the train is to do beside running.
+    /// Order to the train beside running.
     #[serde(with = "train_order")]
     pub order: TrainOrder,
     /// Train number; 0 = that of the train.

@@ -31,7 +31,7 @@ pub struct StationData {
 }
 
 impl StationData {
-    /// What the loop of a section's departure station sends: no door side, departure held.
+    /// Station data of a section's departure loop: no door side, departure held.
     pub fn at_departure(section: &Section) -> Self {
         Self {
             route: section.route,
@@ -47,7 +47,7 @@ impl StationData {
         }
     }
 
-    /// What the loop of its arrival station sends; `next_station` is the one after it.
+    /// Station data of its arrival loop; `next_station` is the one after it.
     pub fn at_arrival(section: &Section, next_station: u16) -> Self {
         Self {
             station: section.to_station,

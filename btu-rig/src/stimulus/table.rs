@@ -162,7 +162,7 @@ stimuli! {
     MarkerMoved {
         /// 1 to 4 = PSM1 to PSM4.
         psm: u8,
-        /// How far beyond its place, m; `None` = it is missing.
+        /// Distance beyond the marker's place, m; `None` = the marker is missing.
         by_m: Option<f64>,
     } [Harness] => match by_m {
         None => format!("PSM{psm} is missing"),

@@ -5,7 +5,7 @@ use protocol::{Duration, Instant};
 
 use super::data::TcmsData;
 
-/// What TCMS does to a head control relay.
+/// Act of TCMS on a head control relay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CabOrder {
     /// The head control relay of the unit's cab drops.

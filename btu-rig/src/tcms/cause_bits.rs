@@ -35,8 +35,8 @@ macro_rules! causes {
 }
 
 causes! {
-    /// Why powering is cut (S3, S4). Scripts can make every one on the bench but two: `not_released` takes an
-    /// injected fault of a brake, `atc_silent` a unit that falls silent.
+    /// Reasons for cutting powering (S3, S4). Scripts can make every one on the bench but two: `not_released`
+    /// takes an injected fault of a brake, `atc_silent` a unit that falls silent.
     PowerCuts {
         /// Doors not proved closed.
         DOORS = 0 "doors",
@@ -70,7 +70,7 @@ causes! {
 }
 
 causes! {
-    /// What opens the emergency brake train line (S4).
+    /// Causes that open the emergency brake train line (S4).
     EbSources {
         /// Master controller of the active cab.
         CONTROLLER = 0 "controller",

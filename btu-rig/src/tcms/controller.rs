@@ -9,11 +9,11 @@ use super::data::TcmsData;
 pub const FULL_BRAKE: i16 = -1024;
 /// Full power as a value.
 pub const FULL_POWER: i16 = 1023;
-/// How far inside the break points the end positions lie, V: outside of them the controller counts
+/// Distance of the end positions inside the break points, V: outside of them the controller counts
 /// as failed.
 const INSIDE_V: f64 = 0.001;
 
-/// What a master controller gives TCMS.
+/// Inputs of TCMS from a master controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControllerInputs {
     /// P contact.
@@ -36,7 +36,7 @@ impl ControllerInputs {
 }
 
 impl TcmsData {
-    /// What the master controller gives at a position.
+    /// Inputs from the master controller at a position.
     pub fn at(&self, lever: Lever) -> ControllerInputs {
         let [a, b, c, d] = self.controller_v;
         let volts = match lever {

@@ -17,7 +17,7 @@ use super::timer::OnDelayCars;
 /// Less would hide cylinders that get only part of their pressure.
 const FULL_DEMAND: f64 = 0.9;
 
-/// What it looks at in one scan.
+/// Inputs of the monitor in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct MonitorInputs<'a> {
     pub equipment: &'a Equipment,

@@ -25,7 +25,7 @@ pub struct CabInputs {
     pub forced_release: bool,
 }
 
-/// What TCMS is given in one scan.
+/// Inputs of TCMS in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TcmsInputs<'a> {
     /// Both cabs; the unit is in the first.

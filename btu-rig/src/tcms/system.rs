@@ -124,7 +124,7 @@ impl Tcms {
         self.atc.receive(now, frame);
     }
 
-    /// What it did in the last scan.
+    /// Result of the last scan.
     pub fn view(&self) -> &TcmsView {
         &self.view
     }

@@ -9,7 +9,8 @@ use super::data::{CarData, CarsData, DoorData, IdealData, Role};
 /// Longest dead time or time constant, s.
 pub(super) const MAX_TIME_S: f64 = 5.0;
 
-/// What a unit is told of such a train has the ranges of `ato.train` in its configuration: the train's file is at fault.
+/// Checks the ranges of `ato.train` in the unit's configuration, which gets these values: otherwise the train's file
+/// would be at fault there.
 pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
     check_ranges! { data, "";
         mass_kg: 1e3, 1e7;
@@ -62,7 +63,7 @@ pub(super) fn cars(data: &CarsData) -> Result<(), ConfigError> {
     data.tcms.check()
 }
 
-/// What other programs say in place of constants.
+/// Checks the efforts that other programs give in place of constants.
 fn check_efforts(data: &CarsData) -> Result<(), ConfigError> {
     let count = data.traction.efforts.as_ref().map_or(1, Vec::len);
     within("traction.efforts", count as f64, 1.0, 1_000.0)?;

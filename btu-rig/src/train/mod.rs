@@ -86,12 +86,13 @@ impl TrainInputs {
     }
 }
 
-/// What the train did in one step.
+/// Motion of the train in one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrainState {
     /// Motion of the train: moving, then standing for the rest if it came to a stop.
     pub pieces: [Piece; 2],
-    /// What the rim of the axle with the tachometers did; the same unless it slips or slides.
+    /// Motion at the rim of the axle with the tachometers; equal to the train's unless the wheel
+    /// slips or slides.
     pub axle: [Piece; 2],
     /// Traction on the rails, N, a size.
     pub traction_n: f64,
@@ -101,7 +102,7 @@ pub struct TrainState {
     pub air_brake_n: f64,
     /// Running, starting and curve resistance and the disturbance, N, against the motion.
     pub resistance_n: f64,
-    /// What the gradient takes, N, uphill positive.
+    /// Force of the gradient, N, uphill positive.
     pub gradient_n: f64,
     /// Traction power at the wheels, W.
     pub tractive_power_w: f64,
@@ -172,7 +173,7 @@ impl Train {
         }
     }
 
-    /// What its equipment reports at the end of the last step. A point mass is one sound car.
+    /// Reports of the equipment at the end of the last step. A point mass is one sound car.
     pub fn equipment(&self) -> Equipment {
         match &self.model {
             Model::Ideal(train) => train.equipment(),

@@ -1,5 +1,5 @@
-//! What disturbs the signals on their way into a coil: gain, noise, hum of the supply, lines of an inverter that sweep with
-//! its frequency, dropouts and clipping.
+//! Disturbances of the signals on their way into a coil: gain, noise, hum of the supply, lines of an inverter that
+//! sweep with its frequency, dropouts and clipping.
 
 use protocol::Random;
 use protocol::config::{ConfigError, within};
@@ -113,7 +113,7 @@ impl Channel {
         }
     }
 
-    /// What arrives of these samples, mV.
+    /// Disturbs these samples, mV.
     pub fn disturb(&mut self, samples: &mut [f64]) {
         let clip = self.config.clip_mv;
         for sample in samples {

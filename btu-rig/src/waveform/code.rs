@@ -50,7 +50,7 @@ impl CodeWave {
         self.amplitude_mv = level_mv * std::f64::consts::SQRT_2;
     }
 
-    /// How much of the carrier is on: half of the time all, with edges of a raised cosine.
+    /// Share of the carrier that is on: half of the time all, with edges of a raised cosine.
     fn keyed(cycles: f64) -> f64 {
         let edge = |from: f64| 0.5 - 0.5 * cosine(0.5 * (from / EDGE).clamp(0.0, 1.0));
         match cycles {

@@ -1,4 +1,4 @@
-//! What is in the coils, as samples in mV: speed codes, TWC, markers, pulses of speed sensors, and what disturbs them.
+//! Waveforms in the coils, as samples in mV: speed codes, TWC, markers, pulses of speed sensors, and disturbances.
 //!
 //! Each source gives one sample after the other, without end or for its length, at a rate of its own. A phase is counted
 //! in cycles and kept below one, so that it stays exact over hours.

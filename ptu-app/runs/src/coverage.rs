@@ -1,4 +1,4 @@
-//! How much of what was due was run: what a verdict stands for where steps were not run.
+//! Coverage of a run: the due steps that were run. It qualifies a verdict where steps were not run.
 
 use std::collections::BTreeSet;
 

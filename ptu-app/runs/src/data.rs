@@ -35,7 +35,7 @@ pub const LONGEST_FILE: u64 = 4 << 20;
 const TEXT_HEAD: usize = 5;
 /// Longest all scripts together, bytes.
 const LONGEST_SCRIPTS: usize = 64 << 20;
-/// How good units, trains and benches differ, in the scripts directory.
+/// File of the scripts directory that says how good units, trains and benches differ.
 pub const BENCH_SCATTER: &str = "bench_scatter.toml";
 
 /// Where all data files are; those that are meant by their name, `units/sg100.toml`.
@@ -47,7 +47,7 @@ pub struct ScriptsDirectory(ScriptFiles);
 pub struct DataFile<T> {
     /// Name it was asked for by.
     pub name: String,
-    /// What was changed in it from outside, `KEY=VALUE`, in order.
+    /// Changes to the file from outside, `KEY=VALUE`, in order.
     pub settings: Vec<String>,
     /// The checked content.
     pub content: T,
@@ -76,7 +76,7 @@ impl ScriptsDirectory {
         self.0.file(name).is_some()
     }
 
-    /// How the file is shown to a person.
+    /// Name of the file, for people.
     pub fn shown(&self, name: &str) -> String {
         self.0.shown(name)
     }
@@ -92,10 +92,10 @@ impl ScriptsDirectory {
         }
     }
 
-    /// How the file is shown and its text in each place that has it, the one that counts first.
+    /// Name and text of the file in each place that has it, the one that counts first.
     ///
     /// # Errors
-    /// One of them cannot be read.
+    /// A file cannot be read.
     pub fn layers(&self, name: &str) -> Result<Vec<(String, String)>, Failure> {
         let files = self.0.files(name);
         files

@@ -41,7 +41,7 @@ impl Exit {
     }
 }
 
-/// What went wrong, as data, with its sentences in both languages. Its text is that of a command line.
+/// Trouble as data, with sentences in both languages. Its `Display` is the text of a command line.
 #[derive(Clone, Debug)]
 pub enum Trouble {
     Store(Arc<StoreError>),
@@ -63,7 +63,7 @@ pub enum Trouble {
     },
     /// The link to a unit that was there.
     Link(LinkTrouble),
-    /// What has its sentences in the tables of words.
+    /// Trouble with sentences in the tables of words.
     Refused(Box<Refusal>),
     /// The first one because of the second.
     Because(Box<[Self; 2]>),
@@ -148,7 +148,7 @@ fn joined(how: Manner, all: &[impl Say], by: &str) -> String {
     all.join(by)
 }
 
-/// What is on record of a run that could not begin or go on for this reason.
+/// Finding for a run that could not begin or go on for this reason.
 pub fn prevented_by(why: &impl Say) -> Finding {
     let said = |korean| {
         why.say(Manner {

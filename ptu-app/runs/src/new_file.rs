@@ -60,11 +60,11 @@ pub mod kind {
     pub const DICTIONARY: Kind<'_> = &["(\u{fffd}/\u{fffd}"];
     /// Runs that are kept.
     pub const RUNS: Kind<'_> = &["\u{fffd}PTURUN1"];
-    /// What the program keeps for itself, at a place of its own.
+    /// Files that the program keeps for itself, at a place of its own.
     pub const OWN: Kind<'_> = &[""];
 }
 
-/// What a text begins with, as far as it tells what it is: a mark of UTF-8 does not.
+/// Beginning of a text, as far as it tells the kind of file: a byte-order mark does not.
 pub fn head(text: &[u8]) -> String {
     let text = String::from_utf8_lossy(&text[..text.len().min(HEAD as usize)]);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);

@@ -29,7 +29,7 @@ pub fn folder_of(file: &Path) -> Result<(), Failure> {
     })
 }
 
-/// What to say of a file that others can read or write, if they can. Its rights stay as they are: somebody may
+/// Warning of a file that others can read or write, if they can. Its rights stay as they are: somebody may
 /// have given them on purpose.
 pub fn told_if_shared(file: &Path) -> Option<FileTrouble> {
     let (rights, command) = platform::readable_by_others(file)?;

@@ -39,7 +39,7 @@ impl Stop {
         }
     }
 
-    /// Why the tester itself ended the run; `None` if the operator did.
+    /// Reason for which the tester itself ended the run; `None` if the operator did.
     pub fn reason(&self) -> Option<&Finding> {
         self.0.because.get()
     }

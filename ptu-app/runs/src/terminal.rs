@@ -1,4 +1,4 @@
-//! How answers and notes are shown on a terminal: within its width, and in colour.
+//! Display of answers and notes on a terminal: within its width, and in colour.
 
 use std::borrow::Cow;
 use std::sync::OnceLock;

@@ -1,4 +1,4 @@
-//! What was found in one place: each finding once, in the order in which it came first.
+//! Findings in one place: each finding once, in the order in which it came first.
 
 use serde::{Deserialize, Serialize};
 

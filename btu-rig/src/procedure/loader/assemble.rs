@@ -23,7 +23,7 @@ struct NamedMeasurement {
     unit: &'static str,
 }
 
-/// What a script declared, each step complete but for the part to suspect.
+/// Declarations of a script, each step complete but for the part to suspect.
 #[derive(Default)]
 struct Declared {
     head: Option<ProcedureDraft>,

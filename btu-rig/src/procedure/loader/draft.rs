@@ -1,4 +1,4 @@
-//! What `procedure()` and `step()` declare, before names are resolved and times computed.
+//! Declarations of `procedure()` and `step()`, before names are resolved and times computed.
 
 use protocol::{Duration, LruId};
 

@@ -27,7 +27,7 @@ use super::item::Item;
 /// Lists nested deeper than this are refused; a list may contain itself.
 const DEEPEST_LIST: usize = 16;
 
-/// What a script's verbs need and what its declarations leave behind; reached through the
+/// Data that a script's verbs need, and declarations that they leave; reached through the
 /// evaluator.
 #[derive(Debug, ProvidesStaticType)]
 pub(super) struct Session<'a> {

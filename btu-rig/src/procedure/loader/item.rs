@@ -54,7 +54,7 @@ impl Record {
 }
 
 impl Item {
-    /// What it is, with article, for messages.
+    /// Name of the item's type, with article, for messages.
     pub(super) fn found(&self) -> String {
         match self {
             Self::None => "None".into(),

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::procedure::origin::Origin;
 
-/// What a quantity is an amount of, with the unit it is kept in.
+/// Dimension of a quantity, with the unit in which it is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Dimension {
     /// km/h.

@@ -21,7 +21,7 @@ pub struct FakeUnit {
     pub oldest: u32,
     /// Identity that the unit tells, its uptime aside.
     pub identity: Identity,
-    /// What its status says of its self-test.
+    /// Self-test bits of its status.
     pub self_test: SelfTest,
     /// Whether it answers when its log is asked for.
     pub answers_log: bool,
@@ -33,7 +33,7 @@ pub struct FakeUnit {
     pub answer: Answer,
     /// Channels on which nothing is sent or heard.
     pub dead: Vec<Channel>,
-    /// How much faster its clock goes than the bench's, as a share.
+    /// Share by which its clock is faster than the bench's.
     pub clock_gains: f64,
     /// Bytes it sends in each scan beside its frames.
     pub noise: &'static [u8],

@@ -1,4 +1,5 @@
-//! What the rig must not believe: a log that is not answered or does not end, another unit, a bad line.
+//! Data that the rig must not believe: a log that is not answered or does not end, another unit, a bad
+//! line.
 
 use protocol::Instant;
 use protocol::Random;

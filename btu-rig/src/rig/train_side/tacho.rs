@@ -29,7 +29,7 @@ pub struct Tacho {
     base_distance_m: f64,
     base_phase: f64,
     phase: f64,
-    /// How far each tooth of a turn lies from its place, pitches; none = all lie right.
+    /// Distance of each tooth of a turn from its place, pitches; none = all are in place.
     teeth: Vec<f64>,
     /// The last tooth that passed.
     passed: f64,
@@ -102,7 +102,7 @@ impl Tacho {
         }
     }
 
-    /// How far a tooth lies from its place, pitches.
+    /// Distance of a tooth from its place, pitches.
     fn displaced(&self, tooth: f64) -> f64 {
         let place = tooth.rem_euclid(self.teeth.len().max(1) as f64);
         self.teeth.get(place as usize).copied().unwrap_or_default()

@@ -11,7 +11,7 @@ use super::motion::Motion;
 /// Slowing down when a step or a run ends: brisk, yet believable for a wheel [default].
 const SAFE_DECEL_MPS2: f64 = 3.0;
 
-/// What rounding may leave of a segment, s: its end belongs to the scan that reached it.
+/// Rest of a segment by rounding, s: its end belongs to the scan that reached it.
 const RESIDUE_S: f64 = 1e-9;
 
 /// A part of a plan at constant acceleration.
@@ -22,7 +22,7 @@ struct Segment {
     end_speed_mps: f64,
 }
 
-/// What the wheel is about to do; when no segment is left it keeps its speed.
+/// Segments that the wheel still has to do; without one the wheel keeps its speed.
 #[derive(Clone, Copy, Debug)]
 struct Plan {
     segments: [Segment; 3],

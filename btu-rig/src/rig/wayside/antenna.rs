@@ -15,7 +15,7 @@ pub const MAX_RATE_HZ: f64 = 655.0;
 /// Time from one frame that tells of a second code to the next.
 const CROSSTALK_PERIOD: Duration = Duration::from_ms(50);
 
-/// What is put into the antenna, and what arrives there.
+/// Signals put into the antenna, and signals that arrive there.
 #[derive(Debug)]
 pub struct Antenna {
     wanted: AntennaCommand,

@@ -22,7 +22,7 @@ pub struct Track {
     open_air: StepProfile,
 }
 
-/// What lies under the train, mean over its weight.
+/// Track under the train, mean over its weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct UnderTrain {
     /// Gradient, ‰, uphill positive.

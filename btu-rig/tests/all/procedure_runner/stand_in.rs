@@ -88,7 +88,7 @@ impl Driver for Fake {
     }
 }
 
-/// What a test may change before each scan.
+/// State that a test may change before each scan.
 pub struct World<'a> {
     pub scan: u32,
     pub sample: Sample,

@@ -147,7 +147,7 @@ impl UnitAboard {
         self.train.link().powered()
     }
 
-    /// What is around the unit, to be looked at: true motion, contacts, mode.
+    /// The rig around the unit, for looking at true motion, contacts and mode.
     pub fn rig(&self) -> &Rig {
         self.train.rig()
     }
@@ -193,7 +193,7 @@ impl UnitLink for UnitAboard {
     }
 }
 
-/// What a standing train can always do.
+/// Applies a stimulus that is always possible on a standing train.
 fn must(done: Result<(), Refusal>) {
     debug_assert!(done.is_ok(), "{done:?}");
 }

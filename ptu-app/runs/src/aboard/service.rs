@@ -17,7 +17,7 @@ const STANDS_WITHIN: Duration = Duration::from_ms(30_000);
 /// A button is pressed and what follows it has come.
 const SETTLES: Duration = Duration::from_ms(1_500);
 
-/// What the doors did at a station.
+/// Doors at a station.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doors {
     /// The doors were opened and closed.
@@ -26,7 +26,7 @@ pub enum Doors {
     NotEnabled,
 }
 
-/// How a section of a service ended.
+/// End of a section of a service.
 #[derive(Clone, Debug)]
 pub struct Arrival {
     /// Number of the section.

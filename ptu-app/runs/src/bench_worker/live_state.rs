@@ -49,7 +49,7 @@ pub struct LiveData {
     pub connection: Option<Connection>,
     /// Share of frames received over the last seconds.
     pub link: LinkQuality,
-    /// What the last self-test asked for found, as far as it came.
+    /// Results of the last requested self-test, as far as they came.
     pub self_test: Vec<SelfTestItem>,
     /// Restarts of the unit since it was connected.
     pub restarts: u32,

@@ -1,4 +1,4 @@
-//! How far a run has come, computed from its events.
+//! Progress of a run, computed from its events.
 
 use std::sync::Arc;
 use std::time;
@@ -76,9 +76,9 @@ pub struct RunPosition {
     pub name: String,
     /// Number of the repetition of the step, from 1, and number of repetitions.
     pub turn: [u32; 2],
-    /// What is waited for, and until when.
+    /// Condition that is waited for, and until when.
     pub waiting: Option<Waiting<Action>>,
-    /// What the operator is asked, and until when.
+    /// Question to the operator, and until when.
     pub prompt: Option<Waiting<String>>,
     /// Paused, before this step.
     pub paused: Option<String>,
@@ -117,7 +117,7 @@ impl Progress {
         self.counter.counts(self.planned)
     }
 
-    /// How much of what was due was run.
+    /// Coverage: the share of due steps that were run.
     pub fn coverage(&self) -> Coverage {
         let on_bench = self.procedures.iter().flat_map(|progress| {
             let results = progress.results.iter();

@@ -25,7 +25,7 @@ const COUNTS: [Signal; 5] = [
 /// What the connection bar shows, whatever page is in front.
 const ALWAYS_SHOWN: [Signal; 2] = [Signal::Armed, Signal::MaintenanceKey];
 
-/// What the window shows of the signals.
+/// Signals that the window shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Watched {
     /// Work of the connection bar.

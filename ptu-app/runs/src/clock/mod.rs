@@ -43,7 +43,7 @@ impl ClockState {
         }
     }
 
-    /// How far a time of this clock may be wrong, ms.
+    /// Greatest error of a time of this clock, ms.
     pub fn uncertainty_ms(self) -> u16 {
         match self {
             Self::Synchronised => UNCERTAINTY_MS,

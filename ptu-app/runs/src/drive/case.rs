@@ -53,7 +53,7 @@ pub struct Case {
     /// Unit configuration and line.
     pub bench: Arc<DriveBench>,
     pub plan: DrivePlan,
-    /// What is held fixed where the rest is drawn.
+    /// Values that are held where the rest is drawn.
     pub fixed: Fixed,
     pub seed: u64,
 }

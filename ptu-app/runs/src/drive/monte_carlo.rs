@@ -125,7 +125,7 @@ pub fn run(
     Ok(Ran::All(cases.into_iter().map(of_case).collect()))
 }
 
-/// What decides these runs, and their names.
+/// Head of these runs: all that decides them, and their names.
 fn head(cases: &[Case], count: usize, scatter: &Scatter) -> Head {
     let mut made_by = format!("{scatter:?}\n");
     for case in cases {

@@ -23,7 +23,7 @@ pub struct ClockPair {
 /// Drift between two oscillators: 100 ppm.
 const DRIFT: i64 = 10_000;
 
-/// What a store of the unit says of the times it was sent.
+/// Times that a store of the unit was sent.
 #[derive(Clone, Debug, Default)]
 pub struct StoredClocks {
     /// Times that nothing disproves.
@@ -125,8 +125,8 @@ fn uncertainty_us(clock: &StoredClock) -> Option<i64> {
     known.map(|ms| i64::from(ms) * 1000)
 }
 
-/// How far two clocks, of which the second was sent later, are apart, if that is more than they may be; negative of a
-/// time that fell.
+/// Difference of two clocks, of which the second was sent later, µs, if it is more than permitted; negative if the
+/// time fell.
 fn apart_us(before: &StoredClock, clock: &StoredClock) -> Option<i64> {
     let told_later_us = utc_us(clock) - utc_us(before);
     let allowed_us = (i64::from(clock.uncertainty_ms) + i64::from(before.uncertainty_ms)) * 1000;

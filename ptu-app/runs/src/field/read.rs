@@ -41,7 +41,7 @@ pub struct StoredPlace {
     pub uncertainty_us: Option<i64>,
 }
 
-/// What was read of the unit's stored memory.
+/// Result of reading the unit's stored memory.
 #[derive(Clone, Debug, Default)]
 pub struct StoredRead {
     /// Present power-up.

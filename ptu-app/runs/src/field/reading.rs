@@ -177,7 +177,7 @@ impl UnitReading {
     }
 }
 
-/// What a unit says is no name of a configuration until one of that name is known here.
+/// Name of the unit's configuration if it is known here; else a word for an unknown one.
 fn known_config(directory: &ScriptsDirectory, told: String) -> String {
     match directory.unit_config_names().contains(&told) {
         true => told,
@@ -185,7 +185,7 @@ fn known_config(directory: &ScriptsDirectory, told: String) -> String {
     }
 }
 
-/// What a reader of the log should know of it.
+/// Warnings about a read log.
 fn of_reading(read: &LogRead) -> Vec<String> {
     let mut warnings = Vec::new();
     if read.overwritten > 0 {

@@ -84,7 +84,7 @@ pub(super) struct Found<R> {
     pub runs: BTreeMap<String, (R, Range<usize>)>,
     /// Where the last whole record ends.
     pub end: usize,
-    /// What is to be said of damage.
+    /// Sentences on damage.
     pub told: Vec<String>,
 }
 

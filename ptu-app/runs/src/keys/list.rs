@@ -44,7 +44,7 @@ pub struct KeyList {
     pub keys: Vec<KeyEntry>,
 }
 
-/// How a key stood at a time.
+/// Standing of a key at a time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Standing {
     /// The list has the key under this name, and the key was valid then.
@@ -207,7 +207,7 @@ impl KeyList {
         (self.keys.iter()).filter(move |entry| entry.who == asked || by_key(entry))
     }
 
-    /// How a key stood at a time under a name, as that of a technician or a bench.
+    /// Standing of a key at a time under a name, as the key of a technician or a bench.
     pub fn standing(&self, key: &str, who: &str, kind: &str, at_us: i64) -> Standing {
         match self.find(key) {
             None => Standing::Unknown,

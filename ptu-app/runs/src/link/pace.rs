@@ -43,7 +43,7 @@ impl Pace {
         }
     }
 
-    /// How far the last scan, or what came after it, is behind its time, in the time of the bench.
+    /// Lag of the last scan, or of what came after it, in the time of the bench.
     pub fn behind(&self) -> Duration {
         match self {
             Self::Virtual => Duration::ZERO,

@@ -40,7 +40,8 @@ pub enum Endpoint {
 }
 
 impl Endpoint {
-    /// How a bench with this unit keeps its time, so many times slower than the clock where it goes by it.
+    /// Pace of a bench with this unit, `slower` times slower than the clock where the bench follows the
+    /// clock.
     pub fn pace(&self, slower: u32) -> Pace {
         match self {
             Self::LockStep(_) => Pace::Virtual,
@@ -115,7 +116,7 @@ pub struct WireLink {
     /// Time for which both ends stood still.
     pause: BenchDuration,
     placed: Option<Placed>,
-    /// What leaves and what came, before instruments took and gave their part.
+    /// Bytes sent and received, before instruments took and gave their part.
     to_wire: Vec<u8>,
     from_wire: Vec<u8>,
 }
@@ -166,7 +167,7 @@ impl WireLink {
         self
     }
 
-    /// How far the bench is behind the clock; in lock step there is none.
+    /// Lag of the bench behind the clock; in lock step there is none.
     fn behind(&mut self, now: Instant) -> BenchDuration {
         if matches!(self.port, Port::LockStep(_)) {
             return BenchDuration::ZERO;

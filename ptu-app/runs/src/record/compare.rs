@@ -169,7 +169,7 @@ pub fn compare(
 }
 
 impl RecordComparison {
-    /// How much later the brake began than the sound unit's, m, if that is late.
+    /// Distance by which the brake began later than the sound unit's, m, if it is late.
     pub fn late_m(&self) -> Option<f64> {
         let later_m = self.brake_m? - self.twin_brake_m?;
         (later_m > LATE_M).then_some(later_m)

@@ -42,7 +42,7 @@ pub struct RecordedRun {
     pub is_cut: bool,
 }
 
-/// What may still come of the last run of a record.
+/// Rest of the last run of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rest {
     /// The rest is complete: the record was read to its end, and the run is over.

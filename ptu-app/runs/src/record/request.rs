@@ -1,4 +1,4 @@
-//! What a recorded run is compared with, as commands name it.
+//! Reference of a comparison of a recorded run, as commands name it.
 
 use btu_rig::drive::Load;
 use fault_db::{Id, Store};

@@ -8,7 +8,7 @@ use super::{RecordedRun, Rest, recorded_runs};
 use crate::failure::{Failure, FieldTrouble};
 use crate::field::{Source, UnitReading, run_record};
 
-/// What became of the runs of a record.
+/// Result of storing the runs of a record.
 #[derive(Clone, Debug, Default)]
 pub struct Pulled {
     /// The run they are stored as; none when nothing is new.
@@ -92,7 +92,7 @@ impl RecordedRun {
         format!("power-up {}, run {}", self.power_up, self.run)
     }
 
-    /// How long and how far it went, and what limits it.
+    /// Time, distance and limits of the run, in one line.
     pub fn summary(&self) -> String {
         let trace = &self.trace;
         let known = |signal: Signal| {

@@ -1,5 +1,5 @@
-//! What a bench was made of, kept with what was done to it: enough to make the same bench again,
-//! without the faults that were injected.
+//! Content of a bench, kept with its stimuli: enough to make the same bench again, without injected
+//! faults.
 
 use std::sync::Arc;
 
@@ -27,14 +27,14 @@ use crate::link::Endpoint;
 pub struct BenchFile {
     /// Its name.
     pub name: String,
-    /// What was changed in it by `--set`.
+    /// Changes to the file by `--set`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub settings: Vec<String>,
     /// SHA-256 of it with its changes, in hex; of a train, of its content.
     pub sha256: String,
 }
 
-/// What the benches of a run are made of.
+/// Content of the benches of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BenchContents {
     /// Where the unit was: `sim`, `serial:…`, `tcp:…`.
@@ -49,9 +49,9 @@ pub struct BenchContents {
     pub train: BenchFile,
     /// Seed of the run; that of a procedure follows from its name.
     pub seed: u64,
-    /// How units, trains and benches were let differ.
+    /// Scatter of units, trains and benches.
     pub scatter: Option<BenchScatter>,
-    /// What disturbed the waveforms that were used in place of numbers.
+    /// Disturbances of the waveforms that were used in place of numbers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub waveforms: Option<ChannelConfig>,
     /// The bench file that said where stimuli go and readings come from.
@@ -64,7 +64,7 @@ pub struct BenchContents {
     pub on_train: bool,
 }
 
-/// What was done to a bench, as it is kept.
+/// Stimuli of a bench, as they are kept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stimuli {
     /// When the procedure began, µs on the bench's clock: 0 where the unit was powered up for it.
@@ -75,7 +75,7 @@ pub struct Stimuli {
 }
 
 impl BenchContents {
-    /// What `setup` makes benches of, for a unit of this serial number, reached so.
+    /// Content of the benches that `setup` makes for a unit of this serial number and connection.
     pub fn of(setup: &BenchSetup, serial: String, connection: Connection) -> Self {
         let (config, line) = (&setup.config, &setup.line);
         Self {
@@ -109,7 +109,7 @@ impl BenchContents {
         }
     }
 
-    /// What was done in a procedure on such a bench, to be kept; its place in the run is left open.
+    /// Recording of a procedure's stimuli on such a bench; its place in the run is left open.
     pub fn recording(&self, procedure: &str, recorded: &RecordedStimuli) -> RecordingRecord {
         let stimuli = Stimuli {
             began_us: recorded.began.since(Instant::ZERO).as_us(),

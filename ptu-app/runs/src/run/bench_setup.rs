@@ -54,13 +54,13 @@ pub struct BenchSetup {
     pub faults: Vec<FaultMode>,
     /// Seed of everything random.
     pub seed: u64,
-    /// How good units, trains and benches differ: drawn by the seed; none = all are nominal.
+    /// Scatter of good units, trains and benches, drawn by the seed; none = all are nominal.
     pub scatter: Option<Arc<BenchScatter>>,
     /// Codes, TWC, markers and pulses are waveforms that are disturbed so; none = numbers.
     pub waveforms: Option<ChannelConfig>,
     /// Serial number asked for.
     pub serial: Option<String>,
-    /// What the unit's identity is compared with.
+    /// Identity that the unit should have.
     pub expected: ExpectedIdentity,
     /// Wall-clock pace also for the embedded unit.
     pub realtime: bool,

@@ -73,8 +73,8 @@ pub struct Collector<'a> {
     dates: Vec<(i64, i64)>,
     faults_before: usize,
     verdict: Verdict,
-    /// What failed outside the steps of the present procedure: stored after its last step, so that places of steps
-    /// do not depend on it.
+    /// Failures outside the steps of the present procedure, stored after its last step, so that the places of
+    /// steps stay.
     outside: Vec<OutsideStep>,
     /// The present procedure has something recorded that did not pass.
     says_why: bool,
@@ -167,7 +167,7 @@ impl<'a> Collector<'a> {
         self.say_of_whole(Verdict::Error, why);
     }
 
-    /// What the run as a whole came to, told to whoever listens as it is stored.
+    /// Records a finding on the run as a whole, and tells it to the listener.
     fn say_of_whole(&mut self, verdict: Verdict, finding: Finding) {
         let entry = OutsideStep {
             place: Outside::Whole,

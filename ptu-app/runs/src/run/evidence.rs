@@ -1,4 +1,5 @@
-//! What a run's results rest on besides its scripts: kept with the run, sealed and signed with it.
+//! Evidence behind a run's results besides its scripts: kept with the run, sealed and signed with
+//! it.
 
 use fault_db::Instrument;
 use serde::{Deserialize, Serialize};
@@ -8,7 +9,7 @@ use super::bench_contents::BenchContents;
 use super::plan::MeasuringRules;
 use crate::clock::{ClockState, NOT_KNOWN_MS, local_day, now_us};
 
-/// What the bench was made of, and how right its clock was.
+/// Content of the bench, and accuracy of its clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
     /// Unit configuration, line, train and settings, by their content.
@@ -60,7 +61,7 @@ impl TryFrom<Value> for InstrumentEvidence {
 pub struct ClockEvidence {
     /// The network has set it since the computer was started; none: the system does not say.
     pub synchronised: Option<bool>,
-    /// How far its times may be wrong; none: not known.
+    /// Greatest error of the clock's times, ms; none = unknown.
     pub uncertainty_ms: Option<u16>,
 }
 

@@ -14,7 +14,7 @@ use crate::run::{BenchChoice, BenchSetup};
 
 /// Passengers of a full train, kg.
 const FULL_KG: f64 = 160_000.0;
-/// What the unit's position may be off, m: a few pulses.
+/// Tolerance of the unit's position, m: a few pulses.
 const POSITION_M: f64 = 0.06;
 /// From the section's start to its stop point, m: more than the train is long.
 const WAY_M: f64 = 200.0;

@@ -43,10 +43,10 @@ const LONGEST_LINE: u64 = 8 << 20;
 const MOST_LOADED: u64 = 256 << 20;
 /// Lines under way.
 const QUEUE: usize = 16;
-/// What is kept of the last words of a process that broke off, bytes.
+/// Part of the last words of a broken-off process that is kept, bytes.
 const LAST_WORDS: u64 = 64 << 10;
 
-/// What is to be loaded, for what.
+/// Scripts to load, and the configuration, line and train to load them for.
 #[derive(Serialize, Deserialize)]
 struct Order<'a> {
     scripts: Cow<'a, Scripts>,
@@ -55,7 +55,7 @@ struct Order<'a> {
     train: Cow<'a, TrainData>,
 }
 
-/// What the process says, a line each.
+/// Lines that the process prints.
 #[derive(Serialize, Deserialize)]
 enum LoaderLine<'a> {
     /// The process evaluates the script of this path from now on.

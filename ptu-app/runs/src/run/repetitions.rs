@@ -6,7 +6,7 @@ use protocol::Instant;
 /// Different results of repetitions that are kept; what went wrong in thousands is clear from the first few.
 const KEPT: usize = 8;
 
-/// How many repetitions of a procedure have ended, and their common verdict.
+/// Count of ended repetitions of a procedure, and their common verdict.
 pub(super) struct RepetitionTally {
     of: u32,
     begun: bool,

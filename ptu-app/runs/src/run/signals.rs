@@ -1,4 +1,5 @@
-//! How codes, TWC, markers and pulses reach the unit: as numbers, or as sampled waveforms.
+//! Form in which codes, TWC, markers and pulses reach the unit: as numbers, or as sampled
+//! waveforms.
 
 use std::fmt;
 use std::path::PathBuf;

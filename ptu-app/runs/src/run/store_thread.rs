@@ -50,7 +50,7 @@ enum Entry {
     Fault(FaultRecord),
     /// A trace and the numbers of the faults it shows.
     Trace(Vec<usize>, TraceData),
-    /// What the traces since the last recording came from.
+    /// Recording behind the traces since the last one.
     Recording(RecordingRecord),
     /// Something to say once all before it is in the file.
     Say(String),
@@ -217,7 +217,7 @@ struct RecordedIds {
     /// Number of ids recorded in another file.
     before: usize,
     traces: Vec<Id>,
-    /// What is to be said of it.
+    /// Lines to print on the run.
     lines: Lines,
     /// All that was recorded, in order.
     records: Vec<Entry>,

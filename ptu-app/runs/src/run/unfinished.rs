@@ -1,4 +1,4 @@
-//! What an earlier run left open, to be run as a new one.
+//! Procedures that an earlier run left open, to be run as a new one.
 
 use std::collections::BTreeMap;
 

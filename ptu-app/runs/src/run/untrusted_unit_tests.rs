@@ -18,7 +18,7 @@ use crate::test_support::{procedures, setup};
 /// When what is wrong begins: the first procedure is under way.
 const FROM: Duration = Duration::from_ms(SWITCHED_OFF.as_ms() + 3_500);
 
-/// What is wrong between bench and unit.
+/// Fault between bench and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum LinkFault {
     Nothing,

@@ -131,7 +131,7 @@ fn reach(
 }
 
 impl RunPlan {
-    /// What its results rest on, on a bench that is made so and measures with these.
+    /// Evidence of the plan's results on a bench of this content, with these instruments.
     fn evidence(&self, made: BenchContents, used: Vec<Instrument>) -> Evidence {
         Evidence {
             is_part: self.tasks.iter().any(|task| task.options.chosen.is_some()),

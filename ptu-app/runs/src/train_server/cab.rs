@@ -1,4 +1,4 @@
-//! What a person in the cab says: one order a line, or a key of the desk with its value behind it.
+//! Orders of a person in the cab: one order a line, or a key of the desk with its value behind it.
 
 use std::fmt;
 

@@ -251,7 +251,7 @@ fn parts(args: &Args<'_>) -> Result<Vec<Condition>, String> {
     Ok(parts)
 }
 
-/// What `signal` is compared with, or limited by, checked against its kind and unit.
+/// Value that `signal` is compared with or limited by, checked against its kind and unit.
 pub(super) fn operand(signal: Signal, item: &Item) -> Result<Operand, String> {
     let definition = signal.definition();
     let wrong = |end: String| {

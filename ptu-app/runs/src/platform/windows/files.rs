@@ -29,7 +29,7 @@ pub fn identity(file: &Metadata) -> u64 {
     since.map_or(0, |since| since.as_micros() as u64)
 }
 
-/// What a stream of the process reads or writes, as a file.
+/// The file that a stream of the process reads or writes.
 pub fn same_file(stream: &impl AsHandle) -> Result<File> {
     stream.as_handle().try_clone_to_owned().map(File::from)
 }

@@ -20,7 +20,7 @@ pub struct Find {
     pub hidden_kmh: f64,
     /// Faults that were injected, and those of tachometers that the bench made.
     pub faults: Vec<String>,
-    /// What was done until then, in order.
+    /// Acts until then, in order.
     pub acts: Vec<(Instant, Act)>,
 }
 

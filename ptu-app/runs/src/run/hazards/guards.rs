@@ -27,7 +27,7 @@ fn places() -> Vec<&'static str> {
         .collect()
 }
 
-/// What such a guard has to do with.
+/// Kind of input that such a guard watches.
 fn kind(place: &str) -> Option<Kind> {
     Some(match place {
         "StopGuard" => Kind::Code,

@@ -1,5 +1,5 @@
-//! What the monitor remembers of a scene: values that were there lately, codes that were there for long enough, a train
-//! that is put away, tachometers that are dead.
+//! Memory of the monitor: recent values, codes that were there for long enough, a train that is put away,
+//! tachometers that are dead.
 
 use protocol::signal::Signal;
 use protocol::{Duration, Instant, SCAN};

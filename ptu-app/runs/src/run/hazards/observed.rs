@@ -1,4 +1,4 @@
-//! What the monitor of hazards sees in a scan: the rig's truth, and the unit's contacts.
+//! State that the monitor of hazards sees in a scan: the rig's truth, and the unit's contacts.
 
 use protocol::Instant;
 use protocol::signal::{Sample, Signal};
@@ -45,7 +45,7 @@ pub struct Observed<'a> {
     pub wheel_mm: Option<f64>,
     /// Pulses of markers that lie nowhere, so far.
     pub pulsed: usize,
-    /// How far beyond their places the markers lie, m.
+    /// Distance of the markers beyond their places, m.
     pub displaced: [f64; 4],
 }
 

@@ -225,7 +225,7 @@ mod tests {
     use super::*;
     use crate::test_support::setup;
 
-    /// What is permitted after two seconds of this antenna, desk and motion, each with the change that `see` makes.
+    /// Permitted speeds after two seconds of this antenna, desk and motion, each with the change that `see` makes.
     fn permitted(see: impl Fn(&mut Observed<'_>), antenna: [f64; 3], second_mv: f64) -> Permitted {
         let setup = setup(&[]);
         let mut limits = Limits::new(&setup.config.content);

@@ -77,13 +77,13 @@ pub struct Plan {
     /// Place in the line of the section that the train is on.
     pub section: usize,
     pub faults: Vec<FaultMode>,
-    /// How far beyond their places the markers of each section lie, m.
+    /// Distance of each section's markers beyond their places, m.
     pub displaced_m: [f64; 4],
     /// Place in the line of the section whose data the wayside gives after the first arrival, instead of the next.
     pub data_of: Option<usize>,
     pub adhesion: Option<f64>,
     pub length_ms: u32,
-    /// What is done, ms after the begin.
+    /// Acts, with their times in ms after the begin.
     pub acts: Vec<(u32, Act)>,
 }
 

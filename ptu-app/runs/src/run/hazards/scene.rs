@@ -88,7 +88,7 @@ fn lines(find: &Find) -> (Vec<String>, Vec<String>) {
     (repeated(lines), lacks)
 }
 
-/// What was done, with each turn of what alternated, up to the breach.
+/// Acts up to the breach, with each turn of those that alternated.
 fn timeline(find: &Find) -> Vec<(Instant, Option<Act>)> {
     let mut timeline = Vec::new();
     let untils = find.acts.iter().skip(1).map(|(at, _)| *at).chain([find.at]);

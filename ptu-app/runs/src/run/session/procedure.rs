@@ -260,7 +260,7 @@ impl<L: UnitLink> Session<L> {
         }
     }
 
-    /// What a step did that passed is to be seen beside what it did when it failed.
+    /// Keeps a trace of a step that passed, to be seen beside the trace of its failure.
     fn keep_trace(
         &mut self,
         now: Instant,
