@@ -1,4 +1,4 @@
-//! What the care of the history came to, in words: an exchange with a server, an import, a check.
+//! Results of maintaining the history, in words: an exchange with a server, an import, a check.
 
 use fault_db::{
     CheckReport, Difference, MergeCounts, Problem, PruneCounts, Refusals, SealHead, StateConflict,
@@ -9,7 +9,7 @@ use crate::naming::event;
 use crate::words::{Words, fill};
 use ptu_runs::words::noun;
 
-/// What was done, and what a person should know besides.
+/// Result in words, and notes for the person.
 pub struct Said {
     pub text: String,
     /// Notes on what should be looked at.

@@ -1,4 +1,4 @@
-//! How much of what was due was run, in words: every surface that tells a count of a run tells this one.
+//! Coverage of a run in words: every surface that tells a count of a run tells this one.
 
 use fault_db::StepCounts;
 use ptu_runs::coverage::Coverage;
@@ -46,7 +46,7 @@ pub fn count_short(counts: &StepCounts, words: &Words) -> String {
     }
 }
 
-/// What was run, if that is not all that was due, and what the rest needs.
+/// Sentence on the coverage, if not all due steps were run, with the needs of the rest.
 pub fn coverage_text(coverage: &Coverage, words: &Words) -> Option<String> {
     if coverage.steps.not_run() == 0 {
         return None;

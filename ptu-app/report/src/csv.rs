@@ -36,7 +36,8 @@ const COLUMNS: [&str; 21] = [
     "departure_not_valid",
 ];
 
-/// What a file of a table begins with: without it, spreadsheets read its UTF-8 in the code page of the system.
+/// Byte-order mark at the beginning of a table's file: without it, spreadsheets read its UTF-8 in the code
+/// page of the system.
 pub const MARK: &str = "\u{feff}";
 
 /// A cell of a table: text must not act, a number must stay one.

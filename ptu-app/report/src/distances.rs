@@ -1,4 +1,4 @@
-//! How far trains have run, by readings of their odometers that a depot keeps as `train,date,km`.
+//! Distances of trains, by readings of their odometers that a depot keeps as `train,date,km`.
 //!
 //! Between two readings of a train its distance grows evenly; before the first and after the last nothing is known.
 
@@ -20,7 +20,7 @@ const FARTHEST_KM: f64 = 1e8;
 #[derive(Debug, Default, PartialEq)]
 pub struct Distances(BTreeMap<String, Vec<Reading>>);
 
-/// What an odometer stood at when a local day began.
+/// Reading of an odometer at the beginning of a local day.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Reading {
     at_us: i64,
@@ -85,7 +85,7 @@ impl Distances {
         Some(readings.first()?.at_us..readings.last()?.at_us)
     }
 
-    /// How far a train ran in a span, as far as its readings reach, km.
+    /// Distance of a train in a span, as far as its readings reach, km.
     pub fn km(&self, train: &str, span_us: &Range<i64>) -> f64 {
         let readings = self.0.get(train).map_or(&[][..], Vec::as_slice);
         let of_two = |two: &[Reading]| {

@@ -56,7 +56,7 @@ pub fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<Month>, Failure>
     Ok(counted.collect())
 }
 
-/// What trains whose distances are known ran in a month, and the faults that were first seen on them meanwhile.
+/// Distance that trains with known readings ran in a month, and the faults first seen on them meanwhile.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OnTheWay {
     /// Distance of all of them, km.

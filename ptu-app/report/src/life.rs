@@ -1,4 +1,4 @@
-//! What the life of a unit, a train or a part says, on the command line and in the window.
+//! Texts of the life of a unit, a train or a part, on the command line and in the window.
 
 use fault_db::{LOG_SOURCE, Life, LifeEvent, LifeFault, LifeOf, LifeRun, LifeWhat, Stay};
 use ptu_runs::clock::{local, rfc3339};
@@ -8,7 +8,7 @@ use crate::event_text::{cause_text, repair_text};
 use crate::naming::{DOT, PartNames, event};
 use crate::words::{Words, fill};
 
-/// What it is, and the time it tells about.
+/// Name of the thing, and the time that its life covers.
 pub fn title(life: &Life, words: &Words) -> String {
     let name = fill(words.life.of(life.of), &[("serial", &life.serial)]);
     let (Some(first), Some(last)) = (life.events.first(), life.events.last()) else {

@@ -25,7 +25,7 @@ impl PartNames {
         Self(scripts.faults().map(|all| all.lrus).unwrap_or_default())
     }
 
-    /// What a part is called in this language, or that it is not known which one it is.
+    /// Name of a part in this language, or words for an unknown part.
     pub fn name<'a>(&'a self, id: &'a str, language: Language) -> &'a str {
         if !id.is_empty() && from_stored(id).is_none() {
             return language.words().common.no_part;
@@ -48,7 +48,7 @@ impl PartNames {
     }
 }
 
-/// What was seen of a fault, in few words.
+/// Finding of a fault in few words.
 pub fn seen_in_short((data, message): (&Option<String>, &str), words: &Words) -> String {
     let seen = findings(data);
     match seen.is_empty() {
@@ -137,7 +137,7 @@ pub fn event(code: i64, name: &str, words: &Words) -> String {
     text.map_or_else(by_name, str::to_owned)
 }
 
-/// What a fault means, by its stored name.
+/// Meaning of a fault, by its stored name.
 pub fn event_named(name: &str, words: &Words) -> String {
     let code = Event::from_name(name).map(|event| event.definition().code);
     event(code.unwrap_or_default().into(), name, words)

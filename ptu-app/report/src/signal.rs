@@ -1,4 +1,5 @@
-//! What was heard in a recording of waveforms: as text, and as a page with spectrum, envelope and eye beside it.
+//! Detected signals of a recording of waveforms: as text, and as a page with spectrum, envelope and eye beside
+//! it.
 
 use ptu_runs::signal::{
     Level, NotUnderstood, Picture, Reading, Receivers, Source, Span, Tacho, Why,
@@ -13,7 +14,8 @@ use crate::words::{Words, fill};
 /// Level below the strongest that is shown at most and at least, dB.
 const MOST_DB: f32 = 70.0;
 const LEAST_DB: f32 = 20.0;
-/// What stands less above the middle of all levels is noise, dB: it has the darkest shades.
+/// Level above the middle of all levels up to which a signal is noise, dB: noise has the darkest
+/// shades.
 const NOISE_DB: f32 = 6.0;
 /// Most signals that are named above the spectrum over time.
 const MOST_NAMED: usize = 200;
@@ -92,7 +94,7 @@ pub fn row(source: &Source, words: &Words) -> [String; 9] {
     ]
 }
 
-/// What the lines of a speed sensor tell, as a sentence.
+/// Sentence on the lines of a speed sensor.
 fn of_tacho(of: &Tacho, words: &Words) -> String {
     let number = |value: f64| format!("{value:.1}");
     let [low, high] = of.kmh.map(number);
@@ -112,7 +114,7 @@ fn of_tacho(of: &Tacho, words: &Words) -> String {
     fill(words.signals.of_tacho, &values)
 }
 
-/// What was not understood, as a sentence.
+/// Sentence on a signal that was not understood.
 pub fn not_understood(of: &NotUnderstood, words: &Words) -> String {
     let said = &words.signals;
     let why = match &of.why {
@@ -139,7 +141,7 @@ pub fn not_understood(of: &NotUnderstood, words: &Words) -> String {
     fill(said.at, &[("from", &from), ("to", &to), ("why", &why)])
 }
 
-/// How loud a channel is, as a sentence.
+/// Sentence on the level of a channel.
 pub fn level(of: &Level, words: &Words) -> String {
     let said = &words.signals;
     let strongest = of.strongest_hz.zip(of.strongest_mv);
@@ -242,7 +244,7 @@ fn table(sources: &[Source], words: &Words) -> block::Table {
     }
 }
 
-/// How a channel looks, and where what was heard on it begins.
+/// Plots of a channel, with the beginnings of its detected signals.
 pub fn plots(picture: &Picture, of: (&Reading, usize), words: &Words) -> Vec<Plot> {
     let said = &words.signals;
     let over_time = |title, unit, (columns, each_s): (&[Span], f64)| {

@@ -50,7 +50,7 @@ fn time(time_us: i64) -> String {
     format!("{:.2} s", time_us as f64 / 1e6).replace('-', "−")
 }
 
-/// What a note on a run says, with the place in a trace that it is about.
+/// Text of a note on a run, with its place in a trace.
 pub fn note_text(note: &RunNote, words: &Words) -> String {
     let Some(place) = note.place else {
         return note.text.clone();

@@ -7,7 +7,7 @@ use fault_db::{
 
 use ptu_runs::clock::{local_day, utc_day};
 
-/// What is known of a measurement over time.
+/// Values of a measurement over time.
 pub struct Trend {
     pub query: TrendQuery,
     /// Limits and their unit, as they were last.

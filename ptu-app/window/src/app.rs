@@ -24,14 +24,14 @@ use ptu_runs::clock;
 use ptu_runs::failure::Failure;
 use ptu_runs::stop::Stop;
 
-/// How often a window that is being closed looks whether all units are let go.
+/// Interval at which a closing window looks whether all units are let go.
 const CLOSING: Duration = Duration::from_millis(50);
 
 /// Options with which a window is opened.
 pub struct Options {
     /// Where database and scripts are.
     pub paths: DataPaths,
-    /// What was kept from the last time.
+    /// Settings of the last time.
     pub settings: Settings,
     /// Where it is kept; none = nowhere.
     pub settings_file: Option<PathBuf>,

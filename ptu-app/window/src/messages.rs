@@ -24,7 +24,7 @@ pub struct Written {
     pub at_us: i64,
 }
 
-/// What a message is about while it is shown: it goes when that is over.
+/// Subject of a message while it is shown: the message goes when the matter is over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum About {
     /// The connection to the unit of this number.
@@ -60,7 +60,7 @@ impl Message {
     }
 }
 
-/// What was written can be undone so long, s.
+/// Time for which a written record can be undone, s.
 pub const UNDO_S: f64 = 10.0;
 /// Any other message is shown so long, s.
 const SHOWN_S: f64 = 10.0;
@@ -146,7 +146,7 @@ impl Messages {
         self.taken_back == Some(written)
     }
 
-    /// What was said about this no longer holds.
+    /// Ends the messages about this matter.
     pub fn over(&mut self, about: About) {
         for message in &mut self.all {
             message.over |= message.about == Some(about);

@@ -1,4 +1,4 @@
-//! What reports say of a run in words: how it ended, on which train and bench, under which conditions.
+//! Sentences of reports on a run: its end, on which train and bench, under which conditions.
 
 use btu_rig::conditions::{Conditions, Disturbance};
 use btu_rig::drive::Outcome;

@@ -20,7 +20,7 @@ use ptu_runs::drive::Driven;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 use ptu_runs::failure::{Asked, Failure};
 
-/// What was driven, and how JSON tells it.
+/// Drives, and their form in JSON.
 pub struct Results {
     pub outcomes: Outcomes,
     /// Several were asked for, so that there is a list even of one.

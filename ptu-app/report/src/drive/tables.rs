@@ -13,7 +13,7 @@ use ptu_runs::table;
 const PERCENTILES: [f64; 5] = [0.1, 2.5, 50.0, 97.5, 99.9];
 /// Letters for which a printed column has room at least.
 const SHORTEST: usize = 8;
-/// What stands for a value that is not known.
+/// Sign in place of an unknown value.
 const UNKNOWN: &str = "–";
 
 pub struct Table {

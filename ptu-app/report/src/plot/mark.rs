@@ -12,7 +12,7 @@ pub enum Role {
     /// Name of a curve.
     Legend,
     Place,
-    /// What a curve says at a point.
+    /// Note on a curve at a point.
     Note,
     /// Line of the grid.
     Grid,

@@ -62,7 +62,7 @@ pub struct Place {
     pub name: String,
 }
 
-/// What a curve says at a point.
+/// Note on a curve at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
     pub at: (f64, f64),

@@ -10,7 +10,7 @@ const QUIET: usize = 4;
 /// A QR code.
 #[derive(Clone, Debug)]
 pub struct Code {
-    /// What a scanner reads, as `ptu verify` takes it.
+    /// Text for a scanner, as `ptu verify` takes it.
     pub text: String,
     /// Dots of an edge, with what is free around it.
     pub width: usize,

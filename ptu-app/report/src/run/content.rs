@@ -1,5 +1,5 @@
-//! What a test sheet says, block after block: verdict, notes and failures first, then all that was run,
-//! with what and by whom.
+//! Content of a test sheet, block after block: verdict, notes and failures first, then all that was
+//! run, with what and by whom.
 
 use fault_db::{FaultState, RunState, RunSummary, StepCounts, StepRecord, Verdict};
 
@@ -352,7 +352,7 @@ fn clock(sheet: &Sheet, words: &Words) -> String {
     }
 }
 
-/// How a value is held against its limits.
+/// Rule by which a value is held against its limits.
 fn decision_rule(sheet: &Sheet, words: &Words) -> &'static str {
     let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);
     match evidence.is_some_and(|evidence| evidence.guard_banded) {

@@ -120,7 +120,7 @@ fn measured(
     }
 }
 
-/// What is stored beside a measurement as its uncertainty.
+/// Uncertainty stored beside a measurement.
 fn uncertainty(measurement: &MeasurementRecord, all: &[MeasurementRecord]) -> Option<f64> {
     let name = uncertainty_of(&measurement.name);
     all.iter().find(|other| other.name == name)?.value

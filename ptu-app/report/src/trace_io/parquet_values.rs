@@ -1,4 +1,4 @@
-//! What the values of a Parquet column mean: its logical type, or the older converted one.
+//! Meaning of the values in a Parquet column: its logical type, or the older converted one.
 
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit as Parquet, Type as Physical};
 use parquet::schema::types::ColumnDescriptor;
@@ -34,10 +34,10 @@ pub(super) enum Numbers {
 impl Values {
     pub const PLAIN: Self = Self::Numbers(Numbers::Plain);
 
-    /// What a column says of its values.
+    /// Conversion of the values of a column.
     ///
     /// # Errors
-    /// Why they are no samples.
+    /// The reason for which they are no samples.
     pub fn of(column: &ColumnDescriptor) -> Result<Self, String> {
         if column.max_rep_level() > 0 || column.max_def_level() > 1 {
             return Err("it has lists or parts, not one value a row".to_owned());

@@ -29,7 +29,7 @@ pub struct Import {
     pub tables: Vec<Table>,
     /// Times are since 1970, UTC; otherwise from the trigger.
     pub is_utc: bool,
-    /// What it is, if one of our own exports.
+    /// Description of the trace, in a file exported by this program.
     pub about: Option<TraceInfo>,
 }
 

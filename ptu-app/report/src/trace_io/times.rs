@@ -5,7 +5,7 @@ use std::str::FromStr;
 use chrono::{DateTime, NaiveDateTime};
 use ptu_runs::failure::did_you_mean;
 
-/// What a person says of a table's columns.
+/// Columns of a table, as a person describes them.
 #[derive(Clone, Debug, Default)]
 pub struct Columns {
     /// Headings, and the signals that they stand for.
@@ -36,7 +36,7 @@ pub(super) struct Time {
     pub is_utc: bool,
 }
 
-/// What begins the heading of a column of times.
+/// Beginnings of the heading of a column of times.
 const HEADINGS: [&str; 9] = [
     "time",
     "t",

@@ -35,7 +35,7 @@ pub enum Axis {
         at_m: Vec<f64>,
         /// Rows at which the train was behind the farthest point: they lie at that point.
         rows_back: usize,
-        /// How far it was behind at most, m.
+        /// Greatest distance by which the train was behind, m.
         back_m: f64,
     },
 }
@@ -152,7 +152,7 @@ impl Axis {
         }
     }
 
-    /// What is less than that is no distance between two places.
+    /// Smallest distance between two places; less is none.
     fn crumb(&self) -> f64 {
         match self {
             Self::Time { period_us, .. } => *period_us as f64 * 1e-9,

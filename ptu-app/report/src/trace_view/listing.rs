@@ -37,7 +37,7 @@ pub struct ListedTrace {
     pub length_s: f64,
     /// Faults it shows, each once.
     pub faults: Vec<ListedFault>,
-    /// What a filter looks in, in small letters.
+    /// Text in which a filter looks, in small letters.
     text: String,
 }
 
@@ -46,7 +46,7 @@ pub struct ListedTrace {
 pub struct ListedFault {
     /// Code, name and part, as `9000 check_failed eb_relay`.
     pub code: String,
-    /// What people call it, in each language.
+    /// Name of the fault for people, in each language.
     said: [String; 2],
 }
 

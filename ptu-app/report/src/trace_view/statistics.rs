@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::view::{Summary, TraceView};
 
-/// What a signal did over a stretch of rows.
+/// Statistics of a signal over a stretch of rows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Statistics {
     Quantity {

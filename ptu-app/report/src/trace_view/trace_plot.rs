@@ -64,9 +64,9 @@ pub struct TracePlot {
     cursors: [Option<usize>; 2],
     close: bool,
     behind: Option<OverlayTrace>,
-    /// What was in view before each zoom, the latest last.
+    /// Views before each zoom, the latest last.
     before: Vec<Window>,
-    /// What is said of these rows, by lane; empty until asked for.
+    /// Statistics of these rows, by lane; empty until asked for.
     said: (Range<usize>, Vec<Option<Statistics>>),
 }
 
@@ -299,7 +299,7 @@ impl TracePlot {
         self.view().samples(place).get(row).copied()
     }
 
-    /// How much a quantity is greater under B than under A.
+    /// Increase of a quantity from A to B.
     pub fn difference(&self, place: usize) -> Option<f64> {
         let Summary::Quantity(_) = self.view().summary(place) else {
             return None;

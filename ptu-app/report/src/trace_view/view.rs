@@ -16,7 +16,7 @@ pub struct TraceView {
     summaries: Vec<Summary>,
 }
 
-/// What a signal is, and its samples in short.
+/// Kind of a signal, and its samples in short.
 #[derive(Debug)]
 pub enum Summary {
     /// A number that is measured or counted.

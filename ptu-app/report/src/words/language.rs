@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ENGLISH, KOREAN, Words};
 
-/// What the user of this process prefers, if that is known.
+/// Language that the user of this process prefers, if it is known.
 static PREFERRED: OnceLock<Language> = OnceLock::new();
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

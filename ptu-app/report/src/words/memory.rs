@@ -1,4 +1,4 @@
-//! What a unit has stored, read by a button.
+//! Stored memory of a unit, read by a button.
 
 use super::wordings;
 

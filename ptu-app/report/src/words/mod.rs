@@ -116,7 +116,7 @@ pub struct Words {
     pub terminal: Terminal,
     /// Counts, trends and records in them.
     pub counts: Counts,
-    /// What this computer lacks for testing units.
+    /// Needs of this computer for testing units.
     pub doctor: Doctor,
     /// Signatures and changes that a verification found.
     pub verify: Verify,
@@ -137,7 +137,7 @@ impl Words {
         }
     }
 
-    /// What a procedure checks, in this language if the script says it.
+    /// Title of a procedure, in this language if the script has it.
     pub fn title<'a>(&self, procedure: &'a Procedure) -> &'a str {
         match (self.language, &procedure.title_ko) {
             (Language::Korean, Some(korean)) => korean,
@@ -145,7 +145,7 @@ impl Words {
         }
     }
 
-    /// What a recorded signal is called in few words; in English by its name, as scripts and tables have it.
+    /// Name of a recorded signal in few words; in English its name in scripts and tables.
     pub fn signal<'a>(&self, name: &'a str) -> Cow<'a, str> {
         let said = match self.language {
             Language::English => None,
@@ -154,7 +154,7 @@ impl Words {
         said.map_or(Cow::Borrowed(name), Cow::Owned)
     }
 
-    /// What a part of the catalogue is called.
+    /// Name of a part of the catalogue.
     pub fn part<'a>(&self, id: &'a str) -> &'a str {
         match self.language {
             Language::English => names::english_part(id),

@@ -14,12 +14,12 @@ fn part(id: &str) -> Option<&'static Lru> {
     PARTS.iter().find(|part| part.id == id)
 }
 
-/// What a part is called in English.
+/// English name of a part.
 pub(super) fn english_part(id: &str) -> &str {
     part(id).map_or(id, |part| &part.name)
 }
 
-/// What a part is called in Korean.
+/// Korean name of a part.
 pub(super) fn korean_part(id: &str) -> &str {
     part(id).map_or(id, |part| &part.name_ko)
 }

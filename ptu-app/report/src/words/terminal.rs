@@ -193,7 +193,7 @@ impl Words {
         }
     }
 
-    /// What was found in a step, in tables of a terminal: in English by the names that scripts give.
+    /// Findings of a step, in tables of a terminal: in English by the names in scripts.
     pub fn found_in<'a>(&self, step: &'a StepRecord) -> Cow<'a, str> {
         match self.language {
             Language::English => Cow::Borrowed(&step.message),
@@ -209,7 +209,7 @@ impl Words {
         }
     }
 
-    /// What an action waits for, in the same words.
+    /// Condition that an action waits for, in the same words.
     pub fn awaited_briefly(&self, action: &Action) -> String {
         match self.language {
             Language::English => action.to_string(),

@@ -219,7 +219,7 @@ fn page(bencher: Bencher<'_, '_>, page: Page) {
     bencher.bench_local(|| window.frame(&[]));
 }
 
-/// What is done once when the trace is opened, on the library's thread.
+/// Work done once when the trace is opened, on the library's thread.
 #[divan::bench(sample_count = 20)]
 fn summaries(bencher: Bencher<'_, '_>) {
     bencher

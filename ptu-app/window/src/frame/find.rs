@@ -30,7 +30,7 @@ const MOST: usize = 6;
 /// Number of faults that are looked through, the latest.
 const FAULTS: u32 = 500;
 
-/// What is typed, and what it is looked for in.
+/// Typed text, and the lists in which it is looked for.
 #[derive(Default)]
 pub struct Find {
     open: bool,

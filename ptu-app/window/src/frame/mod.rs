@@ -34,7 +34,7 @@ use setup::Setup;
 /// Between what was told and the edges of the page, points.
 const AROUND: f32 = 12.0;
 
-/// What the frame keeps while the window is open.
+/// State of the frame while the window is open.
 #[derive(Default)]
 pub struct Frame {
     setup: Setup,
@@ -90,7 +90,7 @@ impl Frame {
         self.setup.open();
     }
 
-    /// What a locked window says, and the name that opens it.
+    /// Bar of a locked window, with the name that opens it.
     pub fn locked(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
         lock::bar(ui, context);
     }

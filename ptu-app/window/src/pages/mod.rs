@@ -21,7 +21,7 @@ use super::Page;
 use super::page_context::Destination;
 use super::page_context::PageContext;
 
-/// What the pages keep while the window is open.
+/// State of the pages while the window is open.
 #[derive(Default)]
 pub struct Pages {
     case: case::CasePage,

@@ -53,7 +53,8 @@ pub fn ground(palette: &Palette) -> Frame {
     frame.corner_radius(8).inner_margin(Margin::same(INNER))
 }
 
-/// What is missing, and a button that leads to it if there is one; true when it was clicked.
+/// Message that something is missing, with a button that leads to it if there is one; true when it
+/// was clicked.
 pub fn empty(
     ui: &mut Ui,
     icon: MaterialIcon,

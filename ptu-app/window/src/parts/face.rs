@@ -57,7 +57,7 @@ pub struct Face<'a> {
     ink: Option<Color32>,
 }
 
-/// What is written in a face, laid out.
+/// Laid-out content of a face.
 struct Laid {
     parts: Vec<std::sync::Arc<Galley>>,
     size: Vec2,
@@ -95,7 +95,7 @@ impl<'a> Face<'a> {
         self
     }
 
-    /// What it is called where that is not what is written in it.
+    /// Sets the name for screen readers, where it differs from the text.
     pub fn named(mut self, name: impl Into<Cow<'a, str>>) -> Self {
         self.name = Some(name.into());
         self

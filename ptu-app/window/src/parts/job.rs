@@ -29,7 +29,7 @@ pub struct Job {
     done: Option<Done>,
 }
 
-/// What the work hears, and how far it says it is.
+/// Handle of the work: stop, and text of its progress.
 #[derive(Clone, Default)]
 pub struct Told {
     pub stop: Stop,
@@ -99,7 +99,7 @@ impl Job {
         }
     }
 
-    /// How far it is, with the button that stops it, if it can be.
+    /// Progress of the work, with a button that stops it, if it can be stopped.
     pub fn progress(&self, ui: &mut Ui, words: &Words, stops: bool) {
         ui.horizontal_wrapped(|ui| {
             ui.spinner();

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use ptu_runs::failure::{Asked, Failure, RunTrouble};
 
-/// What opens files here, and what stands before the file's name.
+/// Command that opens files here, and its arguments before the file's name.
 const OPENER: (&str, &[&str]) = if cfg!(windows) {
     // A command line would take apart a name with its signs in it.
     ("explorer", &[])

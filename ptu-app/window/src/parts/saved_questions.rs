@@ -17,7 +17,7 @@ pub struct SavedQuestion<T> {
     asked: T,
 }
 
-/// What the list, its entries and its buttons are called.
+/// Names of the list, its entries and its buttons.
 pub struct SavedSaid {
     pub list: &'static str,
     pub none: &'static str,

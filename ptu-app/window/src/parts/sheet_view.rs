@@ -29,7 +29,7 @@ const UNIT: f32 = 1.13;
 const LOWEST: f32 = 150.0;
 /// Share of what is in view that a key scrolls by.
 const PAGE: f32 = 0.9;
-/// How far words reach above and below their base line, in sizes of the letters.
+/// Reach of words above and below their base line, in sizes of the letters.
 const ABOVE: f32 = 1.0;
 const BELOW: f32 = 0.4;
 

@@ -28,7 +28,7 @@ pub struct Column<'a> {
     pub from: f32,
 }
 
-/// What stands in a row below a column.
+/// Content of a row below a column.
 pub enum Cell<'a> {
     Text(Cow<'a, str>, Color32),
     /// Coloured text over all columns that follow.

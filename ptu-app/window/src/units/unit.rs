@@ -26,9 +26,9 @@ pub struct Unit {
     pub id: u64,
     pub choice: BenchChoice,
     pub bench: BenchWorker,
-    /// What its bench is made of, once it was asked to connect.
+    /// Content of the unit's bench, once it was asked to connect.
     pub setup: Request<BenchSetup>,
-    /// What it and TCMS logged outside runs, oldest first.
+    /// Events that the unit and TCMS logged outside runs, oldest first.
     pub log: VecDeque<UnitEvent>,
     /// Present or last run of the unit.
     pub run: Option<Progress>,

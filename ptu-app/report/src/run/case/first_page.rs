@@ -158,7 +158,7 @@ impl CaseSheet {
             .collect()
     }
 
-    /// What was wrong with the unit, as who brought it said.
+    /// Symptom as reported with the unit.
     fn symptom_said(&self, words: &Words) -> String {
         let said = self.symptom.as_ref();
         said.map_or_else(
@@ -188,7 +188,7 @@ impl CaseSheet {
         }
     }
 
-    /// What of it was no unit in service: which run was on a simulated unit, or had injected faults.
+    /// Which run was on a simulated unit or had injected faults: practice, no unit in service.
     fn practice(&self, words: &Words) -> String {
         let report = &words.report;
         let told = |sheet: &Sheet, when: &str| {

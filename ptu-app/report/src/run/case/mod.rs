@@ -34,7 +34,7 @@ pub struct CaseSheet {
     pub before: Sheet,
     /// Steps of that run that saw a fault of the case, by their place.
     pub steps: Vec<u32>,
-    /// What was wrong with the unit, as who brought it said; the run before says it, or an earlier one of the case.
+    /// Symptom reported with the unit; the run before has it, or an earlier one of the case.
     pub symptom: Option<Symptom>,
     pub repair: Option<Repair>,
     /// Runs that passed since the repair, oldest first.

@@ -92,7 +92,8 @@ pub struct Tally {
     pub only_b: usize,
 }
 
-/// Why two runs say less about each other than two of one unit with the same scripts.
+/// Differences by which two runs say less about each other than two of one unit with the same
+/// scripts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Differs {
     /// Serial numbers.
@@ -112,7 +113,7 @@ pub enum Differs {
 pub struct RunComparison {
     pub a: RunDetail,
     pub b: RunDetail,
-    /// What is shown has the steps that passed in both, too.
+    /// Steps that passed in both runs are shown, too.
     pub all: bool,
 }
 

@@ -10,7 +10,7 @@ use crate::words::{Words, fill};
 use ptu_runs::clock::local;
 
 impl RunComparison {
-    /// How many steps changed and how, as a sentence.
+    /// Sentence with the numbers of changed steps.
     pub fn headline(&self, words: &Words) -> String {
         let report = &words.report;
         let tally = self.tally();
@@ -34,7 +34,7 @@ impl RunComparison {
         said
     }
 
-    /// What makes the two hard to compare, a sentence each.
+    /// Warnings of differences that make the two hard to compare, a sentence each.
     pub fn warnings(&self, words: &Words) -> Vec<String> {
         let report = &words.report;
         let two = |wording, a: &String, b: &String| fill(wording, &[("a", a), ("b", b)]);

@@ -1,4 +1,4 @@
-//! What was tested twice as a table: before and after with limits, and of two runs the change.
+//! Table of steps that were tested twice: before and after with limits, and of two runs the change.
 
 use fault_db::{MeasurementRecord, StepRecord, Verdict};
 use ptu_runs::stored::outside_of;

@@ -117,7 +117,7 @@ impl FontMetrics {
     }
 }
 
-/// What is written for a letter that the font lacks: Chinese, Japanese, pictures.
+/// Text in place of a letter that the font lacks: Chinese, Japanese, pictures.
 fn code(letter: char) -> String {
     format!("[U+{:04x}]", u32::from(letter))
 }

@@ -26,7 +26,7 @@ const FOOTER: f32 = HEIGHT - 26.0;
 const BELOW_FOOTER: f32 = FOOTER + 9.0;
 const SIZE: f32 = 7.4;
 
-/// What is on a page, in the order in which it is drawn.
+/// Items of a page, in the order in which they are drawn.
 pub type Page = Vec<Item>;
 
 /// Largest letters of what stands across a page, and the share of its width that they take.

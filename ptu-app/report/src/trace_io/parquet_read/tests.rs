@@ -14,7 +14,8 @@ use protocol::Random;
 use super::super::series::plain;
 use super::*;
 
-/// How a table stores the whole number `n`, what stands before and behind the column's name, and by what the number is divided.
+/// Stored form of the whole number `n` in a table: text before and behind the column's name, and the divisor of the
+/// number.
 type Layout = (&'static str, &'static str, f64);
 const NUMBERS: [Layout; 14] = [
     ("int32", "", 1.0),

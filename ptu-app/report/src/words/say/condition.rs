@@ -96,7 +96,7 @@ pub fn parameter(event: Event, number: i32) -> String {
     content::korean(&name).into_owned()
 }
 
-/// What a signal is called in few words.
+/// Name of a signal in few words.
 pub fn signal(name_of: &str) -> Option<String> {
     Signal::from_name(name_of).map(name)
 }

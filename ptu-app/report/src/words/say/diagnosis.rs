@@ -1,4 +1,4 @@
-//! What a diagnosis comes to, why, and what to bear in mind: a sentence in both languages for each kind.
+//! Conclusions of a diagnosis, their reasons and warnings: a sentence in both languages for each kind.
 
 use diagnosis::{CheckName, FaultText, NextCheck, Reason};
 use fault_db::RunDetail;
@@ -16,7 +16,7 @@ use super::reasons::{
 pub(super) type Both = [String; 2];
 
 impl Words {
-    /// What a diagnosis comes to, and what to run next.
+    /// Conclusion of a diagnosis, and the next check.
     pub fn concluded(&self, answer: &Answer) -> String {
         let diagnosis = &answer.diagnosis;
         let next = diagnosis.next_check.as_ref();

@@ -1,4 +1,4 @@
-//! How automatic runs end, and what happens on the way.
+//! Ends of automatic runs, and events on the way.
 
 use btu_rig::drive::{Ending, Mark};
 use btu_rig::procedure::describe::meanings;

@@ -326,7 +326,7 @@ fn logged(entry: &LoggedEvent) -> String {
     )
 }
 
-/// What an event is, with what its parameter says.
+/// Event, with its parameter, as text.
 fn happened(entry: &LoggedEvent) -> String {
     let Some(event) = entry.event() else {
         return format!("알 수 없는 이벤트 {} (값 {})", entry.code, entry.parameter);

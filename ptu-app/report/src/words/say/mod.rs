@@ -24,7 +24,7 @@ use ptu_runs::stored;
 use super::{Language, Words};
 
 impl Words {
-    /// What was found in one place, as a sentence.
+    /// Findings in one place, as a sentence.
     pub fn findings(&self, all: &Findings) -> String {
         match self.language {
             Language::English => format!("{all:#}"),
@@ -88,7 +88,7 @@ impl Words {
         }
     }
 
-    /// What was found, as it is stored: `message` where its data are none, or of another version.
+    /// Finding as stored: `message` where it has no data, or data of another version.
     pub fn found<'a>(&self, data: &Option<String>, message: &'a str) -> Cow<'a, str> {
         let all = stored::findings(data);
         match all.is_empty() {

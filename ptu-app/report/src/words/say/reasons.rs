@@ -1,4 +1,4 @@
-//! Why a diagnosis comes to what it does, and what to bear in mind, in both languages.
+//! Reasons and warnings of a diagnosis, in both languages.
 
 use btu_rig::procedure::{Finding, spoken};
 use diagnosis::{FaultText, Known, Repaired, Sign, StepReason};

@@ -1,4 +1,4 @@
-//! What the dialog has done on a thread of its own.
+//! Work of the dialog, on a thread of its own.
 
 use std::path::{Path, PathBuf};
 

@@ -12,7 +12,7 @@ pub struct BenchSnapshot {
     /// Counts up when a bench is made again or made safe.
     pub bench_epoch: u64,
     pub sample: Sample,
-    /// What the last self-test asked for found.
+    /// Results of the last requested self-test.
     pub self_test: Vec<SelfTestItem>,
 }
 

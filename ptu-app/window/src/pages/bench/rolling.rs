@@ -10,7 +10,7 @@ pub const SPANS_S: [u32; 4] = [10, 30, 60, 120];
 /// Number of signals that can be told apart.
 pub const MOST: usize = 12;
 
-/// What a lane shows, as places among the chosen signals.
+/// Signals of a lane, as places among the chosen ones.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Lane {
     /// Quantities of one unit of measure, on one scale.

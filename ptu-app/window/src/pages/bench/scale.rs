@@ -39,7 +39,7 @@ impl Dial {
     }
 }
 
-/// How far a bar goes from its middle, −1 to 1.
+/// Length of a bar from its middle, −1 to 1.
 pub fn from_middle(value: f64, full: f64) -> f32 {
     (value / full).clamp(-1.0, 1.0) as f32
 }

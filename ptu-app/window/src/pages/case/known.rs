@@ -1,4 +1,4 @@
-//! What the history knows of a unit: open faults and earlier repairs.
+//! History of a unit: open faults and earlier repairs.
 
 use eframe::egui::{RichText, Ui};
 use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord, StoreError};
@@ -61,7 +61,7 @@ impl KnownUnit {
         history.map_or(id, |known| known.parts.name(id, words.language))
     }
 
-    /// How many faults are open, and how often it was repaired.
+    /// Numbers of open faults and of repairs.
     pub fn facts(&self, ui: &mut Ui, words: &Words) {
         if let Some(history) = self.history.get().value() {
             let number = |n: usize| match n {

@@ -30,7 +30,7 @@ pub struct Proof {
     /// The part was fitted; the unit is connected again as soon as it is disconnected.
     reconnects: bool,
     fitted: bool,
-    /// What the last run says of the repair, or what it came to itself.
+    /// Statement of the last run on the repair, or its own outcome.
     said: Option<String>,
     verdict: Option<Verdict>,
     /// The verdict in a word or two.
@@ -94,7 +94,7 @@ impl Proof {
         self.verdict.is_some()
     }
 
-    /// What the runs say of the repair.
+    /// Shows the runs' statement on the repair.
     pub fn told(&self, ui: &mut Ui) {
         if let Some(said) = &self.said {
             ui.label(RichText::new(said).size(Sizes::of(ui).lead).strong());
@@ -174,7 +174,7 @@ impl Proof {
     }
 }
 
-/// What is chosen before a sheet is signed.
+/// Choices before a sheet is signed.
 #[derive(Default)]
 struct Sign {
     /// Key files of this computer, once they were looked for.

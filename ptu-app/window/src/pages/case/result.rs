@@ -42,7 +42,7 @@ pub struct Found {
     answer: Option<Arc<Answer>>,
     /// The first measured values that were out of their limits, with their step.
     shown_by: Option<(String, Vec<Measurement>)>,
-    /// How many of its steps came to what.
+    /// Counts of the steps by outcome.
     pub counts: StepCounts,
     evidence: Option<Evidence>,
     shown: Part,

@@ -91,7 +91,7 @@ impl CasePage {
         }
     }
 
-    /// Why this step cannot be gone to.
+    /// Reason for which this stage cannot be gone to.
     fn blocked(&self, stage: Stage, context: &PageContext<'_>) -> Option<&'static str> {
         let words = &context.words.case;
         let unit = context.units.chosen();
@@ -120,7 +120,7 @@ impl CasePage {
         (!can && stage != self.stage).then_some(why)
     }
 
-    /// What a step came to, in few words.
+    /// Outcome of a stage, in few words.
     fn came_to(&self, stage: Stage, context: &PageContext<'_>) -> String {
         let words = context.words;
         let run = context.units.chosen().run_of_case();

@@ -13,7 +13,7 @@ use protocol::LruId;
 use crate::Palette;
 use ptu_report::words::Case;
 
-/// What a case is told at its result.
+/// Result of a case, as the page tells it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Told {
     /// A check failed, and these parts have.
@@ -22,14 +22,14 @@ pub enum Told {
     Unsure,
     /// A check failed, and no part explains it.
     NoPart,
-    /// What was run passed, and is not all.
+    /// All steps that were run passed, and some were not run.
     NotAll,
     NotTested,
     Stopped,
     NoFault,
 }
 
-/// What the accent button of a result does.
+/// Act of the accent button of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next {
     Repair,

@@ -10,7 +10,7 @@ use ptu_report::words::Words;
 use ptu_runs::drive::{Fixed, Request, S1, SectionChoice};
 use ptu_runs::failure::Failure;
 
-/// What the command line begins with, too.
+/// Line with which the command line begins, too.
 const LINE: &str = "line8";
 const SECTION: u16 = 61;
 const TRAIN: &str = "line6";

@@ -10,7 +10,7 @@ use ptu_report::words::{Faults, Words, fill};
 /// Width of a field, points.
 const FIELD: f32 = 260.0;
 
-/// What is written before a fault is brought to a state.
+/// Entries that are made before a fault is brought to a state.
 pub struct Asked {
     pub to: FaultState,
     reason: Option<usize>,

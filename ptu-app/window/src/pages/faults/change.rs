@@ -30,7 +30,7 @@ pub struct Change {
     asked: Option<Asked>,
     /// Answers with the fault that was changed, and when.
     under_way: Request<Written>,
-    /// What is being recorded, as its button says it.
+    /// Change under way, as its button names it.
     what: &'static str,
     /// Whether what is being recorded takes a closing back, so that no undo is offered for it.
     takes_back: bool,
@@ -186,7 +186,7 @@ impl Change {
     }
 }
 
-/// What a person wrote last about it is that it is closed.
+/// Whether the last entry of a person is that the fault is closed.
 fn was_closed_last(detail: &FaultDetail) -> bool {
     let mut written = detail.events.iter().rev();
     let last = written.find(|event| !event.who.is_empty());

@@ -13,7 +13,7 @@ pub struct Filter {
     pub days: Option<i64>,
     /// Something its code, name, part, unit or severity contains.
     pub text: String,
-    /// What a bar of the statistics stands for, until it is cleared.
+    /// Choice of a bar of the statistics, until it is cleared.
     pub of_bar: FaultsOf,
 }
 

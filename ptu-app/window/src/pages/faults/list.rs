@@ -48,7 +48,7 @@ fn choose<T: Clone + PartialEq>(
     pick(ui, (what, FIELD), chosen, std::iter::once(any).chain(all));
 }
 
-/// What a bar of the statistics stands for, with a button that clears it.
+/// Choice of a bar of the statistics, with a button that clears it.
 pub fn of_bar(ui: &mut Ui, words: &Words, filter: &mut Filter, parts: &PartNames) {
     let of = &filter.of_bar;
     let cause = of.cause.as_deref().map(|cause| {

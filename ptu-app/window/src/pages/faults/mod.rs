@@ -43,7 +43,7 @@ pub struct FaultsPage {
     question: String,
     units: UnitFilter,
     history: CachedResponse<History>,
-    /// What the history was asked for with: days, and its version.
+    /// Days and data version of the last query.
     asked: Option<(Option<i64>, (usize, u64))>,
     chosen: Option<Id>,
     detail: CachedResponse<FaultDetail>,

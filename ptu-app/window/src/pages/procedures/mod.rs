@@ -35,7 +35,7 @@ use wanted::Wanted;
 
 /// Least height of the live signals, points.
 const LIVE_LEAST: f32 = 140.0;
-/// What stands above the live signals beside their buttons: margins and a space, points.
+/// Height above the live signals beside their buttons: margins and a space, points.
 const LIVE_HEADING: f32 = 24.0;
 /// Least height that is left to the run above them, points.
 const RUN_LEAST: f32 = 120.0;
@@ -55,13 +55,13 @@ pub struct ProceduresPage {
     orders: Vec<PendingOrder>,
     /// Times everything had been stopped when these were looked at last.
     stops: u64,
-    /// What to run as soon as the suite is there, on a unit by its own number.
+    /// Procedures to run as soon as the suite is there, and the number of the unit.
     wanted: Option<(Wanted, u64)>,
     shown: ResultsView,
     /// The conclusion of the diagnosis of the last run.
     conclusion: Request<Concluded>,
     concluded: Option<fault_db::Id>,
-    /// What the faults of that run said, with their traces.
+    /// Findings of that run's faults, with their traces.
     traced: Request<Vec<(Findings, fault_db::Id)>>,
     note: RunNoteForm,
     plot: Plot,
@@ -170,7 +170,7 @@ impl ProceduresPage {
         self.wanted.is_some() || !self.orders.is_empty()
     }
 
-    /// What is said of the last run of the chosen unit, once it is known.
+    /// Conclusion of the last run of the chosen unit, once it is known.
     pub fn concluded(&self) -> Option<(fault_db::Id, &Request<Concluded>)> {
         Some((self.concluded?, &self.conclusion))
     }
@@ -220,7 +220,7 @@ impl ProceduresPage {
         self.conclude(context);
     }
 
-    /// What is chosen, or would be run without a choice.
+    /// Chosen procedures, or those that would run without a choice.
     fn chosen(&self, connection: Connection) -> Selection {
         let usual = || {
             let suite = self.suite.value();

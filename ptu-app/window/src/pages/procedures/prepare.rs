@@ -20,7 +20,7 @@ pub struct RunSettings {
     pub stop_on_fail: bool,
     /// The run takes as few steps as it takes to find the part.
     pub adaptive: bool,
-    /// What who brought the unit said is wrong with it.
+    /// Symptom reported with the unit.
     pub symptom: Option<Symptom>,
     /// The run that broke off, of which this is the rest.
     pub continues: Option<fault_db::Id>,

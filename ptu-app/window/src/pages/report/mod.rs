@@ -40,7 +40,7 @@ pub struct ReportPage {
     with: ComparedWith,
 }
 
-/// What a sheet says besides what is stored.
+/// Data of a sheet besides the stored ones.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Asked {
     of: SheetOf,

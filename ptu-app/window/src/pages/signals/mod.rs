@@ -76,7 +76,7 @@ impl SignalsPage {
         }
     }
 
-    /// What is read or made, the file and the devices; what is pressed first at the foot.
+    /// Form of the file, the devices and the waveform; its main button stands at the foot.
     fn form(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         let offered = match &self.offered {

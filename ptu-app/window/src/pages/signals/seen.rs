@@ -23,13 +23,13 @@ const IN_VIEW: f32 = 3.0;
 /// The bar by which they are scrolled, points.
 const BAR: f32 = 16.0;
 
-/// What was read or recorded, a picture of each channel.
+/// Reading of a file or recording, with a picture of each channel.
 pub struct Seen {
     pub reading: Reading,
     pub pictures: Vec<Picture>,
 }
 
-/// What is shown, and of which channel.
+/// Shown reading, and its channel.
 #[derive(Default)]
 pub struct View {
     seen: Option<Seen>,
@@ -82,7 +82,7 @@ impl View {
         self.drawn = None;
     }
 
-    /// What was heard, and below it the drawings of a channel.
+    /// List of detected signals, and below it the pictures of a channel.
     pub fn show(&mut self, ui: &mut Ui, words: &Words) {
         let said = &words.signals;
         let Some(seen) = &self.seen else {

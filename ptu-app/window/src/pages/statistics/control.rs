@@ -37,7 +37,7 @@ pub struct Measured {
     step: Option<(String, String)>,
 }
 
-/// What can be chosen, and the trend of what was.
+/// Choices, and the trend of the chosen measurement.
 struct Known {
     names: Vec<String>,
     steps: Vec<TrendStep>,
@@ -184,7 +184,7 @@ fn summary(words: &Words, trend: &Trend) -> String {
     text.join(". ")
 }
 
-/// What chance does not explain, and when a limit will be crossed.
+/// Signs that chance does not explain, and the day on which a limit will be crossed.
 fn signs(words: &Words, trend: &Trend) -> Vec<String> {
     let said = &words.statistics;
     let Some(process) = &trend.process else {

@@ -1,4 +1,4 @@
-//! What the history says, as the query thread counts it.
+//! Counts of the history, made by the query thread.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -33,7 +33,7 @@ pub struct Counted {
     pub all: FaultStat,
     /// Faults by month, the oldest first.
     pub months: Vec<Month>,
-    /// What trains ran in the months, or why their distances cannot be read; there are none for a single unit.
+    /// Distances of trains in the months, or why they cannot be read; none for a single unit.
     pub on_the_way: Option<Result<BTreeMap<String, OnTheWay>, Trouble>>,
     pub parts: PartNames,
 }

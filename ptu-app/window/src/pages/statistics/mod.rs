@@ -36,7 +36,7 @@ pub struct StatisticsPage {
     /// Days to look back; none = all there is.
     days: Option<i64>,
     counted: CachedResponse<Counted>,
-    /// What was asked last, and of which data.
+    /// Last query, and the version of its data.
     asked: Option<(Asked, (usize, u64))>,
     life: life::LifeView,
     control: control::ControlChart,

@@ -84,7 +84,7 @@ pub fn view(
     roomy
 }
 
-/// How far the train's place was moved back to fit the axis of distances.
+/// Distance by which the train's place was moved back to fit the axis of distances.
 pub fn moved_back(ui: &mut Ui, scene: &TracePlot, words: &Traces) {
     if let Axis::Distance {
         rows_back, back_m, ..

@@ -117,7 +117,7 @@ impl OverlayRequest {
         }
     }
 
-    /// What the comparison says, and its offset.
+    /// Result of the comparison, and its offset.
     pub fn said(&self, ui: &mut Ui, scene: &mut TracePlot, context: &mut PageContext<'_>) {
         if self.is_pending() {
             ui.spinner();
@@ -166,7 +166,7 @@ impl OverlayRequest {
     }
 }
 
-/// What a file is called in lists and above the lanes.
+/// Name of a file in lists and above the lanes.
 pub fn file_name(file: &Path) -> String {
     let name = file.file_name().unwrap_or(file.as_os_str());
     name.to_string_lossy().into_owned()

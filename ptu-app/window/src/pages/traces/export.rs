@@ -17,7 +17,7 @@ use ptu_report::trace_view::{Kind, TracePlot};
 use ptu_report::words::fill;
 use ptu_runs::new_file::{NewFile, cannot_write};
 
-/// What is to be written, and what is under way.
+/// Choice of the export, and its work.
 #[derive(Default)]
 pub struct Export {
     /// Path without its ending.

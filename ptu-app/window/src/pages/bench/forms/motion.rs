@@ -24,7 +24,7 @@ pub struct MotionForm {
     pub backward: bool,
 }
 
-/// What a channel can be made to be.
+/// Condition that a channel can be given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TachoKind {
     Good,

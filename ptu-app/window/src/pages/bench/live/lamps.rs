@@ -25,7 +25,7 @@ enum LampState {
 
 struct Lamp {
     name: &'static str,
-    /// What it says when it is on, and when it is off.
+    /// Texts of the lamp when it is on, and when it is off.
     says: [&'static str; 2],
     lit: LampState,
     colour: Color32,

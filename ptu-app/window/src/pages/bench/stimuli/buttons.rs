@@ -22,7 +22,7 @@ const NAME: f32 = 94.0;
 const GAP: f32 = 3.0;
 const BESIDE: f32 = 5.0;
 
-/// What the page remembers of what was given, because no signal tells it.
+/// Stimuli that the page remembers, because no signal tells them.
 #[derive(Debug, Default)]
 pub struct StimuliGiven {
     pub laid: Option<u16>,
