@@ -1,4 +1,4 @@
-//! What a unit is made of: its configuration, track database and injected faults.
+//! Parts of a unit's set-up: its configuration, track database and injected faults.
 
 use alloc::string::String;
 use alloc::vec::Vec;

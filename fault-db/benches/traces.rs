@@ -1,4 +1,4 @@
-//! What a trace costs, all cases in one run so that they compare: `cargo bench -p fault-db --bench traces`.
+//! Time of a trace, all cases in one run so that they compare: `cargo bench -p fault-db --bench traces`.
 //!
 //! 600 rows of 40 channels, 24 000 samples of realistic signals; an hour has 72 000 rows of them. Times
 //! of commits depend on the disk under the system's temporary directory.

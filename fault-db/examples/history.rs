@@ -172,7 +172,7 @@ fn run(store: &Store, at_us: i64, seen: usize, random: &mut Random) -> Result<()
     Ok(())
 }
 
-/// What people do about a fault, in the days after the run: some are noted, some repaired, most closed.
+/// Acts of people on a fault, in the days after the run: some are noted, some repaired, most closed.
 fn handle(store: &Store, fault: Id, at_us: i64, random: &mut Random) -> Result<(), StoreError> {
     let note = NOTES[(random.next() % NOTES.len() as u64) as usize];
     let mut later_us = at_us;

@@ -8,7 +8,7 @@ use crate::timer::OnDelay;
 /// Scans over which the deceleration is measured (0.5 s).
 const DECEL_SCANS: usize = 50;
 
-/// What is known of the service brake in one scan.
+/// State of the service brake in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Proof {
     /// Deceleration, negative while the train gains speed, mm/s².

@@ -106,8 +106,8 @@ impl Atp {
         self.brake.latch(EbCause::TestMode);
     }
 
-    /// What must hold whatever came in; the number of the first that does not. A processor that
-    /// computes this has failed, and nothing it says can be trusted.
+    /// Number of the first invariant that does not hold. Invariants hold whatever came in: a
+    /// processor that breaks one has failed, and nothing it says can be trusted.
     fn broken_invariant(&self) -> Option<i32> {
         let speed = self.tachometers.speed();
         let holds = [

@@ -19,7 +19,7 @@ const SETTLES: Duration = Duration::from_ms(200);
 const CHATTER_OPENINGS: i32 = 4;
 const CHATTER_SPAN: Duration = Duration::from_ms(1_000);
 
-/// What the door supervision looks at.
+/// Inputs of the door supervision.
 #[derive(Clone, Copy, Debug)]
 pub struct DoorInputs {
     /// The train lines, while they are alive.

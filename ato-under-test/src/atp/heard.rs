@@ -1,4 +1,5 @@
-//! How long each speed code was heard within the hold time, gaps and other codes between left out.
+//! Time for which each speed code was heard within the hold time, gaps and other codes between left
+//! out.
 
 use alloc::collections::VecDeque;
 
@@ -39,7 +40,7 @@ impl Heard {
         }
     }
 
-    /// How often a code came within the span.
+    /// Number of times a code came within the span.
     pub fn times(&self, code: Code) -> usize {
         let spells = self.spells.iter().filter(|spell| spell.code == code);
         spells.count()

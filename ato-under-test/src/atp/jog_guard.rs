@@ -19,7 +19,7 @@ const TAIL: Duration = Duration::from_ms(1_000);
 /// report.
 const REFUSAL_LASTS: Duration = Duration::from_ms(600);
 
-/// What the guard looks at in a scan.
+/// Inputs of the guard in a scan.
 #[derive(Clone, Copy, Debug)]
 pub struct JogInputs {
     /// Direction that ATO orders: backward or not; `None` = it does not jog.

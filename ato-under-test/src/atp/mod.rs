@@ -327,7 +327,7 @@ impl Atp {
         self.sequence.step(now, inputs, log);
     }
 
-    /// What the output contacts should do.
+    /// States that the output contacts should have.
     pub fn outputs(&self, healthy: bool) -> Outputs {
         let mut outputs = self.doors.enable() | self.door_orders.passed();
         let code_valid = matches!(self.decoder.code(), Code::Known(_));
@@ -433,7 +433,7 @@ impl Atp {
         self.doors.hold()
     }
 
-    /// Why the full service brake is requested.
+    /// Cause of the full service brake.
     pub fn fsb_cause(&self) -> FsbCause {
         self.fsb_cause
     }

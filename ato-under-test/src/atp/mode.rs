@@ -82,7 +82,7 @@ pub struct ModeSequence {
     began: bool,
     /// Departure was heard withheld, and not given since.
     withheld: bool,
-    /// What ended a run and is not acknowledged, of [`KEPT`].
+    /// Refusal that ended a run and is not acknowledged, of [`KEPT`].
     failed: Refusals,
     /// The next run needs a departure of its own.
     departs_anew: bool,

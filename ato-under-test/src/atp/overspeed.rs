@@ -15,7 +15,7 @@ use super::Proof;
 use crate::kernel::EventLog;
 use crate::timer::{Edge, OnDelay};
 
-/// How the train moves in one scan, and what it may.
+/// Motion of the train in one scan, and its limits.
 #[derive(Clone, Copy, Debug)]
 pub struct SupervisedMotion {
     pub speed: Speed,

@@ -12,7 +12,7 @@ use protocol::{Duration, Instant, Speed};
 use crate::kernel::EventLog;
 use crate::timer::Edge;
 
-/// What it looks at in one scan.
+/// Inputs of stop and proceed in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct ProceedInputs {
     /// The code counts, and there is none.

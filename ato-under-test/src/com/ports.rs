@@ -26,7 +26,7 @@ pub struct Ports {
     track_loop: Link,
     /// Where a tester was heard last: it is spoken to there.
     tester_at: Port,
-    /// What goes out on the maintenance port.
+    /// Bytes to be sent on the maintenance port.
     to_maintenance: Vec<u8>,
 }
 

@@ -29,7 +29,7 @@ enum Stage {
     Failed,
 }
 
-/// What the change of cabs goes by in a cycle.
+/// Inputs of the change of cabs in a cycle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CabInputs {
     /// Head control relay of this cab; `None` = the inputs are lost.

@@ -24,7 +24,7 @@ enum Stage {
     Failed,
 }
 
-/// What put-away and wake-up go by in a cycle.
+/// Inputs of put-away and wake-up in a cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct StablingInputs {
     /// The mode switch is at driverless; `None` = the inputs are lost.

@@ -1,4 +1,4 @@
-//! What the unit stores over power-ups: its event log with the times that testers sent, and its run record.
+//! Stored memory of the unit over power-ups: its event log with the times that testers sent, and its run record.
 //!
 //! Both are kept in working memory first, in the rings of `kernel`; each scan stores what is new there, a few
 //! entries at most, so that a scan's time stays bounded. An entry that is not stored when the power fails is lost.
@@ -57,7 +57,7 @@ struct Rings {
     rows: LogRing,
 }
 
-/// Why a time is not stored.
+/// Reason for which a time is not stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SetClockError {
     /// The time is impossible, or too many times were sent.

@@ -66,13 +66,13 @@ impl Faults {
         self.rims = Speed::from_mps(self.rims.mps() + (mps - self.rims.mps()) * share);
     }
 
-    /// What is wrong at a place now.
+    /// Effect of a fault at a place now.
     pub fn at(&self, place: Place) -> Option<Effect> {
         let mut here = self.modes.iter().filter(|mode| mode.place == place);
         here.find_map(|mode| mode.acts)
     }
 
-    /// What a gain at `place` multiplies by, 1 without one.
+    /// Factor of a gain at `place`, 1 without one.
     pub fn gain(&self, place: Place) -> f64 {
         match self.at(place) {
             Some(Effect::Gain { factor }) => factor,

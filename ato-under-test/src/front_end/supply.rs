@@ -8,7 +8,7 @@ use super::{Faults, one_in_scan};
 /// Length of a single dip: enough to reset the processors.
 const DIP: Duration = Duration::from_ms(100);
 
-/// What the supply does in a scan.
+/// State of the supply in a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Supply {
     /// Voltage is there.

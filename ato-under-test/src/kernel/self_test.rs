@@ -27,7 +27,7 @@ const BLOCK: usize = 1024;
 /// Results sent in a cycle, so that its byte budget holds.
 const RESULTS_PER_CYCLE: usize = 2;
 
-/// What the parts answered in a scan of the self-test.
+/// Answers of the parts in a scan of the self-test.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SelfTestInputs {
     /// The receiver hands on the test code that is fed in behind its antenna.

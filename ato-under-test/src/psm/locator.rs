@@ -325,7 +325,7 @@ impl Locator {
             .map(|section| section.stop_m - self.position_m())
     }
 
-    /// What is added to the odometer's distance, as a share.
+    /// Correction of the odometer's distance, as a share.
     pub fn wheel_correction(&self) -> f64 {
         self.wheel.correction()
     }
@@ -360,7 +360,8 @@ impl Locator {
         }
     }
 
-    /// How much further the train may be, m; 0 as long as markers come when they should.
+    /// Distance by which the train may be farther on, m; 0 as long as markers come when they
+    /// should.
     pub fn ahead_m(&self) -> f64 {
         let unsure_m = self.unsure_since_m.map_or(0.0, |since_m| {
             let distance_m = self.odometer.distance_m();

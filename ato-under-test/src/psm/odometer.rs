@@ -9,7 +9,7 @@ use protocol::SCAN;
 /// Scans over which the change of speed is taken.
 const SCANS: usize = 20;
 
-/// How the train moves in this scan.
+/// Motion of the train in this scan.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Movement {
     /// Distance counted since the last scan, m, backward negative.

@@ -28,7 +28,7 @@ const ROLLS_AGAIN: Duration = Duration::from_ms(1_000);
 /// Markers of a section.
 const MARKERS: usize = 4;
 
-/// How both wheels turn in one scan.
+/// Motion of both wheels in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct WheelMotion {
     /// Way by each in this scan, m, backward negative.

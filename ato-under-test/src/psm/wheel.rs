@@ -55,7 +55,7 @@ impl WheelCalibration {
         self.variance *= 1.0 - gain;
     }
 
-    /// What is added to the distance the wheel tells, as a share; bounded.
+    /// Correction of the distance that the wheel tells, as a share; bounded.
     pub fn correction(&self) -> f64 {
         self.share.clamp(-self.bound, self.bound)
     }

@@ -1,5 +1,5 @@
-//! What a sound card hears, as samples in the unit's coils; and the programs of the system that carry sound, those of
-//! PulseAudio, which PipeWire has, too, or of ALSA.
+//! Sound of a sound card as samples in the unit's coils; and the system's programs that carry it: of PulseAudio,
+//! which PipeWire has, too, or of ALSA.
 
 extern crate std;
 
@@ -19,7 +19,7 @@ use super::steady::{Pair, Steady};
 pub const DEFAULT: &str = "default";
 /// Channels: the first is the ATP antenna's, the second that of TWC and markers.
 const CHANNELS: usize = 2;
-/// How long samples wait in the sound server on their way here, ms.
+/// Time for which samples wait in the sound server on their way here, ms.
 const LATENCY_MS: u32 = 20;
 /// Samples that are to wait here, 40 ms: more than a block of the sound server and a scan together.
 const WAITING: usize = 4 * COIL_SAMPLES;
@@ -121,7 +121,7 @@ impl Listener {
         Ok(Self { child, heard })
     }
 
-    /// What was heard in a scan: the steps of each channel's samples.
+    /// Samples of a scan, as steps of each channel.
     ///
     /// # Errors
     /// The device is gone.

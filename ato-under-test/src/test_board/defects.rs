@@ -1,4 +1,4 @@
-//! What is wrong with the TEST board: the injected faults that act on its outputs.
+//! Defects of the TEST board: the injected faults that act on its outputs.
 
 use protocol::injection::{Effect, Place};
 

@@ -61,7 +61,7 @@ pub struct Twc {
     valid: bool,
     refusal_reported: Option<(Event, i32)>,
     ordered: Option<Ordered>,
-    /// Why the last orders were refused, if they were.
+    /// Event of the last refused orders, with its parameter.
     orders_refusal: Option<(Event, i32)>,
     /// Train that data were for last, and when.
     other_train: Option<(u16, Instant)>,

@@ -1,4 +1,4 @@
-//! What the unit knows and decides from one set of inputs: ATP, TWC data, PSM and ATO.
+//! Knowledge and decisions of the unit from one set of inputs: ATP, TWC data, PSM and ATO.
 //!
 //! A scan is protection and position, a cycle is station data, mode and ATO. Nothing here drives an output: the
 //! unit does that with what its functions ask for.
@@ -237,7 +237,7 @@ impl Functions {
             })
     }
 
-    /// What the train says of itself to the wayside.
+    /// State of the train, as told to the wayside.
     pub fn train_state(&self) -> TrainState {
         let tachometers = self.atp.tachometers();
         TrainState {

@@ -1,5 +1,5 @@
-//! What the contacts do, and what TCMS is sent: what the functions ask for, and while a tester is armed never more
-//! than lets a train stand.
+//! States of the contacts, and frames to TCMS: those that the functions ask for, and while a tester is armed never
+//! more than lets a train stand.
 
 use protocol::Instant;
 use protocol::message::{Mode, Outputs};
@@ -26,7 +26,7 @@ impl Unit {
             .map_or(&self.functions, |mode| &mode.functions)
     }
 
-    /// What the functions that a tester sees ask for.
+    /// Outputs of the functions that a tester sees.
     pub(super) fn asked(&self) -> Outputs {
         self.outputs_of(self.tested())
     }

@@ -104,7 +104,7 @@ impl Client {
         let _ = self.stream.write_all(bytes);
     }
 
-    /// What arrives within the next few milliseconds.
+    /// Messages that arrive within the next few milliseconds.
     pub fn hear(&mut self) -> Vec<Message> {
         let mut chunk = [0; 4096];
         match self.stream.read(&mut chunk) {

@@ -232,7 +232,7 @@ fn a_train_with_little_power_runs_late_and_is_told() {
     assert!(journey.stop_error_m().abs() < 0.3);
 }
 
-/// What ATO's processor makes of its own effort is read back: then it is not the train that withholds.
+/// The effort that ATO's processor spoils is read back: then the train is not said to withhold it.
 #[test]
 fn an_effort_that_is_spoilt_before_it_is_sent_stays_atos() {
     let limited = fault(Place::AtoCpu, Effect::Limit { to: 100.0 });

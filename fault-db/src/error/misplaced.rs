@@ -1,6 +1,6 @@
-//! What has happened to a database file that was opened.
+//! Changes of a database file that was opened.
 
-/// How a file is no longer the one that was opened, as what follows its name.
+/// Change of the opened file, as text behind its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Misplaced {
     /// The file has no name any more.

@@ -266,7 +266,7 @@ pub enum StoreError {
     CannotWrite {
         /// The target asked for.
         path: PathBuf,
-        /// What is missing, or what the system said.
+        /// Missing thing, or message of the system.
         reason: String,
     },
     /// One file is both source and target.
@@ -334,7 +334,7 @@ pub enum StoreError {
     ServerNotTrusted {
         /// The server.
         path: PathBuf,
-        /// What is missing, and what to do.
+        /// Missing thing, and the remedy.
         reason: ServerReason,
     },
     /// Other sessions keep the server busy for too long.
@@ -358,7 +358,7 @@ pub enum StoreError {
     ServerSetup {
         /// The server.
         path: PathBuf,
-        /// What is missing, and what to do.
+        /// Missing thing, and the remedy.
         reason: String,
     },
     /// The database on the server holds something else.

@@ -8,7 +8,7 @@ use rustls::CertificateError;
 
 use super::StoreError;
 
-/// Why there is no connection with a server, and what to do about it.
+/// Reason for which there is no connection with a server, and the remedy.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ServerReason {
     /// No program at that address.
@@ -156,7 +156,7 @@ fn without_message(
     }
 }
 
-/// Why a certificate was not trusted.
+/// Reason for which a certificate was not trusted.
 fn distrust(error: &rustls::Error) -> ServerReason {
     use CertificateError as C;
     match error {

@@ -117,7 +117,7 @@ fn check_field(column: &Column, field: Field<'_>) -> Result<(), String> {
     check(column.name, field)
 }
 
-/// How a row is named to a person.
+/// Name of a row, for people.
 fn shown(name: SqlResult<Field<'_>>) -> String {
     match name {
         Ok(Field::Bytes(id)) => shown_id(id),

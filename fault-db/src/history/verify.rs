@@ -27,7 +27,7 @@ use crate::values::record::{RepairRecord, RunEnd, Verdict};
 const PASSED: &str = "passed";
 /// Kind of the event by which a run has proved a repair; by hand it is `verified`.
 const CONFIRMED: &str = "confirmed";
-/// What the note of such an event begins with, before the run's id.
+/// Beginning of such an event's note, before the run's id.
 const IN_RUN: &str = "in run ";
 /// Number of runs with the fault, the last ones, that are evidence of its rate.
 const MOST_RUNS: i64 = 8;
@@ -346,7 +346,7 @@ pub(crate) const SETTLED: &str = concat!(
     WHERE r.id = ?1 ORDER BY f.seq"
 );
 
-/// What the events that a run has made begin with, as a pattern.
+/// Pattern for the beginning of the events that a run has made.
 pub(crate) fn made_by(run: Id) -> String {
     format!("{IN_RUN}{run}%")
 }

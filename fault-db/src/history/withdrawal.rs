@@ -50,7 +50,7 @@ struct Written {
     lamport: i64,
 }
 
-/// What a person wrote last about fault `?1`.
+/// Last event that a person wrote about fault `?1`.
 const LAST_WRITTEN: &str = concat!(
     "SELECT e.seq, e.id, e.kind, e.at_us, e.who, CASE WHEN e.state IS NULL THEN 0 ELSE 1 END, e.turn
      FROM fault_event e WHERE e.fault = ?1 AND e.kind IN
@@ -59,7 +59,8 @@ const LAST_WRITTEN: &str = concat!(
     " ORDER BY e.turn DESC, e.id DESC LIMIT 1"
 );
 
-/// What stands after event `?2` of fault `?1`, of Lamport number `?3`, and was decided or found in knowledge of it.
+/// Events that stand after event `?2` of fault `?1`, of Lamport number `?3`, and were decided or found in knowledge
+/// of it.
 const RESTS_ON_IT: &str = concat!(
     "SELECT e.kind FROM fault_event e WHERE e.fault = ?1 AND e.turn > ?3 AND e.id <> ?2
         AND (e.state IS NOT NULL OR e.kind = 'passed')",
@@ -141,7 +142,8 @@ impl Store {
         })
     }
 
-    /// What a person wrote last about the fault, which has to be of this time if one is given.
+    /// Last event that a person wrote about the fault, which has to be of this time if one is
+    /// given.
     fn last_written(&self, fault: &CaseFault, at_us: Option<i64>) -> Result<Written, StoreError> {
         let row = |row: Row<'_>| {
             Ok(Written {

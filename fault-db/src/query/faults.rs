@@ -41,7 +41,7 @@ pub struct FaultSummary {
     pub occurrences: u32,
     /// Latest trace of the fault.
     pub trace_id: Option<Id>,
-    /// What was seen last, in English.
+    /// Last finding, in English.
     pub message: String,
     /// The findings behind `message` as data: JSON of the program.
     pub findings: Option<String>,

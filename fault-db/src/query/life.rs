@@ -43,7 +43,7 @@ pub struct Life {
     pub serial: String,
     /// Stays, oldest first: trains of a unit, units of a train, units of a part.
     pub stays: Vec<Stay>,
-    /// What is stored about it, oldest first.
+    /// Stored events, oldest first.
     pub events: Vec<LifeEvent>,
 }
 
@@ -80,7 +80,7 @@ pub struct LifeEvent {
 pub enum LifeWhat {
     /// A run, an imported log or a pulled record.
     Run(LifeRun),
-    /// What happened to a fault, or to several of one case at once.
+    /// An event of a fault, or of several of one case at once.
     Fault(Box<LifeFault>),
 }
 

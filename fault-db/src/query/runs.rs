@@ -100,9 +100,9 @@ pub struct RunSummary {
     /// Connection to the unit: `harness`, or `ptu` for the maintenance port alone; none where no tester led the
     /// run.
     pub connection: Option<String>,
-    /// What was wrong with the unit, as reported: a name of `symptoms.toml`.
+    /// Symptom reported with the unit: a name of `symptoms.toml`.
     pub symptom: Option<String>,
-    /// What the bench was made of, its clock and its instruments: JSON of the caller's own.
+    /// Content of the bench, its clock and its instruments: JSON of the caller's own.
     pub evidence: Option<String>,
     /// Counts of the steps that the run has a result of; how many were due, the evidence of the run may say.
     pub recorded: StepCounts,
@@ -348,7 +348,7 @@ impl Store {
         with_end(&self.locks(), &format!("{}.lock", run.short()))
     }
 
-    /// What the files of [`Self::hold_run`] begin with, beside the database.
+    /// Beginning of the paths of [`Self::hold_run`], beside the database.
     fn locks(&self) -> PathBuf {
         let real = std::fs::canonicalize(self.path());
         with_end(real.as_deref().unwrap_or(self.path()), ".run-")

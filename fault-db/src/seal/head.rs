@@ -28,7 +28,7 @@ pub struct RunSealed {
     pub seal: String,
     /// SHA-256 of the run's content, in hex.
     pub digest: String,
-    /// How the run came, if it came without a seal and was sealed as found.
+    /// Way by which the run came, if it came without a seal and was sealed as found.
     pub found: Option<String>,
 }
 

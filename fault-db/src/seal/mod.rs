@@ -25,7 +25,7 @@ use crate::backend::{Backend, SqlError, SqlResult, values};
 use crate::id::Id;
 use crate::schema::SCHEMA_VERSION;
 
-/// How a run, event or note came that was sealed as found.
+/// Way by which a run, event or note came that was sealed as found.
 pub(crate) const BY_IMPORT: &str = "import";
 pub(crate) const BY_SYNC: &str = "sync";
 

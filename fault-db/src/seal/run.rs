@@ -26,7 +26,7 @@ pub(crate) struct RunPayload {
     /// store knew first stays with its run.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub entries: Vec<EntryPayload>,
-    /// How the run came, if it came without a seal and was sealed as found.
+    /// Way by which the run came, if it came without a seal and was sealed as found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found: Option<String>,
 }

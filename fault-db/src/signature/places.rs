@@ -40,7 +40,7 @@ impl Places {
     }
 }
 
-/// What of a run is not as it was signed.
+/// Parts of a run that differ from the signed ones.
 pub(crate) fn changed_places(
     backend: &Backend,
     run: i64,

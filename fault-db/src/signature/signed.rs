@@ -11,7 +11,7 @@ const PURPOSE: &[u8] = b"ptu signature 1\n";
 /// The longest text that is read as a signed document.
 const LONGEST: usize = 16 << 20;
 
-/// Why a signature does not hold.
+/// Reason for which a signature does not hold.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SignatureError {
     /// The document cannot be read.

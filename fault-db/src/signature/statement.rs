@@ -1,4 +1,4 @@
-//! What is signed of a run, event, note or instrument: its seal, and for a run in short what it says.
+//! Signed statement about a run, event, note or instrument: its seal, and for a run a summary.
 
 use serde::{Deserialize, Serialize};
 
@@ -43,7 +43,7 @@ pub struct Statement {
     /// The public key.
     #[serde(default)]
     pub key: String,
-    /// What a run says, in short.
+    /// Summary of a run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub about: Option<About>,
     /// Beginnings of digests of each row of a run, by which a change is located.
@@ -51,7 +51,7 @@ pub struct Statement {
     pub places: Option<Places>,
 }
 
-/// What a run says, in short: a certificate tells it without the database.
+/// Summary of a run, by which a certificate speaks without the database.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct About {
     /// Serial number of the unit.
@@ -162,7 +162,8 @@ pub(crate) fn read_signature(
     Ok(wrong.map_or(Ok(statement), Err))
 }
 
-/// How what a signature names is not what it hangs on: a run or instrument on itself, a note on its run, an event on its fault.
+/// Error of a signature that is stored with another thing than it names: a run or instrument has its own, a note its
+/// run's, an event its fault's.
 fn wrong_subject(
     backend: &Backend,
     group: Id,
@@ -192,7 +193,7 @@ fn wrong_subject(
     Ok((!is_own).then(|| WrongSignature::Other(what.clone(), id)))
 }
 
-/// How the seal that a signature names differs from it.
+/// Difference between a signature and the seal that it names.
 fn seal_mismatch(backend: &Backend, statement: &Statement) -> SqlResult<Option<WrongSignature>> {
     let (Ok(id), Ok(file)) = (statement.id.parse::<Id>(), statement.file.parse::<Id>()) else {
         return Ok(Some(WrongSignature::NoSeal));

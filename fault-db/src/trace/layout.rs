@@ -25,7 +25,7 @@ pub const ENCODING: i64 = 1;
 const BLOCK_ROWS: usize = 4096;
 const CRC_BYTES: usize = 4;
 
-/// What the row of a trace says about its blob.
+/// Description of a trace's blob by its row.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<'a> {
     /// Number of the encoding.

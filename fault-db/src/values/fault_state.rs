@@ -21,7 +21,7 @@ text_enum! {
     }
 }
 
-/// What can happen to a fault.
+/// Changes of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultAction {
     /// The fault occurred again.
@@ -39,7 +39,7 @@ pub enum FaultAction {
 }
 
 impl FaultAction {
-    /// What a person can do with a fault, in the order in which it is offered.
+    /// Changes that a person can make to a fault, in the order in which they are offered.
     pub const BY_A_PERSON: [Self; 5] = [
         Self::Acknowledge,
         Self::Repair,

@@ -31,7 +31,7 @@ text_enum! {
 }
 
 text_enum! {
-    /// What a record among the steps of a run is.
+    /// Kind of a record among the steps of a run.
     StepKind {
         /// The result of a step, or of one repetition of it.
         Step = "step",
@@ -84,9 +84,9 @@ pub struct RunRecord {
     /// Connection to the unit: `harness`, or `ptu` for the maintenance port alone; none where no tester led the
     /// run.
     pub connection: Option<String>,
-    /// What was wrong with the unit, as reported: a name of `symptoms.toml`.
+    /// Symptom reported with the unit: a name of `symptoms.toml`.
     pub symptom: Option<String>,
-    /// What the bench was made of, its clock and its instruments: JSON of the caller's own.
+    /// Content of the bench, its clock and its instruments: JSON of the caller's own.
     pub evidence: Option<String>,
     /// When it began.
     pub started_at_us: i64,

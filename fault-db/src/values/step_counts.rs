@@ -20,7 +20,7 @@ pub struct StepCounts {
     pub error: u32,
     /// Results of steps that were run, each repetition by itself.
     pub attempts: u32,
-    /// What did not pass outside steps, which is none of them.
+    /// Number of failures outside steps.
     pub outside: u32,
 }
 
@@ -100,7 +100,7 @@ impl<K: Ord> StepCounter<K> {
     }
 }
 
-/// How much a result says of its step: of several the greatest stands.
+/// Rank of a result for its step: of several results the greatest stands.
 pub fn rank(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Skipped => 0,

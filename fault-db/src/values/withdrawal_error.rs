@@ -1,4 +1,4 @@
-//! Why what a person wrote cannot be withdrawn.
+//! Reasons for which an event of a person cannot be withdrawn.
 
 /// Reason for which nothing is taken back.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -14,7 +14,7 @@ pub enum WithdrawalError {
         /// Author of the other entry.
         who: String,
     },
-    /// What was written cannot be taken back without what came after it.
+    /// A later event rests on the one to be taken back.
     #[error(
         "it was {after} after it was {kind}, and that rests on it; say by another state or a note what is so"
     )]

@@ -25,7 +25,7 @@ fn laptop(dir: &TempDir, name: &str, seed: u64) -> Store {
     opened(&dir.path().join(name), seed)
 }
 
-/// What a file says, without what differs between files: row numbers, and which of its ids a fault goes by.
+/// Content of a file, without row numbers and the id by which a fault goes, which differ between files.
 fn said(store: &Store) -> Vec<String> {
     let conn = Connection::open(store.path()).expect("opens");
     let questions = [

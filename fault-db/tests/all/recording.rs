@@ -1,4 +1,4 @@
-//! What a run records is in the file, also when the program dies, the disk fills or another run
+//! Records of a run are in the file, also when the program dies, the disk fills or another run
 //! writes at the same time.
 
 use crate::checking::three_runs;

@@ -66,7 +66,7 @@ pub fn open(path: &Path) -> Store {
     Store::open(path, OpenOptions::new(ids(1))).expect("a new or known file opens")
 }
 
-/// What people do in a test, which they may.
+/// Permitted acts of people in a test.
 pub trait Deeds: Borrow<Store> {
     #[track_caller]
     fn put_state(&self, fault: Id, to: FaultState, who: &str, note: &str, at_us: i64) {

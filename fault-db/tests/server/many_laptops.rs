@@ -29,7 +29,7 @@ const ADDRESS: &str = "PTU_TEST_LAPTOP_ADDRESS";
 const NAME: &str = "PTU_TEST_LAPTOP_NAME";
 /// Before each line in which a process says how far its sync is.
 const SYNC: &str = "sync: ";
-/// How the line of a failure begins if the server took no more connections, or kept the laptop waiting for too long.
+/// Beginning of a failure's line if the server took no more connections, or kept the laptop waiting for too long.
 const BUSY: &str = "busy";
 
 /// Laptops in the check.
@@ -96,7 +96,7 @@ fn sync(file: &Path, address: &str, laptop: &str) -> Result<(), StoreError> {
     store.close()
 }
 
-/// What was being done, and what the server or the network said.
+/// Work during which the error came, and the message of server or network.
 fn in_short(error: &StoreError) -> String {
     match error {
         StoreError::ServerUnreachable { doing, reason, .. } => format!("away, {doing}: {reason}"),
@@ -124,7 +124,7 @@ impl Tally {
     }
 }
 
-/// How the process of a sync ended.
+/// End of a sync's process.
 enum End {
     Completed,
     Killed,

@@ -1,4 +1,4 @@
-//! What a sync brings to the server, and what it leaves where it is.
+//! Rows that a sync brings to the server, and rows that it leaves.
 
 use fault_db::{FaultFilter, RunFilter, RunWriter, StoreError};
 

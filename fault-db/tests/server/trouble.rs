@@ -175,7 +175,7 @@ fn a_read_only_store_answers_queries_and_refuses_writes() {
     );
 }
 
-/// What a server says when it lets somebody in.
+/// Bytes with which a server lets a client in.
 const LET_IN: &[u8] = b"R\0\0\0\x08\0\0\0\0Z\0\0\0\x05I";
 
 /// Goal: a server that hangs once it has let somebody in is given up in the time that the address allows.

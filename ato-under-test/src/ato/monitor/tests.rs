@@ -1,4 +1,4 @@
-//! What ATO's watch finds in a run, and what it passes over.
+//! Findings of ATO's monitor in a run, and events that it passes over.
 
 use alloc::vec::Vec;
 

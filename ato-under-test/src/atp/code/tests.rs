@@ -94,7 +94,7 @@ fn one_long_silence_is_no_flicker() {
     assert_eq!(receiver.events(), [event(Event::CodeLost, 0)]);
 }
 
-/// What is heard now and then renews no code, nor does any other.
+/// A code heard now and then renews no code, neither itself nor another.
 #[test]
 fn a_scan_now_and_then_renews_no_code() {
     for rate_hz in [15.0, 12.0] {

@@ -48,11 +48,11 @@ pub struct Bench {
     pub keep_alive: bool,
     pub output: IoOutput,
     pub status: Status,
-    /// What TCMS says each cycle, its alive counter left out; `None` = nothing.
+    /// Frame of TCMS in each cycle, its alive counter left out; `None` = none.
     pub tcms: Option<TcmsToAtc>,
     /// The unit says that it is armed.
     pub armed: bool,
-    /// What the unit last sent to TCMS.
+    /// Last frame of the unit to TCMS.
     pub to_tcms: AtcToTcms,
     /// TCMS orders the full service brake when the unit asks for it.
     pub tcms_obeys: bool,
@@ -68,7 +68,7 @@ pub struct Bench {
     pub backward_bits: u8,
     pub answers: Vec<Message>,
     pub log: Vec<LogEntry>,
-    /// What the unit sent in the last scan.
+    /// Bytes that the unit sent in the last scan.
     pub sent: Vec<u8>,
     turned: [f64; 2],
     scans: u64,

@@ -29,7 +29,7 @@ pub struct Ended {
     /// Longest time to an answer, and in which this program said nothing.
     pub slowest: Duration,
     pub silent: Duration,
-    /// What the unit did that it must not.
+    /// Forbidden acts of the unit.
     pub faults: Vec<String>,
 }
 
@@ -39,7 +39,7 @@ pub struct Tester {
     station: TwcWayside,
     session: u32,
     scans: u64,
-    /// What stands between flags and was sent, as the unit must count it, and whether more of the last comes.
+    /// Number of frames sent, as the unit must count them; and whether more of the last one comes.
     frames: u64,
     under_way: bool,
     /// Sound frames, and some of them.

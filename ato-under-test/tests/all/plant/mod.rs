@@ -142,7 +142,7 @@ impl<'a> Train<'a> {
         (CYCLE_S / (self.config.train.lag_ms / 1000.0)).min(1.0)
     }
 
-    /// What REG grants of a demand, and the train makes of it in a cycle.
+    /// Grants a demand as REG does, and moves the train by a cycle.
     fn act(&mut self, demand: Demand, at_s: f64) {
         let train = &self.config.train;
         let asked = (demand.force_n / self.mass_kg()).clamp(

@@ -66,7 +66,7 @@ pub(super) fn last(file: &Backend) -> SqlResult<i64> {
     Ok(file.first(last, &[], |row| row.get(0))?.unwrap_or_default())
 }
 
-/// What the server has of a run or trace.
+/// Copy of a run or trace on the server.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ServerCopy {
     /// The server has the whole of it.
@@ -189,7 +189,7 @@ impl Batch {
     }
 }
 
-/// What the server has of the entries' runs and traces. A sealed run was sent complete.
+/// Copies on the server of the entries' runs and traces. A sealed run was sent complete.
 fn known(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Vec<u8>, ServerCopy>> {
     let ours: BTreeMap<&[u8], &BTreeSet<Vec<u8>>> = (entries.iter())
         .filter(|entry| matches!(entry.of, TableId::Run | TableId::Trace))

@@ -66,7 +66,7 @@ pub struct SyncOutcome {
     pub bytes: u64,
     /// Entries that wait for the next sync.
     pub waiting: u64,
-    /// How far the laptop's clock is ahead of the server's, µs.
+    /// Time by which the laptop's clock is ahead of the server's, µs.
     pub clock_offset_us: i64,
     /// Rows with the same id and different content on both sides; both were left as they are.
     pub different: Vec<Difference>,

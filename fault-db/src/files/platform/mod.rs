@@ -1,5 +1,5 @@
-//! What each operating system does in a way of its own, under the same names: who may read a file, what a file is, and
-//! where libpq has its things.
+//! Functions that differ by operating system, under one name for all: rights and identity of a file, and the places
+//! of libpq's files.
 
 use std::path::Path;
 

@@ -36,7 +36,7 @@ pub(crate) fn is_open_to_others(_: &Metadata) -> bool {
     false
 }
 
-/// What a file is that is neither regular nor a folder: Windows does not say.
+/// Kind of a file that is neither regular nor a folder: Windows does not say.
 pub(crate) fn special_kind(_: FileType) -> Option<&'static str> {
     None
 }

@@ -14,7 +14,7 @@ use crate::seal::{
 };
 use crate::signature::{SIGNATURE, read_signature};
 
-/// What is collected while the chains are read.
+/// Data collected while the chains are read.
 #[derive(Default)]
 pub(super) struct ChainSummary {
     /// Seals of runs.

@@ -1,4 +1,4 @@
-//! What a check can find and what to do about it, as data. The texts are for a terminal and for JSON.
+//! Findings of a check and their remedies, as data. The texts are for a terminal and for JSON.
 
 use std::fmt;
 use std::sync::Arc;
@@ -47,7 +47,7 @@ pub enum Damage {
     /// A seal and what it covers do not follow from the seal before.
     #[error("{0} ({1} {2}) does not fit the one before: it was changed")]
     Unchained(SealPlace, String, Id),
-    /// What a seal covers is not there: run, event or note.
+    /// A run, event or note that a seal covers is missing.
     #[error("{0}: its {1} was taken out")]
     Unsealed(SealPlace, String),
     /// A statement of a seal was changed.
@@ -128,7 +128,7 @@ pub enum Damage {
     NoGuard(String, String),
 }
 
-/// How a signature does not hold.
+/// Reason for which a signature does not hold.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WrongSignature {
     /// The signature cannot be read, or does not fit its document.
@@ -179,7 +179,7 @@ text_enum! {
 }
 
 text_enum! {
-    /// What follows from the other rows and is counted.
+    /// Derived tables: they follow from the other rows and are counted.
     Derived {
         /// Repairs.
         Repairs = "rows of the table of repairs",

@@ -16,7 +16,7 @@ use crate::seal::{RunSealed, chained, hex, run, sealed_as, statement_digest};
 use crate::signature::{SIGNATURE, Statement, changed_places, read_signature, signatures_of};
 use crate::store::Store;
 
-/// What a look at a run's seals and signatures shows.
+/// Result of looking at a run's seals and signatures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verification {
     /// The run.
@@ -31,7 +31,7 @@ pub struct Verification {
     pub pruned: Vec<String>,
     /// Notes on it that nobody has signed, and in whose name they are.
     pub unsigned_notes: Vec<(Id, String)>,
-    /// What is to be known besides: a clock that went backward.
+    /// Remarks besides, such as a clock that went backward.
     pub remarks: Vec<String>,
 }
 

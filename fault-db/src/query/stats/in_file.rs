@@ -89,7 +89,8 @@ impl Span {
     }
 }
 
-/// What of a block's texts is asked for, and where the keys among them are counted; by code in their column.
+/// Texts of a block that are asked for, and the places where the keys among them are counted; by code in
+/// their column.
 struct Texts {
     lru: Vec<bool>,
     /// Texts of causes, placed as `cause_places` says.
