@@ -42,7 +42,7 @@ pub const FLAG: u8 = 0x7E;
 pub const SCAN_END: [u8; 3] = [FLAG; 3];
 /// Says that the next byte is sent with [`ESCAPE_XOR`].
 pub const ESCAPE: u8 = 0x7D;
-/// What an escaped byte is exclusive-ored with.
+/// Number with which an escaped byte is exclusive-ored.
 pub const ESCAPE_XOR: u8 = 0x20;
 
 /// Sixteen bytes a step: at one byte a step the check sequence would be the dearest part of a frame.

@@ -35,7 +35,7 @@ impl ScanDeadlines {
         };
     }
 
-    /// How far the last scan, or what came after it, is behind its time, in the time of the bench.
+    /// Lag of the last scan, or of what came after it, in the time of the bench.
     pub const fn behind(&self, now: Instant) -> Duration {
         Duration::from_us(now.since(self.due).as_us() / self.slower as u64)
     }

@@ -1,4 +1,4 @@
-//! How fast a station-to-station run is: `cargo bench -p ptu-app --bench drive`.
+//! Speed of a station-to-station run: `cargo bench -p ptu-app --bench drive`.
 
 use std::path::Path;
 

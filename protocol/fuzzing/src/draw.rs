@@ -1,4 +1,5 @@
-//! What the check runs a part of, other parts with each commit; the long suite runs all of it.
+//! Draws of the check, which runs part of what there is, another part with each commit; the long
+//! suite runs all.
 
 use std::path::Path;
 use std::process::Command;
@@ -44,7 +45,7 @@ fn asked() -> Option<String> {
     Some(asked)
 }
 
-/// What was asked for, or a number that follows from the last commit; without Git 0.
+/// Seed that was asked for, or a number that follows from the last commit; without Git 0.
 fn seed() -> String {
     asked().unwrap_or_else(|| OF_THE_LAST_COMMIT.clone())
 }

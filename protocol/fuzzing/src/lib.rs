@@ -155,7 +155,7 @@ fn keep(name: &str, input: &[u8]) -> String {
     )
 }
 
-/// What the system says of a process's memory, kB, as `VmRSS` of `self` or of a number; 0 where it does not tell.
+/// Memory of a process by the system, kB, as `VmRSS` of `self` or of a number; 0 where the system does not tell.
 pub fn memory_kb(process: &str, key: &str) -> u64 {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let line = status

@@ -1,9 +1,9 @@
-//! What one end of the wire has accepted and rejected, by channel and by reason.
+//! Counts of frames that one end of the wire has accepted and rejected, by channel and by reason.
 
 use crate::frame::{Reject, Rejected};
 use crate::message::Channel;
 
-/// What one end has taken and rejected since it was made.
+/// Counts of frames that one end has accepted and rejected since it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     pub(super) accepted: [u64; CHANNELS],

@@ -174,7 +174,7 @@ impl Link {
         self.receivers[channel as usize].map(|receiver| receiver.heard_at)
     }
 
-    /// What was accepted and rejected so far.
+    /// Counts of accepted and rejected frames so far.
     pub const fn counters(&self) -> &Counters {
         &self.counters
     }

@@ -129,7 +129,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What the wayside orders a train to do beside running [S0, S4].
+    /// Orders of the wayside to a train beside running [S0, S4].
     TrainOrder {
         /// No order.
         None = 0 "none",
@@ -143,7 +143,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// How far a train has carried out its last order.
+    /// State of a train's last order.
     OrderState {
         /// No order is under way.
         Idle = 0 "idle",
@@ -177,7 +177,7 @@ wire_enum! {
 }
 
 wire_bits! {
-    /// Why an order is not carried out: the parameter of event `order_refused`.
+    /// Reasons for which an order is not carried out: the parameter of event `order_refused`.
     OrderLacks {
         /// The train moves.
         STANDSTILL = 0,
@@ -215,7 +215,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// Why the unit holds the emergency brake.
+    /// Cause for which the unit holds the emergency brake.
     EbCause {
         /// The unit does not hold the emergency brake.
         None = 0 "none",
@@ -247,7 +247,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// Why the unit asks for the full service brake.
+    /// Cause for which the unit asks for the full service brake.
     FsbCause {
         /// The unit does not ask for the full service brake.
         None = 0 "none",
@@ -291,7 +291,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What the unit stores over power-ups.
+    /// Stores of the unit that outlast a power-up.
     StoreKind {
         /// The event log.
         Events = 0 "events",
@@ -301,7 +301,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// Why arming was refused or lapsed.
+    /// Reason for which arming was refused or lapsed.
     ArmRefusal {
         /// The request is not refused.
         None = 0 "none",
@@ -333,7 +333,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What a value of the self-test is measured in.
+    /// Unit of a value of the self-test.
     MeasureUnit {
         /// Milliseconds.
         Milliseconds = 0 "ms",

@@ -108,7 +108,7 @@ layout! {
 }
 
 layout! {
-    /// What the driver keys in at the cab; sent while it is keyed in.
+    /// Train number that is keyed in at the cab; sent while it is keyed in.
     CabEntries, Io, 0x02 {
         /// Train number; 0 = that of the unit configuration.
         train_number: u16,
@@ -143,7 +143,7 @@ pub const COIL_PARTS: usize = 5;
 pub const COIL_SAMPLES: usize = COIL_PART * COIL_PARTS;
 /// Samples of a coil in a second.
 pub const COIL_SAMPLE_HZ: u32 = 48_000;
-/// What one step of a sample stands for, mV: a coil takes up to 3.2 V.
+/// Voltage of one step of a sample, mV: a coil takes up to 3.2 V.
 pub const COIL_STEP_MV: f32 = 0.1;
 
 /// The samples of a [`CoilSamples`].
@@ -184,8 +184,8 @@ impl Field for Samples {
 }
 
 layout! {
-    /// What is in one coil as samples; sent before the `IoInput` of the same scan, whose code, tachometers
-    /// and marker count no more then. A coil of which nothing is sent is silent.
+    /// Samples of one coil; sent before the `IoInput` of the same scan, whose code, tachometers and marker
+    /// count no more then. A coil without samples is silent.
     CoilSamples, Io, 0x05 {
         /// Coil.
         coil: Coil,

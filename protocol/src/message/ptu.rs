@@ -172,7 +172,7 @@ layout! {
         test_speed_cms: u16,
         /// Operating state of ATO.
         ato_state: AtoState,
-        /// What ATO adds to the way its wheels tell, found between markers, 10 ppm.
+        /// Correction that ATO adds to the way its wheels tell, found between markers, 10 ppm.
         wheel_correction_10ppm: i16,
     }
 }

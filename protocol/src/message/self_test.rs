@@ -51,7 +51,7 @@ layout! {
         low: i32,
         /// Greatest value allowed.
         high: i32,
-        /// What the three are measured in.
+        /// Unit of the three numbers.
         unit: MeasureUnit,
     }
 }

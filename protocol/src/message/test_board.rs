@@ -41,7 +41,7 @@ layout! {
         backward: u8,
         /// Speed to reach, cm/s, at most 3000.
         speed_cms: u16,
-        /// How fast to get there, mm/s²; 0 = the board's own 3000.
+        /// Rate of the change, mm/s²; 0 = the board's own 3000.
         accel_mms2: u16,
     }
 }

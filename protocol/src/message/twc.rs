@@ -72,13 +72,13 @@ layout! {
         section_length_dm: u32,
         /// Station at which the train's run ends; 0 = none.
         destination: u16,
-        /// What the train is to do beside running.
+        /// Order to the train beside running.
         order: TrainOrder,
     }
 }
 
 layout! {
-    /// What the train made of its orders, in answer to each accepted `TwcOrders`.
+    /// State of the train's orders, in answer to each accepted `TwcOrders`.
     TwcReport, Twc, 0x82 {
         /// Sequence number of the frame answered.
         answered_seq: u16,
@@ -88,7 +88,7 @@ layout! {
         number_state: NumberState,
         /// Destination in force; 0 = none.
         destination: u16,
-        /// How far the last order is carried out.
+        /// State of the last order.
         order_state: OrderState,
         /// TWC frames for this train since power-up, refused ones among them, wrapping.
         received: u16,

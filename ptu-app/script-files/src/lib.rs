@@ -19,7 +19,7 @@ const DEEPEST_FOLDER: usize = 16;
 /// A place or a file that cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ScriptsError {
-    /// What was given is no folder.
+    /// The path that was given is no folder.
     #[error("{} is not a directory", .0.display())]
     NotADirectory(PathBuf),
     /// A file or folder, by its path or name, and why.
@@ -90,7 +90,7 @@ impl ScriptFiles {
         self.files(name).next()
     }
 
-    /// How the file of this name is shown to a person: where it is, or where the first place would have it.
+    /// Path of the file of this name, for people: its place, or the place in the first folder.
     pub fn shown(&self, name: &str) -> String {
         let missing = || self.0[0].shown(name);
         self.file(name).map_or_else(missing, |found| found.shown())

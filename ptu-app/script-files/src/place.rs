@@ -28,7 +28,7 @@ fn embedded() -> Embedded {
 pub enum Place {
     /// A folder on the disk.
     Folder(PathBuf),
-    /// What the program carries with it.
+    /// The files in the program.
     Embedded,
 }
 
@@ -75,7 +75,7 @@ impl Place {
         }
     }
 
-    /// How the file of this name would be shown to a person.
+    /// Path that the file of this name would have, for people.
     pub(crate) fn shown(&self, name: &str) -> String {
         match self {
             Self::Folder(folder) => folder.join(name).display().to_string(),

@@ -20,7 +20,8 @@ const KNOWN_TO: f64 = 1.02;
 const SLOWS_FROM_M: f64 = 150.0;
 /// Difference between target and limit less 5 km/h at which the stop curve counts as taking over.
 const TAKES_OVER_KMH: f64 = 0.1;
-/// What less resistance below 40 km/h and a descent add to full traction [S3: 3.0 km/h/s at 40 km/h].
+/// Acceleration above that of full traction, by less resistance below 40 km/h and a descent [S3: 3.0
+/// km/h/s at 40 km/h].
 const STARTING_KMH_S: f64 = 0.1;
 
 /// JSON of a drive in which every train stopped where doors may open.

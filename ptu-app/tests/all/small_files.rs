@@ -14,7 +14,7 @@ use parquet::schema::parser::parse_message_type;
 use crate::common::{Place, Said};
 use crate::trace_files::{kept, trace};
 
-/// What a file of at most 10 MB may take, KiB.
+/// Memory that a file of at most 10 MB may take, KiB.
 const MOST_KIB: u32 = 512 * 1024;
 /// And the processor's time, s.
 const MOST_S: u32 = 10;

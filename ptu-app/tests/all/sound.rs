@@ -16,9 +16,9 @@ use rustix::process::{Pid, Signal, kill_process};
 
 use crate::common::{Place, Typed, has, list, number, text};
 
-/// What may pass from a stop to silence.
+/// Time that may pass from a stop to silence.
 const SILENT_WITHIN: Duration = Duration::from_millis(100);
-/// What the way back to the test takes at most, on a machine that has other work.
+/// Time that the way back to the test takes at most, on a machine that has other work.
 const WAY_BACK: Duration = Duration::from_millis(150);
 
 /// A sound server with a null sink, gone with the value.

@@ -41,7 +41,7 @@ pub struct Made {
     pub facts: Facts,
     /// Lines of its stream for other programs.
     pub lines: Vec<String>,
-    /// What the window that led it knows; none if it was read of a unit.
+    /// Knowledge of the window that led the run; none if the run was read of a unit.
     pub live: Option<Progress>,
 }
 
@@ -516,7 +516,7 @@ impl<'a> Making<'a> {
         self.turn += 1;
     }
 
-    /// What was read of a unit, and told by nobody before.
+    /// A run that was read of a unit, and told by nobody before.
     fn read_of_a_unit(mut self, store: &Store) -> (Id, Facts) {
         let is_log = self.kind == Imported;
         let read = read_of_a_unit(store, self.seed, is_log, &mut self.chance);

@@ -31,7 +31,7 @@ pub struct Place {
     folder: TempDir,
 }
 
-/// What is typed behind the name of a program.
+/// Text behind the name of a program.
 pub trait Typed {
     /// The arguments, one by one.
     fn words(&self) -> Vec<String>;
@@ -69,7 +69,7 @@ impl<T: AsRef<str>> Typed for Vec<T> {
     }
 }
 
-/// What a program said, and how it ended.
+/// Output of a program, and its exit code.
 pub struct Said {
     pub code: Option<i32>,
     pub out: String,
@@ -154,7 +154,7 @@ impl Place {
         Said::from(output)
     }
 
-    /// What the shell of the place says to this line, in which `ptu` is the program.
+    /// Answer of the place's shell to this line, in which `ptu` is the program.
     pub fn shell(&self, line: &str) -> Said {
         let ptu = self.command("");
         let envs = ptu.get_envs();

@@ -16,7 +16,7 @@ use serialport::SerialPort;
 
 use super::{Place, Said, scripts};
 
-/// How much more the system should care for who must keep time.
+/// Arguments of `nice` for a program that must keep time.
 const URGENT: [&str; 2] = ["-n", "-15"];
 /// Longest time anything here takes to come about, also on a machine that is held up.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -245,7 +245,7 @@ impl Observer {
         self.port.write_all(&frame).expect("the port takes a frame");
     }
 
-    /// What arrives within the next few milliseconds.
+    /// Messages that arrive within the next few milliseconds.
     pub fn hear(&mut self) -> Vec<Message> {
         let now = protocol::Instant::from_ms(self.began.elapsed().as_millis() as u64);
         if Instant::now() >= self.keep_alive_due {

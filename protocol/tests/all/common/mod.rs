@@ -1,4 +1,4 @@
-//! What the tests of the wire share: the vector files, and a seeded generator.
+//! Parts shared by the tests of the wire: the vector files, and a seeded generator.
 #![allow(dead_code)]
 
 use std::fs;

@@ -22,7 +22,8 @@ const LITTLE_ROOM: u64 = 1 << 30;
 const NO_ROOM: u64 = 100 << 20;
 /// Times that an instrument is tried.
 const ROUNDS: u32 = 20;
-/// What a Modbus module is registered as, and the unit of its reaction time, which is no uncertainty of a measured time.
+/// Kind as which a Modbus module is registered; its reaction time has a unit of its own, as it is no uncertainty of
+/// a measured time.
 const MODULE: &str = "modbus module";
 const REACTION: &str = "ms reaction";
 /// The newest run is at most this far ahead of a clock that is right, µs: another computer's clock may be off a little.

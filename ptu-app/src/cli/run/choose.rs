@@ -1,4 +1,4 @@
-//! Which procedures and steps are run.
+//! Choice of procedures and steps to run.
 
 use std::sync::Arc;
 

@@ -9,7 +9,7 @@ use protocol::Random;
 use super::histories::{Base, Victim, victims};
 use super::system_calls::{Deed, traced};
 
-/// What a disk writes as a whole, bytes.
+/// Bytes that a disk writes as a whole.
 const SECTOR: usize = 512;
 
 /// A file: what the disk has for sure, and what was asked of it since.
@@ -43,7 +43,7 @@ impl OnDisk {
         asked.iter().for_each(|asked| asked.apply(&mut self.synced));
     }
 
-    /// What is left of it after a power cut, if each sector and each length was written by this chance.
+    /// Content after a power cut, if each sector and each length was written by this chance.
     fn after_cut(&self, chance: f64, random: &mut Random) -> Vec<u8> {
         let mut content = self.synced.clone();
         for asked in &self.asked {

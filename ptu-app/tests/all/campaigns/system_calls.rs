@@ -1,4 +1,4 @@
-//! What a program does to its files and says, in the order in which it does it, as `strace` shows it.
+//! Acts of a program on its files and its output, in their order, as `strace` shows them.
 
 use std::collections::BTreeMap;
 use std::fs::File;

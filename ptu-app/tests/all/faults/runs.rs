@@ -14,7 +14,7 @@ use ptu_runs::run_diagnosis::diagnose_run;
 use ptu_runs::stop::Stop;
 use serde_json::Value;
 
-/// What a run on a faulty unit came to.
+/// Outcome of a run on a faulty unit.
 pub struct FaultRun {
     /// Exit code.
     pub exit: u8,

@@ -44,13 +44,13 @@ pub fn turn_kind(kind: &str) -> &str {
         .unwrap_or("step")
 }
 
-/// What stands outside of steps has no turns.
+/// Turns of a record; one outside steps has none.
 fn turn_of_keys(of: &Value, kind: &str) -> String {
     let [turn, turns] = ["turn", "turns"].map(|key| of[key].as_u64().unwrap_or(1));
     turn_of(turn, turns, kind)
 }
 
-/// What the row of a lost link begins with.
+/// Beginning of a lost link's row.
 const LOST: &str = "link lost at step ";
 
 /// The table at the end of a run.

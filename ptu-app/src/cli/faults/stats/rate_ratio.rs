@@ -2,7 +2,7 @@
 
 use ptu_report::words::Words;
 
-/// How many times as often something was seen in the later half of a course as in the earlier half.
+/// Ratio of the counts in the later half of a course to those in the earlier half.
 pub(super) struct RateRatio {
     pub(super) ratio: f64,
     /// 95 % interval.
