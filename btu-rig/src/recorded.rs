@@ -10,7 +10,8 @@ use crate::procedure::{Driver, Evidence, Refusal};
 use crate::rig::Rig;
 use crate::stimulus::Stimulus;
 
-/// Entries kept of one procedure. Those beyond are counted, and the record then cannot be replayed.
+/// Entries kept of one procedure. Further entries are only counted, and the record then cannot be
+/// replayed.
 pub const MAX_RECORDED: usize = 100_000;
 
 /// What a procedure can do to a bench.

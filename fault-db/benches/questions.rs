@@ -65,7 +65,6 @@ const COUNTS: [(&str, bool, StatKey, Select); 5] = [
     ),
 ];
 
-/// All questions, by name.
 fn questions() -> Vec<(&'static str, Ask)> {
     let lists = [
         ("unit: last 50 faults", UNIT),

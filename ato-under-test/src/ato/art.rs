@@ -21,7 +21,6 @@ pub enum Checks {
     Failed(AtoFailure),
 }
 
-/// Inputs of the state.
 #[derive(Clone, Copy, Debug)]
 pub struct ArtInputs {
     /// Every check passes and nothing has failed on the way.

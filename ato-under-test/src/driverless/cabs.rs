@@ -43,7 +43,6 @@ pub struct CabInputs {
     pub running: bool,
     /// Station of valid station data that are those of a section's beginning.
     pub departs_from: Option<u16>,
-    /// Departure is given.
     pub departure: bool,
 }
 

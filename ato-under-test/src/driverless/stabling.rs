@@ -31,7 +31,6 @@ pub struct StablingInputs {
     pub driverless: Option<bool>,
     /// The last self-test is over, and what failed of it.
     pub tested: Option<SelfTest>,
-    /// Departure is given.
     pub departure: bool,
     /// An automatic run is under way.
     pub running: bool,

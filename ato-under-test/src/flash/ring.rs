@@ -38,7 +38,6 @@ pub struct Stored {
     pub content: [u8; CONTENT_BYTES],
 }
 
-/// Content of a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
     Empty,

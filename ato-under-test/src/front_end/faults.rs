@@ -66,7 +66,6 @@ impl Faults {
         self.rims = Speed::from_mps(self.rims.mps() + (mps - self.rims.mps()) * share);
     }
 
-    /// Effect of a fault at a place now.
     pub fn at(&self, place: Place) -> Option<Effect> {
         let mut here = self.modes.iter().filter(|mode| mode.place == place);
         here.find_map(|mode| mode.acts)

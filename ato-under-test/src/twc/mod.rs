@@ -126,7 +126,8 @@ impl Twc {
         self.refusal_reported = refusal;
     }
 
-    /// Whether a frame is for another train. Such are counted, and logged once for as long as they come.
+    /// Whether a frame is for another train. Such frames are counted, and logged once for as long as
+    /// they come.
     fn passes_over(
         &mut self,
         now: Instant,

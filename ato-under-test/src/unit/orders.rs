@@ -201,7 +201,6 @@ impl Functions {
         self.inputs.mode_switch == ModeSwitch::Driverless
     }
 
-    /// State of the last order.
     pub(super) fn order_state(&self) -> OrderState {
         match (self.stabling.state(), self.cabs.state()) {
             // A train that is ready for a departure may have changed its cabs meanwhile.

@@ -121,7 +121,6 @@ fn into(mode: Option<Mode>) -> String {
     mode.map_or_else(String::new, |mode| format!(": mode {}", mode.label()))
 }
 
-/// Result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub ending: Ending,

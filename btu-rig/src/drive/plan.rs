@@ -16,9 +16,7 @@ pub enum PlanError {
     /// The line has no such section.
     #[error("line {line} has no section {section}; it has {known}")]
     NoSection {
-        /// Name of the line.
         line: String,
-        /// Number that was asked for.
         section: u16,
         /// Numbers of its sections, with commas.
         known: String,
@@ -26,7 +24,6 @@ pub enum PlanError {
     /// A code is not in the unit's code table.
     #[error("section {section}: code \"{code}\" is not in the code table; it has {known}")]
     NoCode {
-        /// Number of the section.
         section: u16,
         /// Name that the track database has.
         code: String,

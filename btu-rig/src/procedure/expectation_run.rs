@@ -11,7 +11,6 @@ use super::evidence::LogState;
 use super::finding::Finding;
 use super::plan::Expectation;
 
-/// State of an expectation so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ExpectationRun {
     decided: bool,

@@ -186,12 +186,10 @@ pub enum Finding {
     NotBegun(Box<Finding>),
     /// A step before did not pass, after which no other is run.
     NotPassed {
-        /// Name of the step.
         step: String,
     },
     /// The step before, from which this one continues, was not tested.
     NotTestedBefore {
-        /// Name of the step.
         step: String,
     },
     /// Only a bench with its harness can do it.
@@ -243,7 +241,6 @@ pub enum Finding {
     },
     /// A fault was found while the unit was brought up, or settled again.
     FoundBefore {
-        /// Name of the fault.
         fault: String,
         before: Before,
     },
@@ -261,7 +258,6 @@ pub enum Finding {
     CheckFailed {
         /// Procedure of the step.
         procedure: String,
-        /// Name of the step.
         step: String,
         /// Number of the repetition, from 1.
         turn: u32,
@@ -277,14 +273,11 @@ pub enum Finding {
     NotToldByUnit {
         /// Version of the software, if the unit says it.
         software: Option<String>,
-        /// Names of the signals.
         signals: Vec<String>,
     },
     /// The tester could not begin or go on, in both languages, because a file, a port or a setting does not serve.
     Prevented {
-        /// The reason in English.
         english: String,
-        /// The reason in Korean.
         korean: String,
     },
     /// Words of a script.

@@ -23,7 +23,6 @@ impl Bound {
         }
     }
 
-    /// Number of the bound, if it has one.
     pub(super) fn number(self) -> Option<f64> {
         match self {
             Self::At(value) => Some(value),

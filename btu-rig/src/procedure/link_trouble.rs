@@ -15,7 +15,6 @@ use thiserror::Error;
 pub struct LinkFailure {
     /// Port of the link, as the user named it.
     pub link: String,
-    /// Failure of the port.
     pub why: PortFailure,
 }
 
@@ -49,7 +48,6 @@ pub enum LinkTrouble {
     Instrument {
         /// Name of the instrument in the bench file.
         instrument: String,
-        /// Fault of the instrument.
         fault: Box<InstrumentFault>,
     },
     /// Another tester has the unit.
@@ -86,7 +84,6 @@ pub enum LinkTrouble {
     Silent {
         /// Where it is silent.
         channel: Channel,
-        /// Duration of the silence.
         silence: Duration,
         /// Refused frames in place of good ones.
         refused: Option<Refused>,
@@ -294,7 +291,6 @@ pub enum Refused {
     /// Number of frames that do not continue those before, as from a unit that starts again and
     /// again.
     OfStarts(u64),
-    /// Number of frames refused for any reason.
     Frames(u64),
 }
 
@@ -313,11 +309,8 @@ pub struct Changed {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Property {
-    /// Serial number.
     Serial,
-    /// Name of its configuration.
     Configuration,
-    /// Checksum of its configuration.
     ConfigurationChecksum,
     /// Checksum of its track database.
     TrackChecksum,

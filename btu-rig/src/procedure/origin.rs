@@ -25,7 +25,6 @@ impl Origin {
         }
     }
 
-    /// Origin of a number with this source.
     pub(super) fn of(source: impl Into<String>) -> Self {
         Self {
             sources: BTreeSet::from([source.into()]),

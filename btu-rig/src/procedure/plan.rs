@@ -289,7 +289,6 @@ impl Measure {
     }
 }
 
-/// A measurement of each item of the self-test.
 pub(super) fn of_self_test() -> impl Iterator<Item = Measure> {
     SelfTest::SPEC.entries.iter().map(|(bit, name, _)| Measure {
         name: format!("self_test.{}", name.to_lowercase()),

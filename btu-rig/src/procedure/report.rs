@@ -11,7 +11,6 @@ use super::plan::Action;
 pub struct Measurement {
     /// Name within its step.
     pub name: String,
-    /// The value, if there is one.
     pub value: Option<f64>,
     /// Unit of the value; empty for counts and states.
     pub unit: &'static str,

@@ -91,7 +91,6 @@ pub struct Rig {
     /// What the wayside sends in a scan through the loop as waveform.
     in_loop: Vec<u8>,
     wayside: Wayside,
-    /// Number of the train.
     train_number: u16,
     tcms: Tcms,
     /// What TCMS last sent to the train.

@@ -86,7 +86,6 @@ impl Rig {
         self.tester.self_test_items()
     }
 
-    /// Result of one item of that self-test.
     pub fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
         let items = self.self_test_items().iter();
         items.copied().find(|one| one.item == item)

@@ -10,13 +10,10 @@ use crate::stored::{door_side, running_mode};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub struct StationData {
-    /// Route number.
     pub route: u16,
-    /// Section number.
     pub section: u16,
     pub station: u16,
     pub next_station: u16,
-    /// Loop number.
     pub loop_id: u16,
     /// Fixed speed, km/h; `None` = no order.
     pub fixed_speed_kmh: Option<u8>,
@@ -24,7 +21,6 @@ pub struct StationData {
     pub running_mode: RunningMode,
     #[serde(with = "door_side")]
     pub door_side: DoorSide,
-    /// Departure given.
     pub departure: bool,
     /// Train number; 0 = that of the train.
     pub train_number: u16,

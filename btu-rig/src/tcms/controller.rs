@@ -5,9 +5,7 @@ use crate::lever::Lever;
 
 use super::data::TcmsData;
 
-/// Full brake as a value.
 pub const FULL_BRAKE: i16 = -1024;
-/// Full power as a value.
 pub const FULL_POWER: i16 = 1023;
 /// Distance of the end positions inside the break points, V: outside of them the controller counts
 /// as failed.
@@ -20,7 +18,6 @@ pub struct ControllerInputs {
     pub power: bool,
     /// B contact.
     pub brake: bool,
-    /// Neutral contact.
     pub neutral: bool,
     /// Potentiometer, V.
     pub volts: f64,

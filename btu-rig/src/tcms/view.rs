@@ -27,7 +27,6 @@ pub struct TcmsView {
     pub power_cuts: PowerCuts,
     /// Lamps that are lit.
     pub lamps: Lamps,
-    /// Failures of the equipment.
     pub found: EquipmentFailures,
     /// Voltage of the controller that counts, V.
     pub volts: f64,

@@ -24,12 +24,10 @@ impl CarSet {
         }
     }
 
-    /// Whether a car is in the set.
     pub fn contains(self, car: usize) -> bool {
         car < MAX_CARS && self.0 & (1 << car) != 0
     }
 
-    /// Whether no car is in the set.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }

@@ -19,7 +19,6 @@ pub struct ChannelConfig {
     pub hum_mv: f64,
     /// Frequency of the supply, Hz.
     pub hum_hz: f64,
-    /// Lines of the hum.
     pub hum_lines: u32,
     /// A line of the traction inverter, mV rms.
     pub inverter_mv: f64,

@@ -1,10 +1,10 @@
 //! Proves repairs by passing runs.
 //!
-//! A run that passed, began when a repair was known here, and passed the step that saw the fault last is noted at the
-//! repaired fault, and at the repaired consequences in its case. Whether that proves the repair depends on how often the fault
-//! showed while it was there: an intermittent one hides. Who knows the rate decides ([`Store::repairs_to_prove`],
-//! [`Store::confirm_repairs`]); until then the repair is a claim, as is a state that a person sets. A fault that no step saw,
-//! for instance one read from a unit's log, is verified by a person.
+//! A run that passed, began when a repair was known here, and passed the step that saw the fault last is noted at
+//! the repaired fault, and at the repaired consequences in its case. Whether that proves the repair depends on how
+//! often the fault showed while it was there: an intermittent one hides. The caller, who knows the rate, decides
+//! ([`Store::repairs_to_prove`], [`Store::confirm_repairs`]); until then the repair is a claim, as is a state that a
+//! person sets. A fault that no step saw, for instance one read from a unit's log, is verified by a person.
 
 use std::collections::BTreeMap;
 

@@ -32,9 +32,9 @@ macro_rules! practised {
     };
 }
 
-/// Confirmed repairs `r`, each with the event `c` that a run has confirmed it by, for [`RepairsOf`]: the text from `FROM` on.
-/// Of an opening of a fault that is the last repair, and none where parts of several names were changed at once: which of
-/// them helped is not known.
+/// Confirmed repairs `r`, each with the event `c` that a run has confirmed it by, for [`RepairsOf`]: the text from
+/// `FROM` on. Each opening of a fault gives its last repair, and none where parts of several names were changed at
+/// once: which of them helped is not known.
 macro_rules! confirmed {
     () => {
         concat!(

@@ -16,7 +16,6 @@ pub struct Said {
     pub notes: Vec<String>,
 }
 
-/// Progress of a sync, as text.
 pub fn progress(progress: SyncProgress, words: &Words) -> String {
     let SyncProgress { phase, done, total } = progress;
     let phase = words.care.phase(phase);
@@ -149,7 +148,6 @@ fn span(us: u64) -> String {
     }
 }
 
-/// Result of pruning, or of a dry run, as text.
 pub fn pruned(counts: &PruneCounts, dry_run: bool, words: &Words) -> String {
     let care = &words.care;
     let (gone, over) = match dry_run {

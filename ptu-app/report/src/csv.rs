@@ -11,7 +11,6 @@ use crate::words::Language;
 use ptu_runs::clock::rfc3339;
 use ptu_runs::stored::kind_of;
 
-/// Names of the columns.
 const COLUMNS: [&str; 21] = [
     "run",
     "unit_serial",

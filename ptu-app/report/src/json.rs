@@ -175,7 +175,6 @@ pub const FAULT_KEYS: [&str; 12] = [
     "trace_id",
 ];
 
-/// A fault in a list.
 pub fn fault_json(fault: &FaultSummary) -> Value {
     json!({
         "id": fault.id.to_string(),

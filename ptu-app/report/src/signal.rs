@@ -26,9 +26,7 @@ const CURVE: f64 = 220.0;
 
 /// A recording that was read.
 pub struct Recording {
-    /// Name of the file.
     pub file: String,
-    /// Name of the unit configuration.
     pub unit_config: String,
     /// Voltage of full scale, mV.
     pub full_scale_mv: f64,

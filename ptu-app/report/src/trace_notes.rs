@@ -74,7 +74,6 @@ pub fn noted_by(note: &RunNote, run: &RunDetail, words: &Words) -> String {
     }
 }
 
-/// A note on a run as JSON.
 pub(crate) fn note_json(note: &RunNote) -> Value {
     let place = note.place.map(
         |place| json!({ "trace": place.trace.to_string(), "time_s": place.at_us as f64 / 1e6 }),

@@ -45,7 +45,6 @@ pub struct ScriptsDirectory(ScriptFiles);
 /// A data file's content and checksums.
 #[derive(Clone, Debug)]
 pub struct DataFile<T> {
-    /// Name it was asked for by.
     pub name: String,
     /// Changes to the file from outside, `KEY=VALUE`, in order.
     pub settings: Vec<String>,
@@ -300,17 +299,14 @@ impl ScriptsDirectory {
         names.iter().map(find).collect()
     }
 
-    /// Names of the lines there are.
     pub fn line_names(&self) -> Vec<String> {
         self.names("lines")
     }
 
-    /// Names of the unit configurations there are.
     pub fn unit_config_names(&self) -> Vec<String> {
         self.names(UNITS)
     }
 
-    /// Names of the trains there are.
     pub fn train_names(&self) -> Vec<String> {
         self.names("trains")
     }

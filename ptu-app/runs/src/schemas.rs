@@ -10,7 +10,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 
 use crate::{clauses, fleet, places, structure, symptoms};
 
-/// A schema, and the files that it is of.
+/// A schema, and the files that have it.
 pub struct FileSchema {
     /// Name of the schema, without the ending.
     pub name: &'static str,

@@ -53,7 +53,6 @@ impl Stop {
         (self.presses() > 0).then_some(left_out)
     }
 
-    /// Presses so far.
     pub fn presses(&self) -> u32 {
         self.0.count.load(Ordering::Relaxed)
     }

@@ -34,7 +34,6 @@ use super::told::{Facts, marks, sorted, turn_of, turned, value_and_limits};
 /// Parts that faults name.
 pub const PARTS: [&str; 4] = ["eb_relay", "tra", "twc_cpu", "speed_sensor_1"];
 
-/// A run that was made.
 pub struct Made {
     pub seed: u64,
     pub id: Id,
@@ -529,7 +528,6 @@ impl<'a> Making<'a> {
         (read.id, self.facts(read.id))
     }
 
-    /// Facts of the run.
     fn facts(mut self, id: Id) -> Facts {
         let planned = self.planned();
         let of = |rank: u8| self.worst.values().filter(|worst| **worst == rank).count();

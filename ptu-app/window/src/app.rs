@@ -176,7 +176,6 @@ impl App {
         self.closed
     }
 
-    /// The settings as they are now.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }

@@ -80,7 +80,6 @@ impl Item {
         }
     }
 
-    /// Number of the item, if it is one.
     pub(super) fn number(&self) -> Option<f64> {
         match self {
             Self::Int(n) => Some(*n as f64),

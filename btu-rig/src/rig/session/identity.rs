@@ -11,7 +11,6 @@ use protocol::signal::{Sample, Signal};
 pub struct UnitRecord {
     /// The train, as the depot names it.
     pub train: String,
-    /// Serial number.
     pub serial: String,
     /// Software version: major, minor, patch.
     pub software: [u8; 3],
@@ -34,7 +33,6 @@ pub struct ExpectedIdentity {
     pub software: Option<[u8; 3]>,
 }
 
-/// Result of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Compared {
     signal: Signal,

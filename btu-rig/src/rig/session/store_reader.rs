@@ -227,7 +227,6 @@ impl StoreReader {
         }
     }
 
-    /// State of reading the store.
     pub fn state(&self) -> &StoreState {
         &self.state
     }

@@ -328,7 +328,6 @@ impl Tester {
         self.exchange.self_test()
     }
 
-    /// The log as read so far.
     pub fn log(&self) -> &LogReader {
         &self.log
     }

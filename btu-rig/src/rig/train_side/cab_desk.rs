@@ -177,7 +177,6 @@ impl CabDesk {
         self.switches.set(switch, on);
     }
 
-    /// Whether a switch of the train is on.
     pub fn is_on(&self, switch: TrainSwitch) -> bool {
         self.switches.on(switch)
     }

@@ -25,7 +25,6 @@ pub struct InCoils<'a> {
     pub motion: &'a Motion,
     /// Number and place of each marker along the way.
     pub markers: &'a mut dyn Iterator<Item = (u8, f64)>,
-    /// A marker that was asked for.
     pub asked_marker: Option<u8>,
 }
 

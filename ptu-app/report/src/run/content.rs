@@ -245,7 +245,6 @@ fn faults(sheet: &Sheet, words: &Words) -> Vec<Block> {
     blocks
 }
 
-/// Notes on the run.
 fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let report = &words.report;
     if sheet.run.notes.is_empty() {

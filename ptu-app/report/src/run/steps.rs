@@ -136,7 +136,6 @@ pub fn verdict(verdict: Verdict, words: &Words) -> Cell {
     Cell::Verdict(tone(verdict), words.common.stored_verdict(verdict).into())
 }
 
-/// Tone of a verdict.
 pub fn tone(verdict: Verdict) -> Tone {
     match verdict {
         Verdict::Passed => Tone::Good,

@@ -15,7 +15,6 @@ pub struct TraceInfo {
     pub trace_id: String,
     /// The run it was recorded in.
     pub run_id: String,
-    /// Serial number of the unit.
     pub unit_serial: String,
     /// UTC of the first row, for people.
     pub t0: String,

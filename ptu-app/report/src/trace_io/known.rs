@@ -22,7 +22,6 @@ pub(super) struct Known {
     is_of_a_trace: bool,
 }
 
-/// Signals by their names.
 #[derive(Default)]
 pub(super) struct KnownSignals {
     signals: Vec<Known>,

@@ -106,7 +106,6 @@ pub(super) fn plain(name: &str) -> Channel {
     }
 }
 
-/// The failure of a file that is wrong.
 pub(super) fn wrong(file: &Path, what: &str) -> Failure {
     Failure::usage(FileTrouble::wrong(file.display(), what))
 }

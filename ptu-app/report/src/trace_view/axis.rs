@@ -26,7 +26,6 @@ pub enum Axis {
         zero_row: i64,
         /// Time from row to row.
         period_us: i64,
-        /// Rows there are.
         rows: usize,
     },
     /// Metres in the direction the train went over all.
@@ -97,7 +96,6 @@ impl Axis {
         }
     }
 
-    /// Rows there are.
     pub fn rows(&self) -> usize {
         match self {
             Self::Time { rows, .. } => *rows,

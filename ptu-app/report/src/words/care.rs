@@ -68,7 +68,6 @@ wordings! {
 }
 
 impl Care {
-    /// Phase of a sync, as text.
     pub fn phase(&self, phase: SyncPhase) -> &'static str {
         match phase {
             SyncPhase::Sending => self.sending,

@@ -21,7 +21,6 @@ pub enum Language {
 impl Language {
     pub const ALL: [Self; 2] = [Self::English, Self::Korean];
 
-    /// Name of the language, in the language.
     pub fn name(self) -> &'static str {
         match self {
             Self::English => "English",

@@ -80,7 +80,6 @@ use wordings;
 /// All wordings in one language.
 #[derive(Debug)]
 pub struct Words {
-    /// Language of the words.
     pub language: Language,
     /// Verdicts, states, units and what every page says.
     pub common: Common,

@@ -14,12 +14,10 @@ fn part(id: &str) -> Option<&'static Lru> {
     PARTS.iter().find(|part| part.id == id)
 }
 
-/// English name of a part.
 pub(super) fn english_part(id: &str) -> &str {
     part(id).map_or(id, |part| &part.name)
 }
 
-/// Korean name of a part.
 pub(super) fn korean_part(id: &str) -> &str {
     part(id).map_or(id, |part| &part.name_ko)
 }

@@ -29,7 +29,6 @@ pub enum Doors {
 /// End of a section of a service.
 #[derive(Clone, Debug)]
 pub struct Arrival {
-    /// Number of the section.
     pub section: u16,
     pub outcome: Outcome,
     /// The doors at its end.

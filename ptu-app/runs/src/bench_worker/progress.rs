@@ -23,7 +23,6 @@ const KEPT: usize = 5_000;
 /// A run's procedures, steps, measurements and faults so far.
 #[derive(Debug)]
 pub struct Progress {
-    /// Unit it is run on.
     pub unit: String,
     /// SHA-256 over the scripts it is of.
     pub scripts_sha256: String,
@@ -51,7 +50,6 @@ pub struct Progress {
     worst_left: Duration,
 }
 
-/// A procedure of a run.
 #[derive(Debug)]
 pub struct ProcedureProgress {
     pub procedure: Arc<Procedure>,

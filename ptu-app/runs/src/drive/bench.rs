@@ -14,7 +14,6 @@ use crate::link::{SIM_SERIAL, SimLink};
 /// Material of the bench of a drive.
 #[derive(Clone)]
 pub struct DriveBench {
-    /// Unit configuration.
     pub config: DataFile<UnitConfig>,
     /// Track database.
     pub line: DataFile<Line>,

@@ -33,7 +33,6 @@ pub struct Trial {
 pub struct MonteCarlo {
     /// The case, with nominal values.
     pub case: Case,
-    /// Runs asked for.
     pub asked: usize,
     /// Runs that were made, by seed.
     pub trials: Vec<Trial>,

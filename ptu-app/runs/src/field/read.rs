@@ -44,7 +44,6 @@ pub struct StoredPlace {
 /// Result of reading the unit's stored memory.
 #[derive(Clone, Debug, Default)]
 pub struct StoredRead {
-    /// Present power-up.
     pub power_up: u32,
     /// Rows of the run record, if they were asked for.
     pub rows: Vec<StoredRow>,

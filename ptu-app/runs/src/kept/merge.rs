@@ -29,7 +29,6 @@ pub struct Missing {
     pub runs: usize,
     /// Runs that no file has.
     pub missing: usize,
-    /// Number of shards.
     pub shards: u32,
     /// The shards that lack runs.
     pub of_shards: Vec<ShardMissing>,

@@ -64,7 +64,6 @@ impl Head {
 }
 
 impl Plan {
-    /// Number of runs.
     pub fn len(&self) -> usize {
         let seeds = self.seeds.map_or(1, |(_, count)| count);
         (self.names.len()).saturating_mul(usize::try_from(seeds).unwrap_or(usize::MAX))
@@ -86,7 +85,6 @@ impl Plan {
         }
     }
 
-    /// The name of the run with this number.
     pub fn name(&self, number: usize) -> String {
         let (place, seed) = self.place(number);
         let name = self.names.get(place).map_or("", String::as_str);

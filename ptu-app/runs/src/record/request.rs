@@ -27,10 +27,8 @@ pub struct CompareRequest {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     pub trace: Id,
-    /// Serial number of the unit.
     pub unit_serial: String,
     pub line: String,
-    /// Unit configuration.
     pub unit_config: String,
     pub comparison: RecordComparison,
 }

@@ -50,7 +50,6 @@ impl Link {
 }
 
 impl Explanation {
-    /// The first deviation, if there is any.
     pub fn first(&self) -> Option<&Deviation> {
         self.comparison.deviations.first()
     }

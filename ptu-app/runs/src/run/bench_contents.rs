@@ -25,7 +25,6 @@ use crate::link::Endpoint;
 /// A data file a bench was made of.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BenchFile {
-    /// Its name.
     pub name: String,
     /// Changes to the file by `--set`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -34,14 +33,12 @@ pub struct BenchFile {
     pub sha256: String,
 }
 
-/// Content of the benches of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BenchContents {
     /// Where the unit was: `sim`, `serial:…`, `tcp:…`.
     pub source: String,
     /// Serial number of the unit.
     pub serial: String,
-    /// Unit configuration.
     pub unit_config: BenchFile,
     /// Track database.
     pub line: BenchFile,
@@ -69,7 +66,6 @@ pub struct BenchContents {
 pub struct Stimuli {
     /// When the procedure began, µs on the bench's clock: 0 where the unit was powered up for it.
     pub began_us: u64,
-    /// Recorded stimuli.
     #[serde(rename = "tape")]
     pub record: StimulusRecord,
 }

@@ -44,7 +44,6 @@ pub struct BenchSetup {
     pub endpoint: Endpoint,
     /// Connection of the bench harness. With `Harness::None` the embedded unit is aboard a train.
     pub harness: Harness,
-    /// Unit configuration.
     pub config: DataFile<UnitConfig>,
     /// Track database.
     pub line: DataFile<Line>,
@@ -58,7 +57,6 @@ pub struct BenchSetup {
     pub scatter: Option<Arc<BenchScatter>>,
     /// Codes, TWC, markers and pulses are waveforms that are disturbed so; none = numbers.
     pub waveforms: Option<ChannelConfig>,
-    /// Serial number asked for.
     pub serial: Option<String>,
     /// Identity that the unit should have.
     pub expected: ExpectedIdentity,

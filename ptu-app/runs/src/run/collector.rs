@@ -38,7 +38,6 @@ impl Listener for () {
     fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
 }
 
-/// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub id: Id,

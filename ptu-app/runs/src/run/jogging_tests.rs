@@ -44,7 +44,6 @@ struct Stop {
     backward: bool,
 }
 
-/// Result of a recovery.
 #[derive(Debug)]
 struct Recovery {
     tries: u32,

@@ -110,7 +110,6 @@ impl<L: UnitLink> UnitLink for FaultyLink<L> {
     }
 }
 
-/// The result of a procedure.
 struct ProcedureEnd {
     verdict: Verdict,
     message: String,

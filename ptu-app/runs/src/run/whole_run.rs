@@ -290,7 +290,6 @@ pub struct RunStart {
 }
 
 impl RunStart {
-    /// Now.
     pub fn now() -> Self {
         Self {
             at_us: clock::now_us(),

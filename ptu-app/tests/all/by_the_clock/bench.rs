@@ -126,8 +126,8 @@ impl Bench {
         place.write("serial.toml", &(text + &supply))
     }
 
-    /// Runs procedures on a served unit that is wired to the bench of this file; gives the exit code and the run. Of the last
-    /// ports of the bench so many have no wires.
+    /// Runs procedures on a served unit that is wired to the bench of this file; gives the exit code and the run.
+    /// The last `unwired` ports of the bench have no wires.
     fn run(&self, place: &Place, asked: &str, file: &str, unwired: usize) -> (Option<i32>, Value) {
         let unit = Unit::on_tcp(&[]);
         let port = unit.port.rsplit(':').next().expect("a port").to_owned();

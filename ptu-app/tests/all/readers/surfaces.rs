@@ -332,7 +332,6 @@ pub fn texts(page: &str) -> Vec<String> {
     texts.map(read).filter(|text| !text.is_empty()).collect()
 }
 
-/// Texts of a page as it is printed.
 pub fn printed_texts(page: &Page) -> Vec<String> {
     let text = |item: &Item| match item {
         Item::Text(text) => {

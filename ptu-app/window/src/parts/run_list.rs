@@ -19,7 +19,6 @@ use ptu_runs::stored::from_stored;
 /// Number of runs that are listed.
 const MOST: u32 = 2_000;
 
-/// State of the list.
 #[derive(Default)]
 pub struct RunList {
     runs: CachedResponse<Vec<RunSummary>>,

@@ -10,7 +10,6 @@ use ptu_report::words::Words;
 /// Width of the field for a name, points.
 const FIELD: f32 = 200.0;
 
-/// A question and its name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SavedQuestion<T> {
     name: String,

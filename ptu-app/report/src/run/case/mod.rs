@@ -55,7 +55,6 @@ pub struct Repair {
 /// How far a repair is proved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// Runs have proved it.
     Proved,
     /// A person says it holds: who, when and why.
     Vouched(String, i64, String),

@@ -151,7 +151,6 @@ fn shown(measured: &MeasurementRecord, words: &Words) -> [Cell; 2] {
     [Cell::Text(tone, value(measured, words)), Cell::Gauge(gauge)]
 }
 
-/// Limits as text.
 fn limits(measured: &MeasurementRecord, words: &Words) -> String {
     let report = &words.report;
     let unit = &words.unit(&measured.unit);
@@ -166,7 +165,6 @@ fn limits(measured: &MeasurementRecord, words: &Words) -> String {
     }
 }
 
-/// Name of a step.
 pub fn name_of(step: &StepRecord, words: &Words) -> String {
     match outside_of(step) {
         Some(place) => words.common.outside(place).to_owned(),

@@ -188,8 +188,8 @@ impl Wheels {
         }
     }
 
-    /// True speed over that measured: by any of them, and by those of the range that were keyed in at standstill. Who
-    /// keys in a greater one measures more than the train runs, and is slower.
+    /// True speed over measured speed: by any diameter keyed in, and by diameters of the permitted range keyed in at
+    /// standstill. With a greater diameter the unit measures more than the train runs, and the train is slower.
     fn note(&mut self, seen: Observed<'_>) -> [f64; 2] {
         if !seen.powered {
             (self.keyed, self.admitted) = (1.0, 1.0);

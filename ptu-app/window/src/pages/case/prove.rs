@@ -24,7 +24,6 @@ use ptu_runs::clock::now_us;
 use ptu_runs::keys;
 use ptu_runs::run::Outcome;
 
-/// State of the proof.
 #[derive(Default)]
 pub struct Proof {
     /// The part was fitted; the unit is connected again as soon as it is disconnected.

@@ -64,8 +64,8 @@ impl Change {
         }
     }
 
-    /// Shows it: only what the fault's state allows, and nothing while that state is being read again. Of a closed fault that
-    /// was seen again since, nothing.
+    /// Shows the changes that the fault's state allows; none while that state is being read again, and none of a
+    /// closed fault that was seen again since.
     pub fn show(
         &mut self,
         ui: &mut Ui,

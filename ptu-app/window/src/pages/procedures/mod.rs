@@ -230,7 +230,6 @@ impl ProceduresPage {
         chosen.unwrap_or_default()
     }
 
-    /// Orders the chosen procedures on a unit.
     fn order(&mut self, unit: u64, adaptive: bool, context: &mut PageContext<'_>) {
         let how = RunSettings {
             operator: context.settings.operator.clone(),

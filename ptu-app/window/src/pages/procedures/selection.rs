@@ -88,7 +88,6 @@ impl Selection {
         rest
     }
 
-    /// Share of a procedure that is chosen.
     pub fn share(&self, procedure: &Procedure) -> Share {
         let chosen = self.places(procedure).len();
         match chosen {

@@ -57,7 +57,6 @@ impl ControlChart {
         (self.of.measurement.clone(), self.of.step.clone())
     }
 
-    /// Chooses a measurement and a step.
     pub fn choose(&mut self, measurement: Option<String>, step: Option<(String, String)>) {
         self.of = Measured { measurement, step };
     }

@@ -28,7 +28,6 @@ use ptu_runs::run::BenchSetup;
 
 pub struct View<'a> {
     pub words: &'static Words,
-    /// The bench as it is now.
     pub seen: &'a BenchSnapshot,
     pub setup: &'a BenchSetup,
     /// Section laid along the way by hand.
