@@ -64,11 +64,11 @@ enum Phase {
     /// The run's own controller drives.
     #[default]
     Idle,
-    /// Cycles for which the train is held before a try.
+    /// The train is held before a try: cycles so far.
     Rests(u32),
-    /// Cycles for which the train is held with the direction ordered.
+    /// The train is held with the direction ordered: cycles so far.
     Turns(u32),
-    /// Cycles for which the train is powered; whether it has moved.
+    /// The train is powered: cycles so far, and whether it has moved.
     Goes(u32, bool),
 }
 

@@ -78,7 +78,7 @@ impl Tachometers {
         }
     }
 
-    /// Share by which the wheels run farther than is measured, as markers have proved.
+    /// Sets the share by which the wheels run farther than is measured, as markers have proved.
     pub fn correct(&mut self, farther: f64) {
         self.farther = farther;
     }

@@ -227,7 +227,7 @@ fn in_order(steps: &[StepRecord]) -> Vec<Key<'_>> {
     keys.filter(|key| seen.insert(*key)).collect()
 }
 
-/// Steps by their names; of several the one that tells.
+/// Steps by their names; of several records of one step, the one with the highest rank.
 fn by_name(steps: &[StepRecord]) -> BTreeMap<Key<'_>, &StepRecord> {
     let mut all: BTreeMap<_, &StepRecord> = BTreeMap::new();
     for step in steps {
@@ -237,7 +237,7 @@ fn by_name(steps: &[StepRecord]) -> BTreeMap<Key<'_>, &StepRecord> {
     all
 }
 
-/// Of two records of one step the one with the higher rank, the earlier of two alike.
+/// Of two records of one step, the one with the higher rank; `one` if the ranks are equal.
 fn telling<'a>(one: &'a StepRecord, other: &'a StepRecord) -> &'a StepRecord {
     match rank(other.verdict) > rank(one.verdict) {
         true => other,

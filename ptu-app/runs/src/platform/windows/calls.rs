@@ -16,7 +16,7 @@ use windows_sys::Win32::System::JobObjects::{
 };
 use windows_sys::Win32::System::Threading::GetCurrentProcess;
 
-/// Limits that Windows puts on a process and its children.
+/// A limit that Windows puts on this process, and on each of its children.
 pub enum JobLimit {
     /// Memory that it may have, bytes.
     Memory(usize),
