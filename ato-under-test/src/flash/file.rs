@@ -25,7 +25,7 @@ impl FileFlash {
     /// else is left as it is.
     ///
     /// # Errors
-    /// Why it is none, for a person.
+    /// The file cannot be used as a flash; the reason in words.
     pub fn open(path: &Path) -> Result<Self, String> {
         let cannot = |why: &dyn core::fmt::Display| {
             format!("cannot use {} as a unit's memory: {why}", path.display())

@@ -149,7 +149,7 @@ impl Memory {
     /// Stores the time that a tester tells.
     ///
     /// # Errors
-    /// Why it is not stored.
+    /// The time is out of range, too many were sent, or it could not be stored.
     pub fn set_clock(&mut self, now: Instant, told: SetClock) -> Result<(), SetClockError> {
         // However many were sent, one at most half as uncertain as the best is stored: at most 17 more.
         let best = self.clock.map_or(u16::MAX, |clock| clock.uncertainty_ms);

@@ -33,7 +33,7 @@ pub const NO_AUTHENTICATION: &str =
 /// listens there.
 ///
 /// # Errors
-/// What to do instead, for a person.
+/// Other computers reach the address; the text says what to do instead.
 pub fn check_exposed(address: &str, expose: bool) -> Result<(), String> {
     let mut found = address.to_socket_addrs().into_iter().flatten();
     match !expose && found.any(|at| !at.ip().is_loopback()) {

@@ -60,7 +60,7 @@ impl ScriptsDirectory {
     /// The directory given, alone; else what [`ScriptFiles::find`] finds.
     ///
     /// # Errors
-    /// What is given is no directory.
+    /// `given` is no directory.
     pub fn find(given: Option<&Path>) -> Result<Self, Failure> {
         Ok(Self(ScriptFiles::find(given)?))
     }

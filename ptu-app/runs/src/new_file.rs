@@ -101,7 +101,7 @@ impl NewFile {
     /// Begins a file of a kind that is to stand at `place`.
     ///
     /// # Errors
-    /// What stands there cannot be replaced, or no file can be made in that folder.
+    /// The file at `place` cannot be replaced, or no file can be made in that folder.
     pub fn begin(place: &Path, kind: Kind<'_>) -> Result<Self, Failure> {
         let cannot = |why| Failure::usage(FileTrouble::Unwritten(place.display().to_string(), why));
         place.file_name().ok_or_else(|| cannot(Why::NoFileName))?;

@@ -50,7 +50,7 @@ impl ScriptFiles {
     /// the system's over the embedded ones.
     ///
     /// # Errors
-    /// What is given is no folder.
+    /// `given` is no folder.
     pub fn find(given: Option<&Path>) -> Result<Self, ScriptsError> {
         if let Some(folder) = given {
             return match folder.is_dir() {

@@ -122,10 +122,10 @@ impl BenchWorker {
         self.send(Order::Arm(bench_epoch));
     }
 
-    /// Whether something can be done to the unit by hand now.
+    /// Whether `stimulus` can be given by hand now.
     ///
     /// # Errors
-    /// Why not.
+    /// The reason why it cannot.
     pub fn permits(&self, stimulus: &Stimulus) -> Result<(), Refused> {
         permit(stimulus, &self.live_state.read())
     }

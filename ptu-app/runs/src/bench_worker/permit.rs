@@ -28,7 +28,7 @@ pub enum Refused {
 /// Stimuli of the TEST board act on an armed unit only; all others go through the bench harness.
 ///
 /// # Errors
-/// Why not.
+/// The reason why it cannot.
 pub fn permit(stimulus: &Stimulus, live: &LiveData) -> Result<(), Refused> {
     match live.phase {
         Phase::Idle => {}

@@ -173,8 +173,7 @@ impl KeyList {
         text
     }
 
-    /// Adds a key; a key that is there already is valid on the days that both entries allow.
-    /// Returns the entry as it is then.
+    /// Adds a key, and returns its entry: a key known before is then valid only on days that both entries allow.
     ///
     /// # Errors
     /// The list has the key under another name.
@@ -242,10 +241,10 @@ impl KeyEntry {
         format!("{} ({})", self.who, self.kind)
     }
 
-    /// Looks whether it can be one.
+    /// Checks the name, the digits of the key and the days.
     ///
     /// # Errors
-    /// Why not.
+    /// One of them has another form, in words.
     pub fn check(&self) -> Result<(), String> {
         name_argument(&self.who)?;
         let hex = self

@@ -276,7 +276,7 @@ fn reason(status: ExitStatus, words: &str, most_s: u64) -> String {
 /// The loading process: loads the scripts that its standard input names, within its limits.
 ///
 /// # Errors
-/// Its input is not understood, or its output is no longer read.
+/// Input is not understood, output is no longer read, or a limit cannot be set.
 pub fn serve() -> Result<(), Failure> {
     let failed = |error: &dyn std::fmt::Display| {
         Failure::bench(RunTrouble::NotLoadedApart(error.to_string()))

@@ -52,7 +52,7 @@ impl Cab {
     /// Reads an order from a line.
     ///
     /// # Errors
-    /// What is wrong with the line, and which orders there are.
+    /// The line is no order; the text says what is wrong, and for an unknown word names the orders.
     pub fn order(&self, line: &str) -> Result<Order, String> {
         let mut parts = line.split_whitespace();
         let word = parts.next().unwrap_or_default();
