@@ -11,7 +11,7 @@ const FELT_OVER: Duration = Duration::from_ms(200);
 /// The faults of this unit and how much of each acts at present.
 ///
 /// All chances of faults are drawn here, and each mode's spells from a generator of its own: whatever
-/// is injected, the rest of the unit draws as without it.
+/// is injected, the other random draws of the unit stay the same.
 #[derive(Debug)]
 pub struct Faults {
     modes: Vec<Injected>,
@@ -66,13 +66,12 @@ impl Faults {
         self.rims = Speed::from_mps(self.rims.mps() + (mps - self.rims.mps()) * share);
     }
 
-    /// What is wrong at a place now.
     pub fn at(&self, place: Place) -> Option<Effect> {
         let mut here = self.modes.iter().filter(|mode| mode.place == place);
         here.find_map(|mode| mode.acts)
     }
 
-    /// What a gain at `place` multiplies by, 1 without one.
+    /// Factor of a gain at `place`, 1 without one.
     pub fn gain(&self, place: Place) -> f64 {
         match self.at(place) {
             Some(Effect::Gain { factor }) => factor,
@@ -85,7 +84,7 @@ impl Faults {
         self.random.chance(p)
     }
 
-    /// Nothing works at a place now.
+    /// Whether nothing works at a place now.
     pub fn dead(&self, place: Place) -> bool {
         matches!(self.at(place), Some(Effect::Dead))
     }

@@ -21,8 +21,8 @@
 #![no_std]
 
 extern crate alloc;
-// For tests alone: here the whole library could name it whenever programs are built, too, and no build would see that
-// the controller does. Each file of `serve` names it for itself.
+// `std` is named for tests alone. Named here for all builds, it would hide a use of `std` in the controller whenever
+// programs are built. Each file of `serve` names it for itself.
 #[cfg(test)]
 extern crate std;
 

@@ -8,7 +8,7 @@ use protocol::message::RunningMode;
 use super::AtoInputs;
 use super::track_limit::{TrainPosition, limit_ahead};
 
-/// What the cruising speed depends on.
+/// Inputs of the cruising speed.
 #[derive(Clone, Copy, Debug)]
 pub struct CruiseInputs {
     /// Limit from ATP.

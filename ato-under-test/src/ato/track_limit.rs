@@ -105,7 +105,8 @@ mod tests {
         }
     }
 
-    /// Until its code is heard: 15 m. A wayside that still sends 55 there has its reason.
+    /// A lower code counts behind its place until the receiver must have heard it: 15 m. A wayside
+    /// that still sends 55 there has its reason.
     #[test]
     fn behind_its_place_it_counts_until_the_code_must_have_been_heard() {
         assert!((at(245.0, 55.0) - 45.0).abs() < 1e-9);

@@ -8,21 +8,21 @@ use crate::timer::OnDelay;
 /// Scans over which the deceleration is measured (0.5 s).
 const DECEL_SCANS: usize = 50;
 
-/// What is known of the service brake in one scan.
+/// State of the service brake in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BrakeState {
     /// Deceleration, negative while the train gains speed, mm/s².
     pub decel_mms2: i32,
     /// The train slows as a braked one.
     pub proved: bool,
-    /// It has had its time and the train does not slow.
+    /// The service brake has had its time and the train does not slow.
     pub ineffective: bool,
 }
 
-/// For what the service brake is asked in one scan.
+/// Demand for the service brake in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Demand {
-    /// It is asked for, and the train must slow.
+    /// The service brake is asked for, and the train must slow.
     pub holds: bool,
     /// The speed is one at which a deceleration is to be measured: not close to what the train is braked to.
     pub measurable: bool,

@@ -1,12 +1,13 @@
-//! Whether the speed of both tachometers can be true: what no train does is not believed.
+//! Plausibility of the speed of both tachometers: a speed that no train can have is not believed.
 //!
-//! A train slows by its adhesion at most. Where both inputs fall faster, pulses are missing: a connector, the supply of
-//! both sensors, wheels that are locked. Then the train counts as moving until its brake has been applied for as long as
-//! a stop from the last speed that was believed takes at the least rate, and TCMS, where it tells its speed, says that its
-//! own axles stand. So it does while TCMS tells that they turn and no tachometer does, or that they are much faster than
-//! both. From rest, power that is asked for and moves nothing is cut.
+//! A train slows by its adhesion at most. Where both inputs fall faster, pulses are missing: a connector, the supply
+//! of both sensors, wheels that are locked. Then the train counts as moving until its brake has been applied for as
+//! long as a stop from the last speed that was believed takes at the least rate, and TCMS, where it tells its speed,
+//! says that its own axles stand. The train also counts as moving while TCMS tells of axles that turn and no
+//! tachometer does, or that turn much faster than both. Power that moves nothing from rest is cut.
 //!
-//! A clock that is fast makes all speeds too low: where TCMS's counter contradicts the clock, speeds are raised by as much.
+//! A clock that is fast makes all speeds too low: where TCMS's counter contradicts the clock, speeds are raised by
+//! the same share.
 
 use protocol::config::TachoConfig;
 use protocol::event::Event;
@@ -16,25 +17,25 @@ use crate::kernel::EventLog;
 use crate::timer::{Edge, OnDelay};
 
 const GRAVITY_MPS2: f64 = 9.81;
-/// A speed below this is of no pulse, or of one.
+/// A lower speed comes from one pulse or none.
 const NO_PULSES: Speed = Speed::from_kmh(1.0);
 /// Time for which TCMS must tell of a speed that no tachometer sees: frames, its own lag, and the tachometers' window.
 const CONTRADICTS: Duration = Duration::from_ms(800);
 /// Time for which pulses must be back.
 const BACK: Duration = Duration::from_ms(1_000);
 
-/// What the speed is held against in a scan.
+/// Evidence against which the speed is held in a scan.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Witness {
     /// Speed of the axles that TCMS measures; `None` = it does not tell.
     pub tcms_speed: Option<Speed>,
-    /// Share by which the unit's clock is faster than TCMS's; 0 of one that is not.
+    /// Share by which the unit's clock is faster than TCMS's; 0 if it is not.
     pub clock_ahead: f64,
     /// Power is asked for, and nothing that ATP knows of holds the train.
     pub powers: bool,
-    /// The start of the train is awaited again: a person acknowledges.
+    /// A person acknowledges: the start of the train is awaited again.
     pub acknowledge: bool,
-    /// The speeds are of test signals, which change as a tester likes.
+    /// The speeds come from test signals, which change as a tester likes.
     pub tested: bool,
     pub unguarded: bool,
 }
@@ -56,20 +57,20 @@ impl Witness {
     }
 }
 
-/// Compares from scan to scan.
+/// Compares the speeds from scan to scan.
 #[derive(Clone, Debug, Default)]
 pub struct CredibleSpeed {
     /// Speed that follows the measured one as fast as adhesion lets a train, m/s.
     reference_mps: f64,
-    /// The same for each tachometer.
+    /// The reference of each tachometer, m/s.
     each_mps: [f64; 2],
-    /// The greatest that it was since it was last near the measured one, m/s.
+    /// Last reference that was near the measured speed, m/s.
     last_mps: f64,
     falls: OnDelay,
     vanishes: OnDelay,
     contradicts: OnDelay,
     back: OnDelay,
-    /// Speed that the train may still have, m/s; `None` = what is measured is believed.
+    /// Speed that the train may still have, m/s; `None` = the measured speed is believed.
     doubted_mps: Option<f64>,
     /// The speed by which TCMS contradicts, m/s; 0 = it does not.
     told_mps: f64,
@@ -119,7 +120,7 @@ impl CredibleSpeed {
         self.await_start(now, pulses, witness, config, log);
     }
 
-    /// Compares the clock with TCMS's; a share that late frames may make is none.
+    /// Compares the clock with TCMS's; a share that late frames can cause does not count.
     fn hold_clock(
         &mut self,
         now: Instant,
@@ -139,7 +140,7 @@ impl CredibleSpeed {
         }
     }
 
-    /// A tachometer turns, and does not fall faster than adhesion lets it: what the other one did was its own fault.
+    /// Whether one tachometer turns and falls no faster than adhesion allows: then the other one is at fault.
     fn one_rolls_on(&mut self, speeds: [Speed; 2], config: &TachoConfig) -> bool {
         let most_mps = config.adhesion * GRAVITY_MPS2 * SCAN.as_secs();
         let mut rolls = false;
@@ -280,7 +281,7 @@ mod tests {
             }
         }
 
-        /// To a speed at this rate, m/s and m/s².
+        /// Drives to a speed at this rate, m/s and m/s².
         fn go(&mut self, to: f64, mps2: f64, witness: Witness) {
             while (self.speed - to).abs() > 1e-9 {
                 let step = (to - self.speed).clamp(-mps2 * 0.01, mps2 * 0.01);
@@ -315,7 +316,8 @@ mod tests {
         }
     }
 
-    /// One that counted too much is in order again while the train brakes: the other one tells.
+    /// A tachometer that counted too much is in order again while the train brakes; the other one
+    /// shows that.
     #[test]
     fn noise_that_ends_is_no_fall() {
         let mut train = Train::at(30.0);
@@ -348,7 +350,7 @@ mod tests {
         assert!(!train.doubts(), "pulses are back");
     }
 
-    /// TCMS, which tells of axles at this speed, km/h.
+    /// A TCMS that tells of axles at this speed, km/h.
     fn told(kmh: f64) -> Witness {
         Witness {
             tcms_speed: Some(Speed::from_kmh(kmh)),
@@ -356,7 +358,7 @@ mod tests {
         }
     }
 
-    /// The train counts as moving, as fast as TCMS tells, as long as it tells of motion.
+    /// As long as TCMS tells of motion, the train counts as moving at that speed.
     #[test]
     fn tcms_that_tells_of_motion_is_believed() {
         let mut train = Train::at(0.0);
@@ -374,8 +376,8 @@ mod tests {
         assert!(!train.doubts());
     }
 
-    /// Both tachometers read low alike, which nothing else tells: a train at 60 km/h that measures 45. Less than 10 km/h
-    /// is what axles slip and slide, and a TCMS slower than the tachometers does not contradict them.
+    /// Both tachometers read low alike, which only TCMS can show: a train at 60 km/h that measures 45. Less than 10
+    /// km/h is what axles slip and slide, and a TCMS slower than the tachometers does not contradict them.
     #[test]
     fn tachometers_that_both_read_much_less_than_tcms_are_not_believed() {
         for (kmh, doubts) in [(60.0, true), (54.0, false), (0.0, false)] {

@@ -15,7 +15,7 @@ use super::BrakeState;
 use crate::kernel::EventLog;
 use crate::timer::{Edge, OnDelay};
 
-/// How the train moves in one scan, and what it may.
+/// Motion of the train in one scan, and its limits.
 #[derive(Clone, Copy, Debug)]
 pub struct SupervisedMotion {
     pub speed: Speed,
@@ -23,7 +23,8 @@ pub struct SupervisedMotion {
     /// The limit is zero because the code, or none, says so, or the mode is off.
     pub stop: bool,
     pub standstill: bool,
-    /// It does what no standing train does ([`Tachometers::moves`](super::Tachometers::moves)).
+    /// The train does what no standing train does
+    /// ([`Tachometers::moves`](super::Tachometers::moves)).
     pub moves: bool,
 }
 

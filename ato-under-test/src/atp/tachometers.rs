@@ -78,7 +78,7 @@ impl Tachometers {
         }
     }
 
-    /// Markers have proved that the wheels run so much farther than is measured.
+    /// Sets the share by which the wheels run farther than is measured, as markers have proved.
     pub fn correct(&mut self, farther: f64) {
         self.farther = farther;
     }

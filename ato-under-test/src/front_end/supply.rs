@@ -9,13 +9,13 @@ use crate::timer::at_rate;
 /// Length of a single dip: enough to reset the processors.
 const DIP: Duration = Duration::from_ms(100);
 
-/// What the supply does in a scan.
+/// State of the supply in a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Supply {
     /// Voltage is there.
     Up,
     Down,
-    /// It has just come back.
+    /// The supply has just come back.
     Back,
 }
 

@@ -85,7 +85,7 @@ pub struct Arguments {
     scripts: Option<PathBuf>,
 }
 
-/// What went wrong: a [`UsageError`], or what a port, file or pipe says.
+/// Error of the program: a [`UsageError`], or what a port, file or pipe says.
 type Failure = Box<dyn Error>;
 
 /// Serves until the process is ended.
@@ -136,7 +136,7 @@ fn sound_device(text: &str) -> Result<String, String> {
         .ok_or_else(|| "it is sound:DEVICE".to_owned())
 }
 
-/// Those that a sound device can be calibrated to.
+/// Levels to which a sound device can be calibrated, mV.
 fn millivolts(text: &str) -> Result<f32, String> {
     let mv = text.parse().ok().filter(|mv| (1e-3..1e9).contains(mv));
     mv.ok_or_else(|| "it is from 0.001 to 1e9".to_owned())

@@ -15,7 +15,7 @@ use super::scan::Scan;
 /// How often a wait is reported.
 const WAITING_EVERY: Duration = Duration::from_ms(500);
 
-/// How far a list of actions is.
+/// Progress of a list of actions.
 #[derive(Debug, PartialEq)]
 pub(super) enum Progress {
     /// An action takes its time.

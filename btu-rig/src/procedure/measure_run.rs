@@ -255,7 +255,7 @@ impl MeasurementRun {
         value
     }
 
-    /// Why it did not pass.
+    /// Reason for which the measurement did not pass; none if it did.
     fn found(&self, measure: &Measure, measured: &Measurement) -> Option<Finding> {
         let measurement = measure.name.clone();
         Some(match (measured.verdict, measured.value) {

@@ -12,6 +12,6 @@ pub(super) struct Scan<'a> {
     pub now: Instant,
     pub sample: &'a Sample,
     pub captured: &'a Captured,
-    /// By which reactions of the unit are timed; `None` = by `now`.
+    /// Clock by which reactions of the unit are timed; `None` = `now`.
     pub unit_time: Option<UnitTime>,
 }

@@ -37,7 +37,7 @@ pub(super) struct StepRun {
     measurements: Vec<MeasurementRun>,
     /// Each once, with how often it came.
     problems: Vec<(Problem, u32)>,
-    /// With their parameters.
+    /// Logged events with their parameters.
     logged: Vec<(Event, i32)>,
     /// Suspected part of the first event that no step provoked.
     named_part: Option<LruId>,

@@ -42,7 +42,8 @@ fn parse<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ConfigError> {
     toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))
 }
 
-/// What a unit is told of such a train has the ranges of `ato.train` in its configuration: the train's file is at fault.
+/// Checks values that the unit is told against the ranges of `ato.train` in its configuration, so that an error names the
+/// train's file.
 fn check_ideal(data: &IdealData) -> Result<(), ConfigError> {
     check_ranges! { data, "";
         mass_kg: 1e3, 1e7;
@@ -95,7 +96,7 @@ fn check_cars(data: &CarsData) -> Result<(), ConfigError> {
     data.tcms.check()
 }
 
-/// What other programs say in place of constants.
+/// Checks the efforts that other programs give in place of constants.
 fn check_efforts(data: &CarsData) -> Result<(), ConfigError> {
     let count = data.traction.efforts.as_ref().map_or(1, Vec::len);
     within("traction.efforts", count as f64, 1.0, 1_000.0)?;

@@ -13,7 +13,7 @@ use crate::seal::run::{OCCURRENCES, PARTS, RUN};
 /// Digits of a mark.
 const DIGITS: usize = 8;
 
-/// For each row its mark, in the order of the digest of the run, by the kind of row.
+/// Marks of the rows in the order of the run's digest, by the kind of row.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Places(BTreeMap<String, String>);
 
@@ -40,7 +40,7 @@ impl Places {
     }
 }
 
-/// What of a run is not as it was signed.
+/// Parts of a run that differ from the signed ones.
 pub(crate) fn changed_places(
     backend: &Backend,
     run: i64,

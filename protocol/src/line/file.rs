@@ -24,12 +24,12 @@ pub enum LineError {
     Data {
         /// Line of the file, from 1.
         line: usize,
-        /// What is wrong there.
+        /// Defect of the data.
         reason: String,
     },
 }
 
-/// What a line file holds.
+/// Content of a line file.
 #[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct File {

@@ -27,7 +27,7 @@ pub struct Broken {
 /// A place in a line file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct LineEntry {
-    /// Which section, from 0.
+    /// Place of the section, from 0.
     pub section: usize,
     /// Entry of it.
     pub key: &'static str,

@@ -1,5 +1,5 @@
-//! What the steps prove (`scripts/clauses.toml`): clauses of papers, standards and specifications, the steps that prove each,
-//! and the injected faults by which it was seen that these steps can fail.
+//! Proofs of the steps (`scripts/clauses.toml`): clauses of papers, standards and specifications, the steps that
+//! prove each, and the injected faults by which it was seen that these steps can fail.
 
 use std::collections::BTreeSet;
 
@@ -18,16 +18,16 @@ pub const FILE: &str = "clauses.toml";
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Clause {
-    /// Its name.
+    /// Name of the clause.
     pub id: String,
     /// Paper, standard or specification, with its section.
     pub source: String,
-    /// What it demands.
+    /// Demand of the clause.
     pub text: String,
-    /// The same in Korean.
+    /// The text in Korean.
     #[serde(default)]
     pub text_ko: String,
-    /// Globs of the steps that prove it, `procedure: step`.
+    /// Globs of the steps that prove the clause, `procedure: step`.
     pub steps: Vec<String>,
 }
 
@@ -40,15 +40,15 @@ pub(crate) struct Written {
 /// A clause with its proof.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClauseProof {
-    /// Its name.
+    /// Name of the clause.
     pub clause: String,
-    /// Where it is from.
+    /// Source of the clause.
     pub source: String,
-    /// What it demands.
+    /// Demand of the clause.
     pub text: String,
-    /// The same in Korean.
+    /// The text in Korean.
     pub text_ko: String,
-    /// Steps that prove it, `procedure: step`.
+    /// Steps that prove the clause, `procedure: step`.
     pub steps: Vec<String>,
     /// Fault modes that made one of them fail.
     pub faults: Vec<String>,

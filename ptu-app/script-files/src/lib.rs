@@ -19,13 +19,13 @@ const DEEPEST_FOLDER: usize = 16;
 /// A place or a file that cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ScriptsError {
-    /// What was given is no folder.
+    /// The path that was given is no folder.
     #[error("{} is not a directory", .0.display())]
     NotADirectory(PathBuf),
     /// A file or folder, by its path or name, and why.
     #[error("cannot read {what}: {why}")]
     Unreadable {
-        /// Its path, or its name and "(embedded)".
+        /// Path of the file, or its name and "(embedded)".
         what: String,
         /// The system's word, or ours.
         why: String,
@@ -50,7 +50,7 @@ impl ScriptFiles {
     /// the system's over the embedded ones.
     ///
     /// # Errors
-    /// What is given is no folder.
+    /// `given` is no folder.
     pub fn find(given: Option<&Path>) -> Result<Self, ScriptsError> {
         if let Some(folder) = given {
             return match folder.is_dir() {
@@ -69,7 +69,7 @@ impl ScriptFiles {
         })
     }
 
-    /// These folders, those of them that are there, over the embedded files.
+    /// Script files of these folders, as far as they are there, over the embedded files.
     pub fn layered(folders: impl IntoIterator<Item = PathBuf>) -> Self {
         let folders = folders.into_iter().filter(|folder| folder.is_dir());
         Self(
@@ -90,7 +90,7 @@ impl ScriptFiles {
         self.files(name).next()
     }
 
-    /// How the file of this name is shown to a person: where it is, or where the first place would have it.
+    /// Path of the file of this name, for people: its place, or the place in the first folder.
     pub fn shown(&self, name: &str) -> String {
         let missing = || self.0[0].shown(name);
         self.file(name).map_or_else(missing, |found| found.shown())

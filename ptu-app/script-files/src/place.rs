@@ -17,7 +17,8 @@ pub fn embed(files: Embedded) {
     EMBEDDED.get_or_init(|| files);
 }
 
-/// Nothing in its place: a program without procedures and data would say that each is missing, and not why.
+/// Embedded files; nothing stands in for them: a program without procedures and data would say that each is
+/// missing, and not why.
 fn embedded() -> Embedded {
     let files = EMBEDDED.get();
     files.expect("main calls script_files::embed before files are looked for")
@@ -27,14 +28,14 @@ fn embedded() -> Embedded {
 pub enum Layer {
     /// A folder on the disk.
     Folder(PathBuf),
-    /// What the program carries with it.
+    /// The files in the program.
     Embedded,
 }
 
 /// A file that a place has.
 #[derive(Clone, Debug)]
 pub enum Found {
-    /// On the disk.
+    /// A file on the disk.
     File(PathBuf),
     Embedded(&'static str, &'static [u8]),
 }
@@ -45,7 +46,7 @@ pub fn own_folder() -> Option<PathBuf> {
         .map(|directories| directories.data_dir().join("scripts"))
 }
 
-/// Those of all users of this computer: the depot's own, and those that a package installed.
+/// Folders for all users of this computer: the depot's own, and those that a package installed.
 pub(crate) fn system_folders() -> Vec<PathBuf> {
     if cfg!(windows) {
         let programs = std::env::var_os("ProgramData").map(PathBuf::from);
@@ -74,7 +75,7 @@ impl Layer {
         }
     }
 
-    /// How the file of this name would be shown to a person.
+    /// Path that the file of this name would have, for people.
     pub(crate) fn shown(&self, name: &str) -> String {
         match self {
             Self::Folder(folder) => folder.join(name).display().to_string(),
@@ -133,7 +134,7 @@ impl fmt::Display for Layer {
 }
 
 impl Found {
-    /// As it is named to a person.
+    /// Path or name, for people.
     pub fn shown(&self) -> String {
         match self {
             Self::File(path) => path.display().to_string(),

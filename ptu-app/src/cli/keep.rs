@@ -33,7 +33,7 @@ impl KeepOptions {
         self.runs.as_deref().map_or(Ok(()), check)
     }
 
-    /// What was asked for.
+    /// Runs that are kept, as the options say.
     pub fn keep(&self) -> Result<Keep, Failure> {
         let shard = self.shard.as_deref().map(str::parse::<Shard>).transpose();
         Ok(Keep {

@@ -105,7 +105,7 @@ impl VerifyArguments {
         if looks_like_a_file(&self.what) {
             return Err(Failure::usage(FileTrouble::Missing(self.what.clone())));
         }
-        // Of a code on a sheet: the run, and the SHA-256 of its content that the sheet was written from.
+        // The code on a sheet: the run, and the SHA-256 of its content that the sheet was written from.
         let code = self.what.strip_prefix("ptu:");
         let (asked, digest) = match code.map(|code| code.split_once('/')) {
             None => (self.what.as_str(), None),

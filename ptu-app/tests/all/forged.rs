@@ -2,7 +2,7 @@
 
 use crate::common::{Place, Said, text};
 
-/// What stands before the certificate in a page.
+/// Text in a page before the certificate.
 const BEGIN: &str = "<script type=\"application/json\" id=\"ptu-certificate\">";
 
 const PIN: &str = "sesame-7";

@@ -1,4 +1,5 @@
-//! What the program promises, tried as its users do: in virtual time or lock step but for [`on_ports`] and [`by_the_clock`].
+//! Promises of the program, tried as its users do: in virtual time or lock step but for [`on_ports`] and
+//! [`by_the_clock`].
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! What ends a run early: a lost link, a stalled tester, and the operator's stop.
+//! Early ends of a run: a lost link, a stalled tester, and the operator's stop.
 
 use protocol::Instant;
 use protocol::signal::Sample;

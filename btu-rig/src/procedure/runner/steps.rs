@@ -202,7 +202,7 @@ impl Runner {
     /// Reports all steps still to come as skipped and goes on to clean-up.
     pub(super) fn skip_rest(&mut self, now: Instant, reason: &Finding) {
         if let Phase::Steps { next, .. } = &mut self.phase {
-            // Those before have their results.
+            // Steps before this one have their results.
             *next = (*next).max(self.begun_at.target);
         }
         while let Phase::Steps { next, .. } = &self.phase

@@ -50,7 +50,7 @@ impl Subscription {
         !self.heard && self.asked >= ATTEMPTS
     }
 
-    /// It is known whether the unit tells.
+    /// Whether it is known if the unit answers the subscription.
     pub fn settled(&self) -> bool {
         self.heard || self.refused()
     }

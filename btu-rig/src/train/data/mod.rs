@@ -58,7 +58,7 @@ pub struct IdealData {
     pub parking_share: f64,
     /// Gradients act on it.
     pub gradients: bool,
-    /// Its doors.
+    /// Doors of the train.
     #[serde(default)]
     pub doors: DoorData,
     /// Times and thresholds of its TCMS.
@@ -98,7 +98,7 @@ impl TrainData {
         }
     }
 
-    /// Its full service brake, km/h/s.
+    /// Deceleration of the full service brake, km/h/s.
     pub fn service_kmh_per_s(&self) -> f64 {
         match self {
             Self::Ideal(data) => data.service_kmh_per_s,
@@ -106,7 +106,6 @@ impl TrainData {
         }
     }
 
-    /// Its doors.
     pub fn doors(&self) -> &DoorData {
         match self {
             Self::Ideal(data) => &data.doors,

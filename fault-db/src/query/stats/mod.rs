@@ -27,7 +27,7 @@ use crate::store::Store;
 pub struct StatQuery {
     /// The key.
     pub by: StatKey,
-    /// Which faults, and the span of time.
+    /// Filter of the faults, and the span of time.
     pub filter: FaultFilter,
     /// The present time, µs since 1970: the end of the observation.
     pub now_us: i64,
@@ -54,7 +54,7 @@ pub struct FaultStat {
     pub last_at_us: Option<i64>,
     /// Faults closed.
     pub closed: u32,
-    /// Of these, closed without a repair (no fault found).
+    /// Faults closed without a repair (no fault found).
     pub no_fault_found: u32,
     /// Number of repairs.
     pub repairs: u32,
@@ -89,7 +89,7 @@ impl Store {
         Ok(self.count_and_total(query, false)?.0)
     }
 
-    /// The same, and the counts of all keys together.
+    /// Counts as [`Store::stats`], and the counts of all keys together.
     ///
     /// # Errors
     /// The filter names what is not there, or the file or server cannot be read.
@@ -207,7 +207,7 @@ impl Store {
     /// history.
     ///
     /// # Errors
-    /// Of the file or server.
+    /// The file or server cannot be read.
     pub fn history_span(&self) -> Result<Option<(i64, i64)>, StoreError> {
         // Each time by its own index: two in one query would use none.
         let found = self.first(

@@ -19,7 +19,7 @@ const BARS: usize = 60;
 /// Dots of a scatter plot at most: more hide each other.
 const MOST_DOTS: usize = 2_000;
 
-/// What a curve shows of a row.
+/// Value of a row that a curve shows.
 type Of = fn(&Row) -> f64;
 
 const TIME: Of = |row| row.t_s;
@@ -215,7 +215,7 @@ fn places(runs: &[Driven], by_time: bool) -> Vec<AxisMark> {
     all.map(|(x, name)| AxisMark { x, name }).collect()
 }
 
-/// How stop errors lie, and what they go with.
+/// Plots of the stop errors, and of values that go with them.
 pub fn plots_of_many(many: &MonteCarlo) -> Vec<Plot> {
     /// A number of what is drawn.
     type Drawn = fn(&ScatterDraw) -> f64;

@@ -1,4 +1,4 @@
-//! What this computer lacks for testing units, and how to get it.
+//! Needs of this computer for testing units, and how to meet them.
 
 use super::wordings;
 

@@ -1,4 +1,4 @@
-//! What a verification says of signatures and changes.
+//! Texts of a verification on signatures and changes.
 
 use super::{Words, wordings};
 
@@ -65,7 +65,7 @@ wordings! {
 }
 
 impl Words {
-    /// What is signed or verified, by its name in statements.
+    /// Name of a signed or verified thing, by its name in statements.
     pub fn signed_thing<'a>(&self, what: &'a str) -> &'a str {
         match what {
             "run" => self.common.run,

@@ -43,11 +43,12 @@ impl<R> Default for KeptRuns<R> {
 }
 
 impl<R: DeserializeOwned> KeptRuns<R> {
-    /// Reads a file, which is made if it is not there, and opens it for more runs. What is damaged in it is reported.
+    /// Reads a file, which is made if it is not there, and opens it for more runs. What is damaged in it is
+    /// reported.
     ///
     /// # Errors
-    /// It cannot be read or written, another process writes it, it is another file, or it holds runs of another
-    /// program or other scripts.
+    /// The file cannot be read or written, another process writes it, it is a file of another kind, or it holds runs
+    /// of another program or other scripts.
     pub fn open(path: &Path, head: &Head) -> Result<Self, Failure> {
         let wrong = |why| Failure::usage(KeepTrouble::Unusable(path.display().to_string(), why));
         if path.exists() {
@@ -157,7 +158,7 @@ impl RunsFile {
     /// Puts the file's runs in order, now that all are there.
     ///
     /// # Errors
-    /// It cannot be read or written.
+    /// The file cannot be read or written.
     pub fn put_in_order(&self, head: &Head) -> Result<(), Failure> {
         let cannot = |why: &dyn Display| {
             Failure::bench(KeepTrouble::Unordered(

@@ -23,13 +23,12 @@ pub struct Merged {
 
 #[derive(Debug, PartialEq, Eq, Serialize)]
 pub struct Missing {
-    /// What the runs are of.
+    /// Description of the runs' plan, for people.
     pub what: String,
     /// Runs of the plan.
     pub runs: usize,
     /// Runs that no file has.
     pub missing: usize,
-    /// Number of shards.
     pub shards: u32,
     /// The shards that lack runs.
     pub of_shards: Vec<ShardMissing>,
@@ -39,10 +38,10 @@ pub struct Missing {
 
 #[derive(Debug, PartialEq, Eq, Serialize)]
 pub struct ShardMissing {
-    /// Its number, from 1.
+    /// Number of the shard, from 1.
     pub shard: u32,
     pub runs: usize,
-    /// Those that no file has.
+    /// Runs of the shard that no file has.
     pub missing: usize,
 }
 
@@ -139,7 +138,7 @@ pub fn merge(files: &[PathBuf]) -> Result<Merged, Failure> {
     })
 }
 
-/// What files lack, by shards: `shards` of them, or as many as the files were made with.
+/// Runs that the files lack, by shard; `shards` = number of shards, none = as the files say.
 ///
 /// # Errors
 /// A file cannot be read, or is of other runs than the first.

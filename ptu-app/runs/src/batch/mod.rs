@@ -1,10 +1,10 @@
-//! Many runs, each decided by its name alone, that are made in pieces: kept in a file and gone on with after a stop,
-//! divided among machines (shards), and put together again.
+//! Campaigns of many runs, each decided by its name alone: kept in a file, continued after a stop, divided among
+//! machines (shards), and merged.
 //!
-//! * [`Head`]: what decides a run beside its name, the plan of all runs, and the shard;
+//! * [`Head`]: all that decides a run beside its name, the plan of all runs, and the shard;
 //! * [`Keep`]: where the runs are kept, and which of them are to be made here;
-//! * [`make`]: makes those that are not kept yet;
-//! * [`merge`] and [`missing`]: shards put together, and what they lack.
+//! * [`make`]: makes the runs that are not kept yet;
+//! * [`merge`] and [`missing`]: merge shards, and list the runs that they lack.
 
 mod file;
 mod merge;
@@ -31,14 +31,14 @@ use crate::stop::Stop;
 /// Where runs are kept, and which are made here.
 #[derive(Clone, Debug, Default)]
 pub struct Keep {
-    /// File that keeps the runs: those in it are not made again.
+    /// File that keeps the runs; runs in it are not made again.
     pub file: Option<PathBuf>,
     /// The part of all runs that is made here; none = all.
     pub shard: Option<Shard>,
 }
 
 impl Keep {
-    /// Of so many runs, the numbers of those that are made here.
+    /// Numbers of the runs that are made here, of `runs` in all.
     pub fn ours(&self, runs: usize) -> impl Iterator<Item = usize> + '_ {
         (0..runs).filter(|run| self.shard.is_none_or(|shard| shard.has(*run)))
     }
@@ -47,9 +47,9 @@ impl Keep {
 pub enum BatchResult<R> {
     /// All runs, in the plan's order.
     All(Vec<R>),
-    /// So many runs, those of the shard, made now or before.
+    /// Number of runs of the shard, made now or before.
     Part(usize),
-    /// It was stopped; the runs there are, in the plan's order.
+    /// Stopped: the runs made so far, in the plan's order.
     Stopped(Vec<Option<R>>),
 }
 
@@ -83,7 +83,7 @@ pub fn make<R: Serialize + DeserializeOwned + Send + Sync>(
         if let Some(file) = known.file()
             && !file.append(&record::of_run(plan.name(missing[i]), &run))
         {
-            // What could not be kept is not gone on with.
+            // The campaign stops if a run could not be kept.
             stop.press();
         }
         Some(run)

@@ -1,11 +1,11 @@
-//! What the runs of a file are: made by what, of which plan, and which part of it.
+//! Description of a file's runs: their maker, their plan, and the part of the plan.
 
 use serde::{Deserialize, Serialize};
 
 use super::Shard;
 use crate::data::sha256;
 
-/// All that is to be known of a file of runs.
+/// Head of a file of runs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Head {
     /// Version of the program.
@@ -21,7 +21,7 @@ pub struct Head {
 /// All runs by their names, in order. A name decides its run, whichever process makes it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Plan {
-    /// What it is, for people.
+    /// Description of the plan, for people.
     pub what: String,
     /// A name for each run or, with seeds, for as many runs as there are seeds.
     pub names: Vec<String>,
@@ -31,7 +31,8 @@ pub struct Plan {
 }
 
 impl Head {
-    /// Of this version of the program, for all runs of the plan; `made_by` is all that decides them beside their names.
+    /// Head of all runs of the plan, made by this version of the program; `made_by` = all that decides a run beside
+    /// its name.
     pub fn new(made_by: &str, plan: Plan) -> Self {
         Self {
             app_version: env!("CARGO_PKG_VERSION").into(),
@@ -41,7 +42,7 @@ impl Head {
         }
     }
 
-    /// The same for all of them.
+    /// This head for all runs of the plan instead of one shard.
     pub fn of_all(&self) -> Self {
         Self {
             shard: None,
@@ -49,7 +50,7 @@ impl Head {
         }
     }
 
-    /// Why runs of the other are none for this, if so.
+    /// Why runs under the other head do not fit this one; none if they fit.
     pub fn other_maker(&self, other: &Self) -> Option<String> {
         if self.app_version != other.app_version {
             return Some(format!(
@@ -63,13 +64,11 @@ impl Head {
 }
 
 impl Plan {
-    /// Number of runs.
     pub fn len(&self) -> usize {
         let seeds = self.seeds.map_or(1, |(_, count)| count);
         (self.names.len()).saturating_mul(usize::try_from(seeds).unwrap_or(usize::MAX))
     }
 
-    /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -86,7 +85,6 @@ impl Plan {
         }
     }
 
-    /// The name of the run with this number.
     pub fn name(&self, number: usize) -> String {
         let (place, seed) = self.place(number);
         let name = self.names.get(place).map_or("", String::as_str);

@@ -84,7 +84,7 @@ pub(super) struct Found<R> {
     pub runs: BTreeMap<String, (R, Range<usize>)>,
     /// Where the last whole record ends.
     pub end: usize,
-    /// What is to be said of damage.
+    /// Sentences on damage.
     pub told: Vec<String>,
 }
 
@@ -92,7 +92,7 @@ impl<R: DeserializeOwned> Found<R> {
     /// Reads a file's bytes.
     ///
     /// # Errors
-    /// It does not say what its runs were made by.
+    /// The file does not say what its runs were made by.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
         let (first, length) = content(bytes).ok_or_else(|| match bytes.starts_with(MARK) {
             true => "its record 1, which says what its runs were made by, is damaged".to_owned(),

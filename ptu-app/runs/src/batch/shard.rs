@@ -5,22 +5,22 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// At most so many parts.
+/// Greatest number of parts.
 const MOST: u32 = 100_000;
-/// The word for a number that a scheduler gives.
+/// Word in place of a number that a job scheduler gives.
 const AUTO: &str = "auto";
 
 /// The `number`-th of `of` parts, from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Shard {
-    /// From 1.
+    /// Number of the part, from 1.
     pub number: u32,
     /// Parts in all.
     pub of: u32,
 }
 
 impl Shard {
-    /// A part of so many, if there is such a one.
+    /// Part `number` of `of`, if there is one.
     pub fn new(number: u32, of: u32) -> Result<Self, String> {
         if (1..=MOST).contains(&of) && (1..=of).contains(&number) {
             return Ok(Self { number, of });
@@ -36,15 +36,16 @@ impl Shard {
         Self { number, of }
     }
 
-    /// Whether a run belongs to it.
+    /// Whether the shard makes this run.
     pub fn has(self, run: usize) -> bool {
         Self::of_run(run, self.of) == self
     }
 
-    /// `k/n`; `auto` or `auto/n` where Slurm or Kubernetes gives the number, found in what `variable` gives.
+    /// Reads `k/n`; or `auto` or `auto/n`, where Slurm or Kubernetes gives the number in a variable, which
+    /// `variable` looks up.
     ///
     /// # Errors
-    /// It is none of them, or the scheduler's numbers do not fit.
+    /// The text has none of these forms, or the scheduler's numbers do not fit.
     pub fn parse(text: &str, variable: &dyn Fn(&str) -> Option<String>) -> Result<Self, String> {
         let (number, of) = text
             .split_once('/')
@@ -65,7 +66,7 @@ impl Shard {
     }
 }
 
-/// What a scheduler's variables say.
+/// The shard that variables of a job scheduler name.
 fn from_scheduler(
     of: Option<u32>,
     variable: &dyn Fn(&str) -> Option<String>,

@@ -14,7 +14,7 @@ fn head(scripts: &str, runs: usize) -> Head {
     Head::new(scripts, plan)
 }
 
-/// What the run of this number comes to, whoever makes it.
+/// Result of the run with this number, whoever makes it.
 fn result(number: usize) -> Vec<String> {
     vec![number.to_string(); number % 5]
 }

@@ -15,8 +15,8 @@ const NO_BASE_SPEED_KMH: f64 = 130.0;
 /// Highest jerk a unit can be given, m/s³: none at all.
 const NO_JERK_LIMIT_MPS3: f64 = 100.0;
 
-/// Gives the train a total mass: an ideal train is built so heavy, a train of cars is loaded so
-/// far. The passengers aboard come back, if anything was said of them.
+/// Gives the train a total mass: an ideal train is built to it, a train of cars is loaded to it.
+/// Returns the passengers aboard, kg; none if neither mass nor load was given.
 ///
 /// # Errors
 /// The train cannot be so heavy, so light or so full.
@@ -58,8 +58,8 @@ pub fn load(
     }
 }
 
-/// What the unit's configuration must say so that it knows its train. A train of cars is the one
-/// the configuration is made for; the papers' ideal train is another, and their controller knew it.
+/// Settings by which the unit's configuration fits the train. A train of cars is the one the
+/// configuration is made for; the papers' ideal train is another, and their controller knew it.
 pub fn told(train: &TrainData) -> Vec<Setting> {
     match train {
         TrainData::Cars(_) => Vec::new(),
@@ -91,7 +91,7 @@ fn told_ideal(ideal: &IdealData) -> Vec<Setting> {
     .into()
 }
 
-/// What is to be said of a train whose service brake gives less than ATO counts on.
+/// Warning of a train whose service brake gives less than ATO counts on.
 pub fn brakes_less(train: &TrainData, config: &UnitConfig) -> Option<DriveTrouble> {
     let (brakes, counts_on) = (train.service_kmh_per_s(), config.ato.decel_kmh_per_s);
     (brakes < counts_on)
@@ -118,7 +118,8 @@ pub fn check_acts(train: &TrainData, fixed: &Fixed) -> Result<(), Failure> {
     Ok(())
 }
 
-/// `drawn` with what does not act on this train as usual, so that no report says it did.
+/// `drawn` with nominal values for conditions that do not act on this train, so that no report
+/// names them.
 pub fn acting(train: &TrainData, drawn: Conditions) -> Conditions {
     let usual = Conditions::default();
     match train {

@@ -20,9 +20,9 @@ pub struct SimLink {
     /// Earliest time at which it comes back.
     may_power_at: Instant,
     unit: Option<Unit>,
-    /// Its flash while it is without supply; `None` = a new one.
+    /// Flash of the unit while the unit is without supply; `None` = a new one.
     flash: Option<Box<dyn BlockDevice>>,
-    /// What arm challenges are drawn from; `None` = the seed.
+    /// Seed of the arm challenges; `None` = the link's seed.
     challenges: Option<u64>,
 }
 

@@ -1,4 +1,5 @@
-//! What a tester chooses by name: the unit, its configuration, the line, the train and the injected faults.
+//! Choices that a tester makes by name: the unit, its configuration, the line, the train and the injected
+//! faults.
 //!
 //! Command line and window fill in the same [`BenchChoice`]; [`BenchChoice::setup`] reads the named files and
 //! checks that they fit together.
@@ -27,7 +28,7 @@ use crate::link::Endpoint;
 pub struct BenchChoice {
     /// `sim`, `serial:PATH[@BAUD]`, `tcp:HOST:PORT` or `lockstep:PATH`.
     pub endpoint: String,
-    /// Whether the bench harness is connected.
+    /// Connection of the bench harness.
     pub harness: Harness,
     /// Line, `lines/NAME.toml`.
     pub line: String,
@@ -106,8 +107,8 @@ impl BenchChoice {
         }
     }
 
-    /// The same without faults if the unit is on a port: the window offers faults for the embedded unit only, and
-    /// those chosen before a port was entered do not apply.
+    /// This choice without faults if the unit is on a port. The window offers faults for the embedded unit alone;
+    /// faults chosen before a port was entered do not apply.
     pub fn with_offered_faults(mut self) -> Self {
         if !self.is_simulated() {
             self.faults.clear();
@@ -197,7 +198,7 @@ impl BenchChoice {
 /// Reads a software version, `MAJOR.MINOR.PATCH`.
 ///
 /// # Errors
-/// It is not three numbers up to 255.
+/// The text is not three numbers up to 255.
 pub fn software_version(text: &str) -> Result<[u8; 3], RunTrouble> {
     let parts: Vec<u8> = text
         .split('.')
@@ -213,7 +214,7 @@ pub fn software_version(text: &str) -> Result<[u8; 3], RunTrouble> {
 /// Checks a serial number that was given.
 ///
 /// # Errors
-/// It is empty, too long for the unit's identity, or not ASCII.
+/// The number is empty, too long for the unit's identity, or not ASCII.
 pub fn check_serial(serial: &str) -> Result<(), Failure> {
     let longest = size_of_val(&Identity::default().serial);
     if serial.is_empty() || serial.len() > longest || !serial.is_ascii() {

@@ -38,11 +38,10 @@ impl Listener for () {
     fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
 }
 
-/// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub id: Id,
-    /// Over all procedures.
+    /// Verdict over all procedures.
     pub verdict: Verdict,
     /// Bench time of all procedures.
     pub bench_time: Duration,
@@ -50,7 +49,7 @@ pub struct Outcome {
     pub exit: Exit,
     /// The history does not hold the run: why, and where it is kept.
     pub lost: Option<Trouble>,
-    /// Nothing was begun: why.
+    /// Why nothing was begun.
     pub prevented: Option<Trouble>,
     /// How many of the run's steps were due, passed, failed and so on.
     pub counts: StepCounts,
@@ -73,8 +72,8 @@ pub struct Collector<'a> {
     dates: Vec<(i64, i64)>,
     faults_before: usize,
     verdict: Verdict,
-    /// What failed outside the steps of the present procedure: stored after its last step, so that places of steps
-    /// do not depend on it.
+    /// Failures outside the steps of the present procedure, stored after its last step, so that the places of
+    /// steps stay.
     outside: Vec<OutsideStep>,
     /// The present procedure has something recorded that did not pass.
     says_why: bool,
@@ -83,7 +82,7 @@ pub struct Collector<'a> {
     finished: u32,
     /// Different steps that are due.
     planned: usize,
-    /// It is a search for a fault; one that passed without all steps accepts nothing.
+    /// The run searches for a fault: passing without all steps accepts nothing.
     search: bool,
     /// Steps by procedure and place in it.
     counter: StepCounter<(String, usize)>,
@@ -167,7 +166,7 @@ impl<'a> Collector<'a> {
         self.say_of_whole(Verdict::Error, why);
     }
 
-    /// What the run as a whole came to, told to whoever listens as it is stored.
+    /// Records a finding on the run as a whole, and tells it to the listener.
     fn say_of_whole(&mut self, verdict: Verdict, finding: Finding) {
         let entry = OutsideStep {
             place: Outside::Whole,
@@ -233,8 +232,8 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// That of its procedures. A stop outranks what they came to, and so does a lost link: what was not
-    /// tested then is no verdict on the unit.
+    /// Verdict of the run from the verdicts of its procedures. A stop or a lost link outranks them:
+    /// what was not tested is no verdict on the unit.
     fn overall(&self) -> Verdict {
         match self.verdict {
             Verdict::Aborted => Verdict::Aborted,

@@ -23,8 +23,8 @@ use crate::link::{Endpoint, WireLink};
 use crate::places::Placed;
 use crate::stop::Stop;
 
-/// How fast a unit's clock may go beside the bench's, a faulty one on a busy computer included: what is beyond
-/// goes at another pace on purpose.
+/// Pace of a unit's clock over the bench's, faulty clocks on a busy computer included: a unit beyond runs at
+/// another pace on purpose.
 const CLOCKS_AGREE: RangeInclusive<f64> = 0.55..=1.8;
 
 /// Clocks that go together so nearly after [`CLOCK_WATCHED`] are in step; others are watched longer, up to
@@ -39,7 +39,7 @@ const LOG_WITHIN: Duration = Duration::from_ms(10_000);
 pub(super) struct ReadyUnit {
     pub session: Session<WireLink>,
     pub identity: Identity,
-    /// What TCMS found meanwhile, and the unit in its own self-test.
+    /// Faults that TCMS found meanwhile, and the unit in its own self-test.
     pub found: Vec<FaultSeen>,
 }
 
@@ -47,7 +47,7 @@ impl BenchSetup {
     /// Reaches the unit on its port, identifies it and brings it to a known state.
     ///
     /// # Errors
-    /// It cannot be reached, is another one, or has another configuration.
+    /// The unit cannot be reached, is another one, or has another configuration.
     pub(super) fn reach(&self, stop: &Stop) -> Result<ReadyUnit, Failure> {
         let mut link = WireLink::open(&self.endpoint)?.slower(self.slower);
         if let Some(places) = &self.places {

@@ -121,7 +121,7 @@ fn outside(name: &str, all: &BTreeMap<String, String>) -> Result<(String, String
 /// A glob over step names.
 ///
 /// # Errors
-/// It is not a glob.
+/// The text is no glob.
 pub fn step_pattern(glob: Option<&str>) -> Result<Option<Pattern>, Failure> {
     glob.map(Pattern::new).transpose().map_err(|error| {
         Failure::usage(RunTrouble::Glob(

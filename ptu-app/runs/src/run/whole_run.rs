@@ -48,7 +48,7 @@ pub fn run(
     run_on(&mut connected, &began, plan, &setup, store, stop, listener)
 }
 
-/// The same of an adaptive run, which goes by what `adaptive` makes for the unit as it was reached.
+/// Runs an adaptive run. `adaptive` makes its settings for the unit that was reached.
 ///
 /// # Errors
 /// The unit has no dictionary, or the database fails; what was recorded stays.
@@ -131,7 +131,7 @@ fn reach(
 }
 
 impl RunPlan {
-    /// What its results rest on, on a bench that is made so and measures with these.
+    /// Evidence of the plan's results on a bench of this content, with these instruments.
     fn evidence(&self, made: BenchContents, used: Vec<Instrument>) -> Evidence {
         Evidence {
             is_part: self.tasks.iter().any(|task| task.options.chosen.is_some()),

@@ -10,7 +10,7 @@ use protocol::signal::Signal;
 
 use super::{Structure, WayStep};
 
-/// What a link of a chain makes.
+/// Result of a link of a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinkOutput {
     Signal(Signal),
@@ -69,7 +69,8 @@ impl Structure {
         })
     }
 
-    /// What a step looks at and has a way: what it measures and expects before what it only waits for.
+    /// Signals that a step judges and that have a way: first those measured and expected, then those
+    /// it only waits for.
     fn judged(&self, step: &Step) -> Vec<LinkOutput> {
         let mut judged = Vec::new();
         let mut add = |made: LinkOutput| {

@@ -121,7 +121,7 @@ struct Train {
 }
 
 impl Train {
-    /// Does what is said in the cab; false when that is to quit.
+    /// Carries out an order of the cab; false when the order is to quit.
     fn obey(&mut self, line: &str) -> bool {
         let order = match self.cab.order(line) {
             Ok(order) => order,

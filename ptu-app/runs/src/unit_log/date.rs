@@ -8,8 +8,7 @@ use protocol::message::StoredClock;
 
 use crate::clock::NOT_KNOWN_MS;
 
-/// An entry may be so much younger than the uptime it is dated by, ms: it was logged while the log was
-/// read.
+/// An entry may be younger than the uptime it is dated by, ms: it was logged while the log was read.
 const YOUNGER_MS: u64 = 60_000;
 
 /// The unit's clock beside ours.
@@ -21,13 +20,13 @@ pub struct ClockPair {
     pub at_us: i64,
 }
 
-/// Two oscillators may go apart by so much: 100 ppm.
+/// Drift between two oscillators: 100 ppm.
 const DRIFT: i64 = 10_000;
 
-/// What a store of the unit says of the times it was sent.
+/// Times that a store of the unit was sent.
 #[derive(Clone, Debug, Default)]
 pub struct StoredClocks {
-    /// Those that are not disproved.
+    /// Times that nothing disproves.
     clocks: Vec<StoredClock>,
     /// Our own, if it is known to be right.
     ours: Option<StoredClock>,
@@ -41,7 +40,7 @@ pub struct StoredClocks {
 pub struct StoredDate {
     /// µs UTC.
     pub at_us: i64,
-    /// It may be wrong by so much, µs; none where that is unknown: it may be of any other day.
+    /// Greatest error of the date, µs; none = unknown, the day may be wrong.
     pub uncertainty_us: Option<i64>,
 }
 
@@ -83,7 +82,7 @@ impl StoredClocks {
             };
             (uncertainty_us.unwrap_or(i64::MAX), date)
         });
-        // Of equals the one sent last.
+        // Of two equally good dates, the time sent last counts.
         let best = dates.reduce(|best, date| match date.0 <= best.0 {
             true => date,
             false => best,
@@ -96,8 +95,8 @@ impl StoredClocks {
         best.map(|(_, date)| date).filter(is_past)
     }
 
-    /// What does not go together: times of one power-up further apart than their uncertainties, and a power-up that
-    /// begins before the one that came before it.
+    /// Contradictions, as sentences: times of one power-up further apart than their uncertainties; a power-up that
+    /// begins before the previous one.
     pub fn contradictions(&self) -> Vec<String> {
         self.contradictions.clone()
     }
@@ -126,8 +125,8 @@ fn uncertainty_us(clock: &StoredClock) -> Option<i64> {
     known.map(|ms| i64::from(ms) * 1000)
 }
 
-/// How far two clocks, of which the second was sent later, are apart, if that is more than they may be; negative of a
-/// time that fell.
+/// Difference of two clocks, of which the second was sent later, µs, if it is more than permitted; negative if the
+/// time fell.
 fn apart_us(before: &StoredClock, clock: &StoredClock) -> Option<i64> {
     let told_later_us = utc_us(clock) - utc_us(before);
     let allowed_us = (i64::from(clock.uncertainty_ms) + i64::from(before.uncertainty_ms)) * 1000;

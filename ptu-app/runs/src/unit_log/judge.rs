@@ -1,5 +1,5 @@
-//! Which entries of a unit's log are faults of the unit and its train: not information, not what a
-//! tester did to it, not that it lies on a bench with nothing connected.
+//! Finds the entries of a unit's log that are faults of the unit and its train: no information, no
+//! act of a tester, no silence of a unit with nothing connected.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use crate::run::is_fault;
 /// Inputs and TCMS that fall silent so close together, ms, were taken away at once: their time-outs
 /// differ by less, and no single fault of the unit silences both.
 const TOGETHER_MS: u32 = 2_000;
-/// What a unit logs because nothing is connected any more.
+/// Events of a unit to which nothing is connected any more.
 const SILENCE: [Event; 4] = [
     Event::InputsLost,
     Event::TcmsLost,
@@ -24,7 +24,7 @@ const SILENCE: [Event; 4] = [
 /// Frames of several partners refused so close together, ms, were damaged on the line they share: the
 /// unit counts over ten seconds.
 const ONE_LINE_MS: u32 = 12_000;
-/// What a unit logs because frames do not reach it.
+/// Events of a unit that frames do not reach.
 const FRAMES_LOST: [Event; 4] = [
     Event::FramesRejected,
     Event::InputsLost,
@@ -36,21 +36,21 @@ const FRAMES_LOST: [Event; 4] = [
 pub struct JudgedLog {
     /// Faults, in order.
     pub faults: Vec<Entry>,
-    /// Why the others are none.
+    /// Numbers of entries that are no faults, by reason.
     pub left_out: ExcludedEntries,
 }
 
 /// Entries left out, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExcludedEntries {
-    /// Information only; so is a station's loop that is left in a mode which needs none.
+    /// Information only, also of a station's loop that a train left in a mode without need of one.
     pub information: u32,
-    /// Of the time before the one asked for.
+    /// Entries made before the time asked for.
     pub too_old: u32,
-    /// Made while a run of the same history tested the unit, which has judged them.
+    /// Entries made while a run of the same history tested the unit; the run has judged them.
     pub under_test: u32,
-    /// Made while a tester had it armed, when it may do what the tester asks; or a tester's own frames,
-    /// refused.
+    /// Entries made while a tester had armed the unit, which may do what the tester asks; also refused
+    /// frames of a tester.
     pub tester: u32,
     /// Silence of a unit that nothing is connected to.
     pub alone: u32,
@@ -106,7 +106,7 @@ fn left_loop(entry: &UnitEvent) -> bool {
     is(entry, Event::TwcLost) && matches!(entry.mode, Mode::Yard | Mode::Manual | Mode::Emergency)
 }
 
-/// Frames of a tester, refused: of its cable, or one that took over from another.
+/// Refused frames of a tester: by its cable, or because one tester took over from another.
 fn of_testers_line(entry: &UnitEvent) -> bool {
     is(entry, Event::FramesRejected) && entry.parameter == i32::from(Channel::Ptu.code())
 }
@@ -127,8 +127,8 @@ fn of_a_bad_line(events: &[UnitEvent], place: usize) -> bool {
     first.is_some_and(|first| refused.any(|other| other.parameter != first.parameter))
 }
 
-/// Spans of entries in which a tester had the unit armed. Arming whose beginning is not kept began
-/// before.
+/// Spans of entries in which a tester had the unit armed. Where the log no longer has its
+/// beginning, arming began before the log.
 fn armed(events: &[UnitEvent]) -> Vec<Range<usize>> {
     let mut spans = Vec::new();
     let mut began = None;
@@ -167,7 +167,7 @@ fn alone(events: &[UnitEvent]) -> Vec<Range<usize>> {
         if let (Some(inputs), Some(tcms), None) = (inputs, tcms, began) {
             let (first, second) = (inputs.min(tcms), inputs.max(tcms));
             let apart_ms = events[second].at_ms.abs_diff(events[first].at_ms);
-            // One that was gone long before is a fault; the other went with the tester.
+            // A partner lost long before is a fault; the other one went with the tester.
             began = Some(if apart_ms <= TOGETHER_MS {
                 first
             } else {

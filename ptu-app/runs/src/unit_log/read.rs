@@ -33,18 +33,17 @@ pub struct Entry {
 pub struct StoredPlace {
     /// Power-up that it was made in.
     pub power_up: u32,
-    /// Its number over all power-ups.
+    /// Sequence number of the entry in the store, over all power-ups.
     pub sequence: u32,
-    /// It was made not later than this, µs UTC: the date of the next entry that has one.
+    /// The entry was made before this, µs UTC: the date of the next entry that has one.
     pub not_after_us: Option<i64>,
-    /// Its date may be wrong by so much, µs; none where that is unknown.
+    /// Greatest error of the entry's date, µs; none = unknown.
     pub uncertainty_us: Option<i64>,
 }
 
-/// What was read of the unit's stored memory.
+/// Result of reading the unit's stored memory.
 #[derive(Clone, Debug, Default)]
 pub struct StoredRead {
-    /// Present power-up.
     pub power_up: u32,
     /// Rows of the run record, if they were asked for.
     pub rows: Vec<StoredRow>,
@@ -52,16 +51,15 @@ pub struct StoredRead {
     pub clocks: StoredClocks,
     /// Entries that are damaged in the unit.
     pub damaged: u64,
-    /// What a reader should know: times that contradict each other, a power-up count that falls, a memory that
+    /// Notes for a reader: times that contradict each other, a power-up count that falls, a memory that
     /// failed.
     pub notes: Vec<String>,
 }
 
 #[derive(Clone, Debug)]
 pub struct LogRead {
-    /// Who the unit is.
     pub identity: Identity,
-    /// Its entries, in order.
+    /// Entries of the log, in order.
     pub entries: Vec<Entry>,
     /// Entries the unit had overwritten or cleared before.
     pub overwritten: u64,
@@ -69,13 +67,14 @@ pub struct LogRead {
     pub not_kept: u64,
     /// Times the unit was started again meanwhile.
     pub restarts: u32,
-    /// Its states at the end.
+    /// States of the unit at the end.
     pub status: StatusBits,
-    /// Its operating mode at the end.
+    /// Operating mode at the end.
     pub mode: Option<Mode>,
     /// Why reading ended before the log did.
     pub broken_off: Option<BrokenOff>,
-    /// What it has stored over power-ups; none of an older unit, whose log is of the present one.
+    /// Result of reading the stored memory; none for an older unit, whose log covers the present
+    /// power-up alone.
     pub stored: Option<StoredRead>,
 }
 
@@ -150,8 +149,8 @@ pub fn read_log<L: UnitLink>(
         return Err(broken_off.unwrap_or(BrokenOff::Stopped));
     };
     let stored = session.stored().map(|(events, rows)| {
-        // Of a unit that started again meanwhile it is not known which power-up our clock stands beside: the time
-        // that it was sent, and stored, is.
+        // A unit that started again while its log was read does not say beside which power-up our clock stands;
+        // the times that it was sent and stored do.
         let (dated, read) =
             from_store(events, rows, pair.filter(|_| restarts == 0), uncertainty_ms);
         entries = dated;

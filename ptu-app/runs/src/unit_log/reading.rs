@@ -25,7 +25,7 @@ pub struct AskedUnit {
     pub line: String,
     /// Train it is in, as the depot names it.
     pub train: String,
-    /// Who reads.
+    /// Name of the person who reads.
     pub operator: String,
 }
 
@@ -35,7 +35,6 @@ pub struct UnitReading {
     pub source: Source,
     /// Whether our own clock was right then.
     pub clock: ClockState,
-    /// What a reader should know.
     pub warnings: Vec<String>,
 }
 
@@ -166,10 +165,10 @@ impl UnitReading {
         Ok(ImportedLog { judged, imported })
     }
 
-    /// Why it ended before all was read, if it did.
+    /// Checks that all was read.
     ///
     /// # Errors
-    /// That, for a person.
+    /// Reading ended before; the error says why.
     pub fn complete(&self) -> Result<(), Failure> {
         match &self.read.broken_off {
             None => Ok(()),
@@ -178,7 +177,7 @@ impl UnitReading {
     }
 }
 
-/// What a unit says is no name of a configuration until one of that name is known here.
+/// Name of the unit's configuration if it is known here; else a word for an unknown one.
 fn known_config(directory: &ScriptsDirectory, told: String) -> String {
     match directory.unit_config_names().contains(&told) {
         true => told,
@@ -186,7 +185,7 @@ fn known_config(directory: &ScriptsDirectory, told: String) -> String {
     }
 }
 
-/// What a reader of the log should know of it.
+/// Warnings about a read log.
 fn of_reading(read: &LogRead) -> Vec<String> {
     let mut warnings = Vec::new();
     if read.overwritten > 0 {

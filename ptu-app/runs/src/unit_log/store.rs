@@ -15,44 +15,44 @@ use crate::platform;
 use crate::run::of_event;
 use crate::stored::fault_record;
 
-/// Sample of a freeze frame that says the power-up of an entry.
+/// Name of the freeze-frame sample with the power-up of an entry.
 const POWER_UP: &str = "power_up";
 
-/// What is stored of a reading beside its entries.
+/// Data of a reading that are stored beside its entries.
 #[derive(Clone, Debug)]
 pub struct Source {
     /// Where the unit is: `serial:…`, `tcp:…`.
     pub endpoint: String,
     pub serial: String,
-    /// Name of its unit configuration.
+    /// Name of the unit configuration.
     pub config_name: String,
-    /// SHA-256 of it in hex; empty where the file is not at hand.
+    /// SHA-256 of the configuration in hex; empty where the file is not at hand.
     pub unit_config_sha256: String,
     pub line: String,
-    /// Who reads.
+    /// Name of the person who reads.
     pub operator: String,
     /// The train the unit is in, as the tester names it; empty if not given.
     pub train: String,
     /// When reading began, µs UTC.
     pub from_us: i64,
-    /// When it ended.
+    /// When reading ended, µs UTC.
     pub until_us: i64,
-    /// It ended before the log did.
+    /// The link failed before the whole log was read.
     pub broken_off: bool,
 }
 
-/// What became of the faults of a log.
+/// Result of storing the faults of a log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Imported {
     /// The run they are stored as; none when nothing is new.
     pub run: Option<Id>,
-    /// New ones, in order.
+    /// New faults, in order.
     pub new: Vec<FaultRecord>,
-    /// Those known already.
+    /// Number of faults that were stored before.
     pub known: usize,
 }
 
-/// Stores what is new of `faults`.
+/// Stores those of `faults` that the history does not have.
 ///
 /// # Errors
 /// The database fails; what was stored stays, and the next import adds the rest.
@@ -67,7 +67,7 @@ pub fn import(store: &Store, source: &Source, faults: &[Entry]) -> Result<Import
             .map(|place| entry_id(&source.serial, entry, place));
         let is_known = match id {
             Some(id) if store.has_occurrence(id)? => true,
-            // Seen in a run. Without a date only the id can tell.
+            // The fault may have been seen in a run; without a date only the id tells.
             Some(_) if entry.at_us.is_none() => false,
             _ => store.knows_occurrence(&source.serial, what, entry.at_us)?,
         };
@@ -103,8 +103,8 @@ pub fn import(store: &Store, source: &Source, faults: &[Entry]) -> Result<Import
     Ok(imported)
 }
 
-/// The same on every laptop: from the unit, its power-up and the entry's number, and from the entry itself, because
-/// a unit whose flash was exchanged counts from the start.
+/// Id of the fault, equal on every laptop: made from the unit's serial number, power-up, number and content of the
+/// entry. The content counts because a unit whose flash was exchanged numbers from the start again.
 fn entry_id(serial: &str, entry: &Entry, place: StoredPlace) -> Id {
     let event = &entry.event;
     let parts = [
@@ -118,7 +118,7 @@ fn entry_id(serial: &str, entry: &Entry, place: StoredPlace) -> Id {
     Id::of_content("unit log entry", &parts)
 }
 
-/// What stands out when this unit's stored memory is held against what was imported of it before.
+/// Note on the unit's stored memory, compared with earlier imports.
 ///
 /// # Errors
 /// The database fails.
@@ -221,7 +221,7 @@ fn record(entry: &Entry, read_at_us: i64) -> FaultRecord {
     fault_record(fault, at_us, bench_us, None)
 }
 
-/// The signals an entry tells of.
+/// Signals that an entry has values of.
 fn frozen(event: &UnitEvent) -> Sample {
     let mut sample = Sample::default();
     sample.set(Signal::Speed, event.speed.kmh());

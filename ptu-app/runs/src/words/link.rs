@@ -1,4 +1,4 @@
-//! What is wrong with the link to a unit, in Korean.
+//! Trouble of the link to a unit, in Korean.
 
 use btu_rig::procedure::link_trouble::{
     GarbageCause, InstrumentFault, LinkFailure, LinkTrouble, PortFailure, Property, Refused,

@@ -22,7 +22,8 @@ const LITTLE_ROOM: u64 = 1 << 30;
 const NO_ROOM: u64 = 100 << 20;
 /// Times that an instrument is tried.
 const ROUNDS: u32 = 20;
-/// What a Modbus module is registered as, and the unit of its reaction time, which is no uncertainty of a measured time.
+/// Kind as which a Modbus module is registered; its reaction time has a unit of its own, as it is no uncertainty of
+/// a measured time.
 const MODULE: &str = "modbus module";
 const REACTION: &str = "ms reaction";
 /// The newest run is at most this far ahead of a clock that is right, µs: another computer's clock may be off a little.
@@ -111,7 +112,7 @@ pub(super) fn ports(words: &Words) -> Vec<Finding> {
 
 /// A port that this user may not open, and the group whose members may, if there is one.
 fn closed_port(path: &str, kind: &str, group: Option<&str>, doctor: &Doctor) -> Finding {
-    // Who joins the group "root" may do more than open ports.
+    // A member of the group "root" may do more than open ports.
     let remedy = match group.filter(|group| *group != "root") {
         Some(group) => fill(doctor.join_group, &[("group", &group)]),
         None => doctor.install_rule.into(),
@@ -207,7 +208,7 @@ pub(super) fn database(file: &Path, words: &Words) -> Vec<Finding> {
     findings
 }
 
-/// There is room for runs.
+/// Checks the room on the disk for runs.
 pub(super) fn disk(file: &Path, words: &Words) -> Finding {
     let doctor = &words.doctor;
     let subject = doctor.disk;

@@ -31,7 +31,7 @@ pub struct ShowOptions {
 }
 
 impl ShowOptions {
-    /// How much is said.
+    /// Amount of detail.
     pub fn detail(&self) -> Detail {
         match (self.quiet, self.verbose) {
             (true, _) => Detail::Quiet,
@@ -48,7 +48,7 @@ impl ShowOptions {
         }
     }
 
-    /// What the run came to.
+    /// Outcome of the run.
     pub fn verdict(&self, run: &RunDetail) -> String {
         let words = Words::shown();
         match self.quiet {

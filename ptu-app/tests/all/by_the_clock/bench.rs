@@ -96,7 +96,7 @@ impl Bench {
         place.write("bench.toml", &text)
     }
 
-    /// The same with generator, module and a supply at serial lines.
+    /// Bench file with generator, module and a supply at serial lines.
     fn serial_file(&self, place: &Place) -> String {
         let [generator, supply, module] = serial_lines(place);
         let Self(_, ports) = self;
@@ -126,8 +126,8 @@ impl Bench {
         place.write("serial.toml", &(text + &supply))
     }
 
-    /// Runs procedures on a served unit that is wired to the bench of this file; gives the exit code and the run. Of the last
-    /// ports of the bench so many have no wires.
+    /// Runs procedures on a served unit that is wired to the bench of this file; gives the exit code and the run.
+    /// The last `unwired` ports of the bench have no wires.
     fn run(&self, place: &Place, asked: &str, file: &str, unwired: usize) -> (Option<i32>, Value) {
         let unit = Unit::on_tcp(&[]);
         let port = unit.port.rsplit(':').next().expect("a port").to_owned();

@@ -1,4 +1,4 @@
-//! What judges times by the clock, when nothing else runs.
+//! Tests that judge times by the clock, when nothing else runs.
 
 mod acceptance;
 mod bench;

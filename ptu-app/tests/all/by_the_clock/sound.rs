@@ -34,7 +34,7 @@ impl SoundCard {
         let made = Command::new("mkfifo").arg(&pipe).status();
         assert!(made.expect("mkfifo starts").success());
         let play = format!("exec {plays} > {pipe}");
-        // It hears nothing, and waits, while nobody plays.
+        // The recorder hears nothing, and waits, while nobody plays.
         let record = format!("exec cat <> {pipe}");
         for (name, does) in [("pacat", play), ("parec", record)] {
             let file = place.write(&format!("bin/{name}"), &format!("#!/bin/sh\n{does}\n"));

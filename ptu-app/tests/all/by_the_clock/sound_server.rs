@@ -16,9 +16,9 @@ use rustix::process::{Pid, Signal, kill_process};
 
 use crate::common::{Place, Typed, has, list, number, text};
 
-/// What may pass from a stop to silence.
+/// Time that may pass from a stop to silence.
 const SILENT_WITHIN: Duration = Duration::from_millis(100);
-/// What the way back to the test takes at most, on a machine that has other work.
+/// Time that the way back to the test takes at most, on a machine that has other work.
 const WAY_BACK: Duration = Duration::from_millis(150);
 
 /// A sound server with a null sink, gone with the value.
@@ -223,7 +223,7 @@ fn levels_follow_the_calibration() {
     server.recorded("4", || {
         let play = "signal play code 55 --seconds 3";
         let said = server.ptu(&format!("{play} --device coil"));
-        // Of the other channel there is none.
+        // The other channel has no calibration.
         let said = said.exits(0);
         has(&said.err, &["not calibrated for twc"]);
     });

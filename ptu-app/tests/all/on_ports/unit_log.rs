@@ -86,7 +86,7 @@ fn what_a_unit_logged_elsewhere_becomes_faults_once() {
     );
     assert_eq!(depot.run_ids().len(), 1);
 
-    // Who drove it has judged it already.
+    // The bench that drove the unit has judged the fault already.
     let own = import(&workshop, &unit, &[]);
     assert!(!names(&own["faults"]).contains(&"tacho1_dead"), "{own}");
     assert!(number(&own["left_out"]["under_test"]) > 0.0, "{own}");

@@ -1,4 +1,4 @@
-//! What a diagnosis comes to, and what to run next: a sentence in both languages for each kind.
+//! Conclusions of a diagnosis, and the next check: a sentence in both languages for each kind.
 
 use diagnosis::{Conclusion, NextCheck};
 use protocol::LruId;
@@ -166,7 +166,7 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
     }
 }
 
-/// Which of these parts, and so many more, has failed.
+/// Sentence which says that one of these parts, or of `more` others, has failed.
 fn cannot_tell(shown: &[Both], more: usize, can_go_on: bool) -> Both {
     let [more, more_ko] = match more {
         0 => [String::new(), String::new()],
@@ -196,7 +196,7 @@ fn cannot_tell(shown: &[Both], more: usize, can_go_on: bool) -> Both {
     }
 }
 
-/// What is left where no check tells the likely parts apart.
+/// Advice where no check tells the likely parts apart.
 fn swap(conclusion: &Conclusion, names: &[Lru]) -> Both {
     let likeliest = match conclusion {
         Conclusion::CannotTell { likely } => likely.first(),
@@ -241,7 +241,7 @@ fn run_next(next: &NextCheck, names: &[Lru]) -> Both {
     ]
 }
 
-/// What a check tells that passes where some parts have failed, and does not pass where others have.
+/// Meaning of a check that passes where some parts have failed, and does not pass where others have.
 pub(super) fn tells(next: &NextCheck, names: &[Lru]) -> Both {
     let all = |parts: &[LruId]| {
         let named: Vec<_> = parts.iter().map(|part| called(part, names)).collect();

@@ -1,4 +1,5 @@
-//! What a run found, in Korean: one sentence for each kind, which does not compile without one.
+//! Findings of a run in Korean: one sentence for each kind; a kind without a sentence does not
+//! compile.
 
 use btu_rig::procedure::EventSource;
 use btu_rig::procedure::describe::meanings;
@@ -45,7 +46,7 @@ fn missing(data: &MissingData) -> String {
     }
 }
 
-/// Why, behind what.
+/// The reason, as an addition to a sentence.
 fn because(why: Option<String>) -> String {
     why.map_or_else(String::new, |why| format!(". {why}"))
 }
@@ -311,7 +312,7 @@ fn seen_bits(of: &Condition, bits: u16) -> String {
     condition::bits(*signal, bits).map_or_else(String::new, |bits| format!(" (실제 {bits})"))
 }
 
-/// Who logged what.
+/// Sentence on a logged event: who logged it, and which it is.
 fn logged(entry: &LoggedEvent) -> String {
     let (who, code) = (condition::who(entry.source), entry.code);
     let Some(event) = entry.event() else {
@@ -325,7 +326,7 @@ fn logged(entry: &LoggedEvent) -> String {
     )
 }
 
-/// What an event is, with what its parameter says.
+/// Event, with its parameter, as text.
 fn happened(entry: &LoggedEvent) -> String {
     let Some(event) = entry.event() else {
         return format!("알 수 없는 이벤트 {} (값 {})", entry.code, entry.parameter);

@@ -73,7 +73,7 @@ struct ScriptedUnit {
     uptime_ms: u32,
     serial: [u8; 3],
     asked_from: Option<u32>,
-    /// What happens at a time, ms.
+    /// An event and its time, ms.
     happens: Option<(u64, ScriptedEvent)>,
     /// Entries it sends in each scan once it was asked, without end.
     endless: u32,

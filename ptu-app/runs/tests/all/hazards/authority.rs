@@ -19,7 +19,7 @@ const CLOSES: Duration = Duration::from_ms(300);
 const JOG_M: f64 = 6.2;
 const JOG_KMH: f64 = 5.6;
 
-/// What was allowed, and not ended since.
+/// Permission that was given, and has not ended.
 #[derive(Default)]
 pub(super) struct Authority {
     by_hand: bool,

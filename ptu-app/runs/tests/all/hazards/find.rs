@@ -16,11 +16,11 @@ pub struct Find {
     pub at: Instant,
     /// Signals and true motion at the breach.
     pub state: String,
-    /// By how much the unit tells a lower speed than there is, km/h.
+    /// Greatest difference by which the unit tells a lower speed than the true one, km/h.
     pub hidden_kmh: f64,
     /// Faults that were injected, and those of tachometers that the bench made.
     pub faults: Vec<String>,
-    /// What was done until then, in order.
+    /// Acts until then, in order.
     pub acts: Vec<(Instant, Act)>,
 }
 

@@ -70,7 +70,7 @@ fn bursts_raise_no_limit_by_waveforms_either() {
     }
 }
 
-/// The same in scenes with codes that flicker, and anything else.
+/// By waveforms the unit permits no more than by values, also in scenes with codes that flicker.
 #[test]
 #[ignore = "long suite: 41 scenes, each by values and by waveforms"]
 fn scenes_by_waveforms_permit_no_more() {

@@ -11,7 +11,8 @@ const GUARDS: &str = include_str!("../../../../../ato-under-test/src/guards.rs")
 /// Scenes that are played of each at most, in blocks.
 const SCENES: u64 = 120;
 const BLOCK: u64 = 12;
-/// Guards that are found in so few scenes. Of the others a scene is too rare, or what they guard is no invariant.
+/// Guards that are found in this number of scenes. For the other guards a scene is too rare, or the guarded thing
+/// is no invariant.
 const FOUND: usize = 7;
 
 /// Places of all guards.
@@ -27,7 +28,7 @@ fn places() -> Vec<&'static str> {
         .collect()
 }
 
-/// What such a guard has to do with.
+/// Kind of input that such a guard watches.
 fn kind(place: &str) -> Option<Kind> {
     Some(match place {
         "StopGuard" => Kind::Code,

@@ -1,5 +1,5 @@
-//! What the monitor remembers of a scene: values that were there lately, codes that were there for long enough, a train
-//! that is put away, tachometers that are dead.
+//! Memory of the monitor: recent values, codes that were there for long enough, a train that is put away,
+//! tachometers that are dead.
 
 use protocol::signal::Signal;
 use protocol::{Duration, Instant, SCAN};
@@ -99,7 +99,8 @@ impl Confirmed {
 pub(super) struct Asleep(bool);
 
 impl Asleep {
-    /// By what the train reports to the wayside; who turns the mode switch away from driverless has taken it.
+    /// Notes what the train reports to the wayside; a person who turns the mode switch away from driverless
+    /// has taken the train.
     pub fn note(&mut self, seen: Observed<'_>) -> bool {
         let state = seen.value(Signal::OrderState) as u8;
         let (put_away, waking, failed) = (state == 4, state == 5, state == 7);
@@ -109,7 +110,7 @@ impl Asleep {
     }
 }
 
-/// Both tachometers are dead: what no wheel tells is noticed later.
+/// Time since which both tachometers are dead: other signs of motion come later.
 #[derive(Default)]
 pub(super) struct Blind {
     since: Option<Instant>,

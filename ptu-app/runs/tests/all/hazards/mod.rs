@@ -101,7 +101,7 @@ fn explained(find: &Find, exported: &[Exported]) -> Option<&'static str> {
 struct Search {
     setup: BenchSetup,
     modes: Vec<FaultMode>,
-    /// What each plan has, whatever else; none = by turns.
+    /// Kind of scene with which each plan begins; none = each kind in turn.
     first: Option<Kind>,
 }
 
@@ -139,7 +139,7 @@ impl Search {
         (played.into_iter().filter_map(found).collect(), minutes)
     }
 
-    /// The same breach by as few acts as do it.
+    /// A plan with as few acts as still lead to this breach.
     fn shortened(&self, number: u64) -> Option<(Plan, Find)> {
         let mut plan = self.plan(number);
         let mut find = play(&self.setup, &plan)?;
@@ -199,7 +199,7 @@ fn judged(setup: BenchSetup, modes: &str, numbers: Range<u64>) {
     judge(&search, &finds, minutes);
 }
 
-/// The same 150 scenes with each commit; others are searched by hand, or in the long suite.
+/// The same 150 scenes with each commit; other scenes are searched by hand or in the long suite.
 #[test]
 fn scenes_break_no_invariant() {
     judged(setup(&[]), "*", 0..150);

@@ -18,7 +18,7 @@ use super::place::TrainPlace;
 pub(super) const MOVES_KMH: f64 = 1.08 + 0.4;
 /// Speed, km/h, at which a brake has stopped the train.
 const STOPPED_KMH: f64 = 0.1;
-/// What a measured speed may be off, km/h.
+/// Tolerance of a measured speed, km/h.
 const SPEED_OFF_KMH: f64 = 0.6;
 /// Time from a cause to a contact, beside what is stated: scans of unit and bench, and window of the speed.
 const SLACK: Duration = Duration::from_ms(300);
@@ -40,10 +40,10 @@ const TOLD: Duration = Duration::from_ms(1_000);
 const OPEN_WAY_M: f64 = 0.3;
 const OPEN_BRAKED_S: f64 = 0.5;
 
-/// How a train breaks I2 that no stop code stops.
+/// Name of a breach of I2 by a train that no stop code stops.
 pub(super) const UNDER_STOP: &str = "moves under a stop";
 
-/// What must hold at any time; numbers are never used again.
+/// Conditions that must hold at any time; numbers are never used again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Invariant {
     /// The train runs only in the direction that its code and its reverser allow.
@@ -54,7 +54,8 @@ pub enum Invariant {
     I3,
     /// Doors are enabled, and open by order, at a platform, on its side, at the place, at rest.
     I4,
-    /// It starts by an act of a person or an order of the wayside after the last thing that stopped it.
+    /// The train starts by an act of a person or an order of the wayside, given after the last thing
+    /// that stopped the train.
     I5,
     /// The emergency brake is not released in motion.
     I6,

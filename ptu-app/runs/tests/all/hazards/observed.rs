@@ -1,4 +1,4 @@
-//! What the monitor of hazards sees in a scan: the rig's truth, and the unit's contacts.
+//! State that the monitor of hazards sees in a scan: the rig's truth, and the unit's contacts.
 
 use protocol::Instant;
 use protocol::signal::{Sample, Signal};
@@ -6,12 +6,12 @@ use protocol::signal::{Sample, Signal};
 /// Overrun after which a train may be jogged back, m, with what its position may be off.
 const JOGS_FROM_M: f64 = 5.3 + 0.9;
 
-/// What is true in a scan.
+/// True state of train, track and unit in one scan.
 #[derive(Clone, Copy)]
 pub struct Observed<'a> {
     pub now: Instant,
     pub sample: &'a Sample,
-    /// Of the train, m/s, forward positive.
+    /// True speed of the train, m/s, forward positive.
     pub speed_mps: f64,
     /// Forward positive, m/s².
     pub accel_mps2: f64,
@@ -45,7 +45,7 @@ pub struct Observed<'a> {
     pub wheel_mm: Option<f64>,
     /// Pulses of markers that lie nowhere, so far.
     pub pulsed: usize,
-    /// How far beyond their places the markers lie, m.
+    /// Distance of the markers beyond their places, m.
     pub displaced: [f64; 4],
 }
 
@@ -106,7 +106,7 @@ impl Observed<'_> {
         self.by_ato() && backward && self.to_stop_m.is_some_and(past)
     }
 
-    /// It runs where neither reverser nor code lets it.
+    /// The train runs in a direction that neither reverser nor code allows.
     pub(super) fn wrong_way(&self) -> bool {
         let by_code = matches!(self.switch(), 2..=4);
         let against = self.speed_mps * f64::from(self.reverser) <= 0.0;

@@ -1,5 +1,5 @@
-//! What the train may run at: limits of the codes in the antenna and of the mode switch, and the wheels that speed is
-//! measured by.
+//! Greatest speed that the train may run at, by the codes in the antenna and the mode switch, and the wheels by
+//! which speed is measured.
 
 use protocol::config::{SpeedCode, UnitConfig};
 use protocol::signal::Signal;
@@ -24,15 +24,16 @@ const UNDER_WAY_KMH: f64 = 1.08 + 0.4;
 /// The greatest limits that may be in force, km/h, and how much faster than measured the train may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Permitted {
-    /// By any code that was in the antenna.
+    /// Limit of any code that was in the antenna, km/h.
     pub most_kmh: f64,
-    /// By any that was there for as long as a detection takes.
+    /// Limit of any code that was there for as long as a detection takes, km/h.
     pub confirmed_kmh: f64,
-    /// By what the table takes of two codes at once.
+    /// Limit by what the table takes of two codes at once, km/h.
     pub selected_kmh: f64,
     /// True speed over that measured, by any wheel diameter that was keyed in: 1 at least.
     pub keyed: f64,
-    /// The same by those that the table does not refuse.
+    /// True speed over measured speed, by diameters of the permitted range that were keyed in at
+    /// standstill.
     pub admitted: f64,
 }
 
@@ -45,7 +46,7 @@ pub(super) struct Limits {
     yard_ended: YardEnded,
     proceeding: Proceeding,
     emergency_kmh: f64,
-    /// Of the track's own code, or the mode switch; and of a neighbouring track's.
+    /// Limits by the track's own code or the mode switch, and by a neighbouring track's code.
     each: [Heard; 2],
     selected: Lately,
     /// Limits by code and mode switch.
@@ -187,8 +188,8 @@ impl Wheels {
         }
     }
 
-    /// True speed over that measured: by any of them, and by those of the range that were keyed in at standstill. Who
-    /// keys in a greater one measures more than the train runs, and is slower.
+    /// True speed over measured speed: by any diameter keyed in, and by diameters of the permitted range keyed in at
+    /// standstill. With a greater diameter the unit measures more than the train runs, and the train is slower.
     fn note(&mut self, seen: Observed<'_>) -> [f64; 2] {
         if !seen.powered {
             (self.keyed, self.admitted) = (1.0, 1.0);
@@ -224,7 +225,7 @@ mod tests {
     use super::*;
     use crate::setup;
 
-    /// What is permitted after two seconds of this antenna, desk and motion, each with the change that `see` makes.
+    /// Permitted speeds after two seconds of this antenna, desk and motion, each with the change that `see` makes.
     fn permitted(see: impl Fn(&mut Observed<'_>), antenna: [f64; 3], second_mv: f64) -> Permitted {
         let setup = setup(&[]);
         let mut limits = Limits::new(&setup.config.content);

@@ -28,7 +28,7 @@ pub(super) struct Platform {
 pub(super) struct TrainPlace {
     line: Line,
     section: u16,
-    /// Its distance to run when the section was laid.
+    /// Distance to run in the section when the section was laid, m.
     laid_m: Option<f64>,
     laid: Instant,
     /// The section was laid behind another.

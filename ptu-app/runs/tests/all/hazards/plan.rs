@@ -1,5 +1,5 @@
-//! What is done to a unit: how a scene begins, what is done in it and when, which parts have failed. A plan follows from
-//! its number alone, so that a part of it can be left out and the rest played again.
+//! A plan of a scene: its beginning, its acts with their times, the parts that have failed. A plan follows from its
+//! number alone, so that a part of it can be left out and the rest played again.
 
 use std::fmt;
 
@@ -38,12 +38,12 @@ impl fmt::Display for Act {
     }
 }
 
-/// How a scene begins.
+/// Beginning of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scene {
     /// A driver in the cab, the train at a platform.
     Standing,
-    /// The same, under way by a notch of the controller.
+    /// A driver in the cab, the train under way by a notch of the controller.
     ByHand,
     /// Driven by hand at yard or emergency.
     Slowly(ModeSwitch),
@@ -77,17 +77,17 @@ pub struct Plan {
     /// Place in the line of the section that the train is on.
     pub section: usize,
     pub faults: Vec<FaultMode>,
-    /// How far beyond their places the markers of each section lie, m.
+    /// Distance of each section's markers beyond their places, m.
     pub displaced_m: [f64; 4],
     /// Place in the line of the section whose data the wayside gives after the first arrival, instead of the next.
     pub data_of: Option<usize>,
     pub adhesion: Option<f64>,
     pub length_ms: u32,
-    /// What is done, ms after the begin.
+    /// Acts, with their times in ms after the begin.
     pub acts: Vec<(u32, Act)>,
 }
 
-/// What a plan is drawn from.
+/// Choices from which a plan is drawn.
 pub struct Draw<'a> {
     pub setup: &'a BenchSetup,
     pub random: Random,
@@ -224,7 +224,7 @@ impl Plan {
     }
 }
 
-/// None, one or two parts that have failed. A time base may be off by any factor.
+/// Draws none, one or two parts that have failed. A time base may be off by any factor.
 fn faults(catalogue: &[FaultMode], always: bool, random: &mut Random) -> Vec<FaultMode> {
     use protocol::injection::{Effect, Place};
     let count = match [0, 0, 0, 1, 1, 2][random.below(6)] {

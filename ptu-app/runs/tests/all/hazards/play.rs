@@ -198,7 +198,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// How the scene begins.
+    /// Brings the bench to the beginning of the scene.
     fn begin(&mut self) {
         let scene = self.plan.scene;
         let ride = matches!(scene, Scene::Ride(_));
@@ -285,7 +285,7 @@ impl<'a> Player<'a> {
             .is_some_and(|turns| of_desk(turns) && turns[0].0 != turns[1].0)
     }
 
-    /// What cannot be done is not done, as a bench refuses it.
+    /// Applies a stimulus; an impossible one is left out, as a bench refuses it.
     pub(super) fn apply(&mut self, stimulus: Stimulus) {
         let now = self.bench.now();
         // No train that moves comes to stand on a bench, or off it, in no time.
@@ -328,7 +328,7 @@ impl<'a> Player<'a> {
     }
 }
 
-/// What alternates are contacts of the desk, not codes.
+/// Whether contacts of the desk alternate, and not codes.
 fn of_desk(turns: [(Stimulus, Duration); 2]) -> bool {
     let [(one, _), _] = turns;
     matches!(one, Stimulus::ModeSwitch(_) | Stimulus::Reverser { .. })

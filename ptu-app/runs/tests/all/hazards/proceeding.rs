@@ -159,7 +159,8 @@ mod tests {
     const MANUAL: f64 = 2.0;
     const YARD: f64 = 1.0;
 
-    /// What is permitted after five seconds of this desk, speed and code rate (a level, too, where there is a rate given).
+    /// Permitted speed after five seconds of this desk, speed and code rate (a level, too, where there is a rate
+    /// given).
     fn after(
         proceeding: &mut Proceeding,
         ended: &mut YardEnded,

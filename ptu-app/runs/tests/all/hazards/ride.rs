@@ -11,7 +11,7 @@ const DWELL: Duration = Duration::from_ms(14_000);
 const DEPARTS: Duration = Duration::from_ms(3_000);
 const STARTS: Duration = Duration::from_ms(4_500);
 
-/// What the wayside of a ride does next.
+/// Next act of the wayside in a ride.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Ride {
     At(Instant),

@@ -88,7 +88,7 @@ fn lines(find: &Find) -> (Vec<String>, Vec<String>) {
     (repeated(lines), lacks)
 }
 
-/// What was done, with each turn of what alternated, up to the breach.
+/// Acts up to the breach, with each turn of those that alternated.
 fn timeline(find: &Find) -> Vec<(Instant, Option<Act>)> {
     let mut timeline = Vec::new();
     let untils = find.acts.iter().skip(1).map(|(at, _)| *at).chain([find.at]);
@@ -115,7 +115,7 @@ fn wait(time: Duration) -> String {
     format!("wait(ms({}))", time.as_ms())
 }
 
-/// The same lines, four that come again written once.
+/// The lines, with a round of four that comes again written once.
 fn repeated(lines: Vec<String>) -> Vec<String> {
     let (mut short, mut from) = (Vec::new(), 0);
     while from < lines.len() {

@@ -1,4 +1,4 @@
-//! What the wayside sends: station data, departures, orders, or nothing.
+//! Acts of the wayside: station data, departures, orders, or nothing.
 
 use btu_rig::stimulus::{OrderData, StationData, Stimulus, WaysideCondition};
 use protocol::message::{DoorSide, RunningMode, TrainOrder};

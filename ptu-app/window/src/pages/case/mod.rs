@@ -45,7 +45,7 @@ pub struct CasePage {
     known: KnownUnit,
     units: SeenUnits,
     tiles: SymptomTiles,
-    /// Its last run that was looked at.
+    /// Last run of the case that was looked at.
     seen: Option<Id>,
     found: Option<Found>,
     repair: Repair,
@@ -109,7 +109,7 @@ impl CasePage {
         };
     }
 
-    /// Goes on when the run of this stage is over and it is known what it says.
+    /// Goes on when the run of this stage is over and its outcome is known.
     fn take_run(
         &mut self,
         concluded: Option<(Id, &Request<Concluded>)>,
@@ -320,7 +320,7 @@ impl CasePage {
         }
     }
 
-    /// Who works on the case, where the strip does not say it.
+    /// Name of the person who works on the case, where the strip does not say it.
     fn name(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         if ui.ctx().content_rect().width() < STRIP[0] {
             ui.horizontal(|ui| name_field(ui, context));

@@ -16,7 +16,7 @@ use ptu_runs::signal::{self, SAMPLE_HZ, Strength, Wave};
 
 /// Room for the value beside a slider, points.
 const VALUE: f32 = 72.0;
-/// How much of a waveform is sketched, s.
+/// Length of the sketched waveform, s.
 const SKETCHED_S: f64 = 0.5;
 /// Height of the sketch, points.
 const SKETCH: f32 = 320.0;
@@ -36,7 +36,7 @@ pub struct Generator {
     sketch: Sketch,
 }
 
-/// How it looks, and what it is the look of.
+/// Sketch of a waveform, and the waveform that it shows.
 #[derive(Default)]
 struct Sketch {
     of: Option<(Wave, Strength)>,
@@ -58,7 +58,7 @@ impl Default for Generator {
     }
 }
 
-/// What is done with what was made.
+/// Act on the waveform that was made.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Order {
     Save,
@@ -140,7 +140,7 @@ impl Generator {
         }
     }
 
-    /// How it looks.
+    /// Draws the waveform.
     pub fn sketch(&mut self, ui: &mut Ui, unit: &Arc<UnitConfig>, context: &PageContext<'_>) {
         let (wave, strength) = (self.wave(), self.strength());
         if let Some(wave) = wave {
@@ -156,7 +156,7 @@ impl Generator {
         }
     }
 
-    /// What is filled in; none if the bytes are none.
+    /// Waveform of the form; none if the form has no bytes.
     fn wave(&self) -> Option<Wave> {
         if !self.is_twc {
             return Some(Wave::Code {

@@ -1,4 +1,4 @@
-//! What is opened, recorded, saved or played: a file, a device, and the work on them.
+//! Sources to open, record, save or play: a file, a device, and the work on them.
 
 use std::path::PathBuf;
 use std::sync::{Arc, PoisonError};
@@ -42,7 +42,7 @@ impl Default for Source {
     }
 }
 
-/// What is to be done with the file.
+/// Act on the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Asked {
     Open,
@@ -247,7 +247,7 @@ fn name(channel: Side) -> &'static str {
     }
 }
 
-/// Which channels nobody has calibrated.
+/// Channels that nobody has calibrated.
 fn uncalibrated(
     known: &Calibrations,
     device: &str,

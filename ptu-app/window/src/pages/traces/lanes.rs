@@ -18,7 +18,7 @@ use ptu_report::trace_view::{Cursor, Kind, OverlaySource, TracePlot};
 use ptu_report::words::Words;
 use ptu_runs::clock;
 
-/// What painting keeps from one frame to the next.
+/// Layout that painting keeps from one frame to the next.
 pub struct LaneCache {
     /// Where the lanes with all around them were painted.
     pub rect: Rect,
@@ -124,7 +124,8 @@ impl LaneCache {
     }
 }
 
-/// What is shown, and in grey the trace behind it: for a picture that is kept without the window.
+/// Name of the shown trace, and in grey of the trace behind it, for a picture kept without the
+/// window.
 fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
     let opened = sheet.scene.opened();
     let line = |row: f32, text: String, colour| {
@@ -148,7 +149,7 @@ fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
     }
 }
 
-/// What is told at the right, under the cursors or else under the pointer: heads, and rows of the values.
+/// Values at the right, under the cursors or else under the pointer: heads, and rows of the values.
 fn told(scene: &TracePlot, pointer_row: Option<usize>) -> (Vec<String>, [Option<usize>; 2]) {
     let at = |row: usize| bar::place(scene, row);
     match [Cursor::A, Cursor::B].map(|cursor| scene.cursor(cursor)) {

@@ -13,7 +13,7 @@ use ptu_report::trace_view::TracePlot;
 use ptu_report::trace_view::listing::OpenTrace;
 use ptu_report::words::Words;
 
-/// What is shown before and after the trigger, s.
+/// Time shown before and after the trigger, s.
 const BEFORE_S: f64 = 3.0;
 const AFTER_S: f64 = 1.5;
 
