@@ -48,7 +48,7 @@ pub struct Definition {
     pub code: u16,
     /// Name in scripts, databases and reports.
     pub name: &'static str,
-    /// Severity.
+    /// Severity in the event log.
     pub severity: Severity,
     /// Part under suspicion when only this event is known.
     pub lru: Option<LruId>,

@@ -43,7 +43,7 @@ pub struct JogInputs {
     pub to_stop_m: Option<f64>,
     /// Distance from the stop point that counts as aligned, m.
     pub aligned_m: f64,
-    /// The section's last marker was seen: more than the wheels proves an overrun.
+    /// The section's last marker was seen, so that not the wheels alone show an overrun.
     pub last_marker: bool,
     pub jogs: bool,
 }

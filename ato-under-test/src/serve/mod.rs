@@ -43,7 +43,7 @@ pub trait Served {
 /// The wire does not work.
 #[derive(Debug)]
 pub struct ServeError {
-    /// Deed that failed.
+    /// Work that failed.
     doing: String,
     source: io::Error,
 }

@@ -26,7 +26,7 @@ const FILLED: usize = 3200;
 const HELD_UP: Duration = Duration::from_millis(100);
 /// Rounds that may be spoiled by that, beside one in ten.
 const MOST_SPOILED: u64 = 3;
-/// Divisor of the memory after the first tenth that may be added.
+/// After the first tenth memory may grow by one part in this many.
 const MOST_GROWTH: u64 = 10;
 
 /// Figures of a campaign.

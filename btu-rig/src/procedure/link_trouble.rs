@@ -291,6 +291,7 @@ pub enum Refused {
     /// Number of frames that do not continue those before, as from a unit that starts again and
     /// again.
     OfStarts(u64),
+    /// Number of frames refused for any reason.
     Frames(u64),
 }
 

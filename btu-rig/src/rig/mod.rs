@@ -77,7 +77,7 @@ pub struct Rig {
     tachos: [Tacho; 2],
     train: Train,
     train_data: TrainData,
-    /// Length of each car from the head, m, and its share of the weight at the present load.
+    /// Length of each car from the head, m, and its share of the weight at `cars_load_kg`.
     cars: Vec<(f64, f64)>,
     cars_load_kg: f64,
     train_state: TrainState,

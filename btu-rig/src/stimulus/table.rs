@@ -265,7 +265,7 @@ stimuli! {
     };
     /// Switch of the train.
     Switch {
-        /// Switch.
+        /// Switch that is set.
         switch: TrainSwitch,
         /// Position of the switch.
         on: bool,

@@ -46,7 +46,7 @@ struct PairShares {
     electric_n: f64,
     trailer_air_n: f64,
     motor_air_n: f64,
-    /// Effort beyond that which its air brakes give for cars without one.
+    /// Effort that the pair's air brakes add in place of cars without one, N.
     more_air_n: f64,
     /// Places of the pair's cars among the parts.
     parts: Range<usize>,

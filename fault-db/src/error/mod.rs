@@ -290,7 +290,7 @@ pub enum StoreError {
     /// The result exceeds a limit.
     #[error("the query was given up: {limit}")]
     QueryExceeds {
-        /// The limit.
+        /// Limit that was exceeded.
         limit: QueryLimit,
     },
     /// The operation needs a file, and this is a server.

@@ -27,9 +27,9 @@ pub struct TrendQuery {
     pub procedure: Option<String>,
     /// The step that measured it: each may have its own limits, too.
     pub step: Option<String>,
-    /// Start of the first run that counts.
+    /// Runs that started at this time or later, µs since 1970.
     pub since_us: Option<i64>,
-    /// Time before which the last run that counts has started.
+    /// Runs that started before this time, µs since 1970.
     pub until_us: Option<i64>,
 }
 

@@ -1,5 +1,4 @@
-//! Draws of the check, which runs part of what there is, another part with each commit; the long
-//! suite runs all.
+//! Draws the part that the check runs, another part with each commit; the long suite runs all.
 
 use std::path::Path;
 use std::process::Command;

@@ -30,7 +30,7 @@ const HANG: Duration = Duration::from_secs(10);
 const LOOK: Duration = Duration::from_millis(500);
 /// Memory that a reader may hold at a time, bytes.
 const MOST_MEMORY: u64 = 512 << 20;
-/// A check feeds one in this number of the damaged inputs.
+/// A check feeds one damaged input of this many.
 const PART_OF_A_CHECK: u64 = 4;
 /// Bytes of an input that are printed.
 const SHOWN: usize = 200;

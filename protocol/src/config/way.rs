@@ -10,11 +10,10 @@ pub struct TachoConfig {
     pub pulses_per_turn: u32,
     /// Wheel diameter, mm.
     pub wheel_diameter_mm: f64,
-    /// Wear: a diameter keyed in may be smaller than the configured one by this, mm.
+    /// Amount by which a diameter keyed in may be smaller than the configured one, mm: a wheel worn to its limit.
     #[serde(default = "TachoConfig::default_worn_mm")]
     pub worn_mm: f64,
-    /// A diameter keyed in may be greater than the configured one by this, mm: as wheels are
-    /// measured.
+    /// Amount by which a diameter keyed in may be greater, mm: as wheels are measured.
     #[serde(default = "TachoConfig::default_over_mm")]
     pub over_mm: f64,
     /// Averaging time of the speed measurement, ms.
@@ -67,7 +66,7 @@ pub struct TachoConfig {
 }
 
 impl TachoConfig {
-    /// Value of `sg100`, for configurations without the key.
+    /// Values of `sg100`, for configurations without the keys.
     const fn default_creep_m() -> f64 {
         0.5
     }

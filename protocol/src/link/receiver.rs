@@ -3,7 +3,7 @@
 use crate::frame::{Header, Reject};
 use crate::{Duration, Instant};
 
-/// Distance from the last accepted sequence number at which the next may lie.
+/// Greatest distance of the next sequence number ahead of the last accepted one.
 pub const MAX_AHEAD: u16 = 1000;
 /// Time by which a frame may take longer than the fastest one so far.
 pub const MAX_DELAY: Duration = Duration::from_ms(500);

@@ -23,8 +23,7 @@ use super::lateness::Lateness;
 const SPAN: Duration = Duration::from_ms(10_000);
 /// Interval at which counts are kept.
 const EVERY: Duration = Duration::from_ms(500);
-/// Time within which the unit may still report the effects of lost frames: its time-outs, and reading
-/// its log.
+/// Time for which the unit may still report the effects of lost frames: its time-outs, and reading its log.
 const LATELY: Duration = Duration::from_ms(12_000);
 /// After first contact and a restart both ends may refuse what is left of the time before.
 const SETTLES: Duration = Duration::from_ms(2_200);

@@ -333,7 +333,7 @@ mod tests {
         assert!(!desk.lines(Instant::ZERO).contains(TrainLines::DOORS_CLOSED));
     }
 
-    /// A bridged contact of one side says closed, also to the line of all doors; the locks say nothing.
+    /// A bridged contact of one side says closed, also to the line of all doors; the lock line still says unlocked.
     #[test]
     fn each_side_has_lines_of_its_own() {
         let sides = TrainLines::LEFT_CLOSED

@@ -18,7 +18,7 @@ pub struct Track {
     gradient: StepProfile,
     /// Curvature, 1/m.
     curvature: StepProfile,
-    /// 1 in the open air, 0 in a tunnel; 0 everywhere on a section that lists no tunnels.
+    /// 1 in the open air, 0 in a tunnel; 0 everywhere on a section without a list of tunnels.
     open_air: StepProfile,
 }
 

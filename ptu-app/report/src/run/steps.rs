@@ -144,7 +144,7 @@ pub fn tone(verdict: Verdict) -> Tone {
     }
 }
 
-/// Whether the verdict speaks against nothing.
+/// Whether the verdict says nothing against the unit.
 pub fn passed(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::Passed | Verdict::Skipped)
 }

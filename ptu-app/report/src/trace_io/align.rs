@@ -8,7 +8,7 @@ use fault_db::TraceData;
 use super::series::Import;
 use ptu_runs::failure::{Asked, Failure};
 
-/// Time by which a sample may be rounded to before its row, microseconds.
+/// Greatest rounding of a sample's time to before or after its row, µs.
 const ROUNDING_US: i64 = 1;
 
 /// A file's signals at a trace's rows, and the trace with nothing known where the file says nothing.

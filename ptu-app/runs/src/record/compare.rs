@@ -15,8 +15,9 @@ use protocol::signal::Signal;
 use crate::drive::{Case, drive};
 use crate::failure::{Failure, RecordTrouble};
 
-/// Tolerance of a speed, km/h, for this number of rows [default: 1 s].
+/// Difference of a speed, km/h, that may last; a greater one may last less than [`FOR_ROWS`] rows.
 const SPEED_KMH: f64 = 3.0;
+/// Number of rows from which on a greater difference is a failure [default: 1 s].
 const FOR_ROWS: usize = 20;
 /// Distance by which a late brake begins behind the sound unit's, m [default].
 const LATE_M: f64 = 10.0;

@@ -8,7 +8,7 @@ use protocol::message::StoredClock;
 
 use crate::clock::NOT_KNOWN_MS;
 
-/// An entry may be younger than the uptime it is dated by, ms: it was logged while the log was read.
+/// Time by which an entry may be younger than the uptime it is dated by, ms: it was logged while the log was read.
 const YOUNGER_MS: u64 = 60_000;
 
 /// The unit's clock beside ours.

@@ -35,7 +35,7 @@ pub struct StoredPlace {
     pub power_up: u32,
     /// Sequence number of the entry in the store, over all power-ups.
     pub sequence: u32,
-    /// The entry was made before this, µs UTC: the date of the next entry that has one.
+    /// The entry was made at this time at the latest, µs UTC: the date of the next entry that has one.
     pub not_after_us: Option<i64>,
     /// Greatest error of the entry's date, µs; none = unknown.
     pub uncertainty_us: Option<i64>,

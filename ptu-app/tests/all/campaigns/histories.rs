@@ -80,7 +80,7 @@ pub struct Victim {
     after: Rows,
 }
 
-/// Deeds: name, arguments, the file that is written, the exit code.
+/// Commands: name, arguments, the file that is written, the exit code.
 const DEEDS: [(&str, &[&str], &str, i32); 8] = [
     ("run", &["run", "fails.star"], "history.db", 1),
     (

@@ -28,14 +28,14 @@ const AFTER_S: f64 = 5.0;
 /// Suites run side by side.
 const WORKERS: usize = 2;
 
-/// The check runs the whole suite on one mode in this number.
+/// The check runs the whole suite on one mode of this many.
 const ONE_IN: usize = 20;
 
 /// Procedure for each fault mode (or glob), and words in the name of a step that must fail.
 const FOUND_BY: &str = include_str!("found_by.txt");
-/// Exceptions, the fault mode (or glob), and the reason: the part that diagnosis names, the part that a stored fault
-/// names (of those that come and go none need be named), the side that a step suspects, a procedure of the unit that
-/// a fault of the train fails.
+/// What differs from other modes, with the fault mode (or glob) and the reason: the part that diagnosis names, the part
+/// that a stored fault names (of those that come and go none need be named), the side that a step suspects, a procedure
+/// of the unit that a fault of the train fails.
 const EXCUSED: &str = include_str!("excused.txt");
 const PROTECTION: &str = include_str!("../../../../docs/protection.md");
 /// The mode of which the whole suite is run through the program itself, command line, printed reports and exit codes

@@ -20,9 +20,9 @@ use ptu_report::words::Words;
 const QUANTITY: f32 = 74.0;
 const CHOICE: f32 = 26.0;
 const BIT: f32 = 24.0;
-/// Height of a lane with two signals one above the other, over the usual one.
+/// Height of a lane with two signals one above the other, as a multiple of the usual one.
 const TWO: f32 = 1.7;
-/// Greatest height of a quantity where there is room, over the usual one.
+/// Greatest height of a quantity where there is room, as a multiple of the usual one.
 const TALLEST: f32 = 2.0;
 /// Height of a name among several in a lane.
 const LINE: f32 = 28.0;
