@@ -180,6 +180,9 @@ pub enum InstrumentFault {
     /// The connection ended.
     #[error("disconnected: {0}")]
     Disconnected(String),
+    /// It ended the connection itself.
+    #[error("it closed the connection")]
+    Closed,
     /// It took a question and does not answer.
     #[error("no answer within {:.2} s", .0.as_secs())]
     Silent(Duration),
@@ -227,6 +230,9 @@ pub enum InstrumentFault {
         /// That of ALSA.
         alsa: String,
     },
+    /// It plays, and is not heard.
+    #[error("nothing that it plays is heard at {0}")]
+    NotHeard(String),
     /// It ended, and said nothing.
     #[error("the program that plays on it has ended")]
     PlayerEnded,
