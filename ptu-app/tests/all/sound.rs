@@ -112,7 +112,11 @@ fn what_is_played_comes_back_by_sound() {
         let play = "signal play code 55 --seconds 2";
         let said = server.ptu(&format!("{play} --device coil"));
         let said = said.exits(0).prints(&["Played: 2.00 s"]);
-        assert!(said.err.contains("no calibration"), "{}", said.all());
+        assert!(
+            said.err.contains("not calibrated for atp, twc"),
+            "{}",
+            said.all()
+        );
         assert!(!said.out.contains("cut off"), "{}", said.all());
         let play = ["signal", "play", "twc", "01 fe 3c", "--device", "coil"];
         let twc = server.ptu(&play).exits(0);
@@ -225,7 +229,7 @@ fn levels_follow_the_calibration() {
         let said = server.ptu(&format!("{play} --device coil"));
         // Of the other channel there is none.
         let said = said.exits(0);
-        has(&said.err, &["no calibration of the channel twc"]);
+        has(&said.err, &["not calibrated for twc"]);
     });
     let mut wav = Wav::open(&server.place.path("r.wav")).expect("a recording");
     let (channels, _) = wav.block(4 * 48_000, 2, FULL_SCALE_MV);
@@ -269,7 +273,7 @@ fn what_cannot_be_played_or_recorded_is_said() {
         .explains(&["record from nothing"]);
     let loud = "signal play code 55 --seconds 0.5 --level 4000";
     let said = server.ptu(&format!("{loud} --device coil")).exits(0);
-    assert!(said.out.contains("lower --level"), "{}", said.all());
+    assert!(said.out.contains("lower the level"), "{}", said.all());
     for wrong in ["code", "twc"] {
         server
             .ptu(&["signal", "play", wrong, "--device", "coil"])
