@@ -218,6 +218,9 @@ pub enum Finding {
         /// The instrument of the bench that failed; none = the link to the unit.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         instrument: Option<String>,
+        /// The bench that it is of, where that is known.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        bench: Option<String>,
     },
     /// A search for a fault found none and accepts nothing.
     NotAcceptance {
@@ -343,6 +346,7 @@ impl Finding {
         match self {
             Self::LinkLost { why } => why.is_of_the_bench(),
             Self::StoodStill { .. } | Self::BeforeStandstill(_) => true,
+            Self::LinkLostAt { instrument, .. } => instrument.is_some(),
             Self::NotRun(why) | Self::InSetUp(why) | Self::InCleanUp(why) => why.is_of_the_bench(),
             _ => false,
         }

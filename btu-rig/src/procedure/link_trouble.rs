@@ -174,6 +174,9 @@ pub enum InstrumentFault {
     /// The connection ended.
     #[error("disconnected: {0}")]
     Disconnected(String),
+    /// The instrument ended the connection.
+    #[error("it closed the connection")]
+    Closed,
     /// The instrument took a question and does not answer.
     #[error("no answer within {:.2} s", .0.as_secs())]
     Silent(Duration),
@@ -221,6 +224,9 @@ pub enum InstrumentFault {
         /// Error of ALSA.
         alsa: String,
     },
+    /// The card plays, and is not heard.
+    #[error("nothing that it plays is heard at {0}")]
+    NotHeard(String),
     /// The program ended without a word.
     #[error("the program that plays on it has ended")]
     PlayerEnded,

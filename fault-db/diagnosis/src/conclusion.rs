@@ -79,6 +79,11 @@ pub enum Conclusion {
     BrokenOff,
     /// The run did not pass, and nothing that could be weighed was seen to be wrong.
     NotWeighed,
+    /// An instrument of the bench failed, and nothing was seen to be wrong with the unit.
+    BenchFailed {
+        /// The bench, as its file is called.
+        bench: String,
+    },
 }
 
 impl Conclusion {
@@ -90,9 +95,10 @@ impl Conclusion {
             Self::OneOf { .. } | Self::Common { .. } | Self::OneOrCommon { .. } => Finding::OneOf,
             Self::NoFault { .. } => Finding::NoFault,
             Self::NothingSeen { .. } | Self::BrokenOff => Finding::NotEnough,
-            Self::NotAlone { .. } | Self::CannotTell { .. } | Self::NotWeighed => {
-                Finding::CannotTell
-            }
+            Self::NotAlone { .. }
+            | Self::CannotTell { .. }
+            | Self::NotWeighed
+            | Self::BenchFailed { .. } => Finding::CannotTell,
         }
     }
 

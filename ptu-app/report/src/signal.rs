@@ -254,18 +254,20 @@ pub fn plots(picture: &Picture, of: (&Reading, usize), words: &Words) -> Vec<Plo
     let points = points.map(|(place, level)| (place as f64 * row_hz, f64::from(*level)));
     let ends = (said.frequency, said.decibels, row_hz * levels.len() as f64);
     let mut plots = vec![over_time(said.waveform, said.millivolts, picture.wave())];
-    // A short recording has no spectrum over time.
-    if !picture.spectra().0.is_empty() {
+    // A short recording has no spectrum.
+    let has_spectrum = !picture.spectra().0.is_empty();
+    if has_spectrum {
         plots.push(spectrogram(picture, of, words));
     }
-    plots.extend([
-        over_time(
-            &fill(said.envelope, &[("hz", &picture.carrier_hz())]),
-            said.millivolts_rms,
-            picture.envelope(),
-        ),
-        curve(said.spectrum, ends, points.collect()),
-    ]);
+    let envelope = fill(said.envelope, &[("hz", &picture.carrier_hz())]);
+    plots.push(over_time(
+        &envelope,
+        said.millivolts_rms,
+        picture.envelope(),
+    ));
+    if has_spectrum {
+        plots.push(curve(said.spectrum, ends, points.collect()));
+    }
     plots.extend(eye(picture, words));
     plots
 }

@@ -72,6 +72,19 @@ pub enum Trouble {
     Told(String),
 }
 
+impl Trouble {
+    /// The instrument of the bench that does not do its part.
+    pub fn of_the_bench(&self) -> Option<&LinkTrouble> {
+        match self {
+            Self::Refused(what) => match &**what {
+                Refusal::NoUnit(NoUnit::BadBench(_, why)) => Some(why),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+}
+
 impl Say for Trouble {
     fn say(&self, how: Manner) -> String {
         match self {

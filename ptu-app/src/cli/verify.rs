@@ -89,9 +89,8 @@ impl VerifyArguments {
         if let Some(store) = &history {
             departure.held_against(store)?;
         }
-        if found.signatures.is_empty() {
-            departure.add(|words| words.verify.departure_unsigned.into());
-        } else if !(found.changes.is_empty() && found.doubts.is_empty()) {
+        let is_verified = found.changes.is_empty() && found.doubts.is_empty();
+        if !(found.signatures.is_empty() || is_verified) {
             departure.add(|words| words.verify.departure_unverified.into());
         }
         found.say_departure(departure);

@@ -11,6 +11,7 @@ mod bad_input;
 mod bad_scripts;
 mod by_the_clock;
 mod campaigns;
+mod departure;
 mod diagnose;
 
 mod documents;

@@ -248,12 +248,19 @@ impl Display for Finding {
                 of,
                 left,
                 instrument,
+                bench,
             } => {
-                match instrument {
-                    Some(name) => write!(f, "instrument {name} of the bench failed")?,
-                    None => f.write_str("link lost")?,
+                match (instrument, bench) {
+                    (Some(name), Some(bench)) => {
+                        write!(f, "instrument {name} of bench {bench} failed")?;
+                    }
+                    (Some(name), None) => write!(f, "instrument {name} of the bench failed")?,
+                    (None, _) => f.write_str("link lost")?,
                 }
-                write!(f, " at step {run} of {of}; {left} not run")
+                match run {
+                    0 => write!(f, " before the first of {of} steps"),
+                    _ => write!(f, " at step {run} of {of}; {left} not run"),
+                }
             }
             Self::NotAcceptance { run, of } => {
                 write!(f, "not an acceptance: {run} of {of} steps run, all passed")

@@ -75,6 +75,8 @@ pub struct InstrumentEntry {
     pub uncertainty_ms: u64,
     /// Register into which a time in ms is written, after which the module drops its outputs by itself.
     pub watchdog: Option<Watchdog>,
+    /// Input at which a sound card is heard, for the time that sound takes.
+    pub heard_at: Option<String>,
     /// What is to be switched off by hand if the program was killed.
     pub by_hand: Option<String>,
 }
@@ -155,6 +157,9 @@ impl InstrumentEntry {
             return Err("the watchdog waits longer than poll_ms".into());
         }
         let is_sound = self.kind() == Kind::Sound;
+        if !is_sound && self.heard_at.is_some() {
+            return Err("heard_at is of a sound card".into());
+        }
         if is_sound && self.uncertainty_ms <= TAKES_MS {
             return Err(format!(
                 "sound is on its way for {TAKES_MS} ms: uncertainty_ms is more"

@@ -21,6 +21,7 @@ use crate::drive::{Setting, unit_config};
 use crate::failure::{Asked, Failure, RunTrouble};
 use crate::fleet;
 use crate::link::Endpoint;
+use crate::places::Places;
 
 /// A unit and the bench around it, by name. Its JSON form is part of the window's settings file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -123,6 +124,22 @@ impl BenchChoice {
         names(self) == names(other)
     }
 
+    /// The bench file, for a unit that goes by the clock.
+    fn bench(
+        &self,
+        directory: &ScriptsDirectory,
+        endpoint: &Endpoint,
+    ) -> Result<Option<Arc<Places>>, Failure> {
+        let by_the_clock = matches!(endpoint, Endpoint::Serial { .. } | Endpoint::Tcp(_));
+        match self.places.as_str() {
+            "" => Ok(None),
+            name if self.slower == 1 && by_the_clock => {
+                Ok(Some(Arc::new(directory.bench_places(name)?)))
+            }
+            _ => Err(Failure::usage(Asked::BenchByTheClock)),
+        }
+    }
+
     /// Reads and checks all named files.
     ///
     /// # Errors
@@ -144,14 +161,7 @@ impl BenchChoice {
         if self.signals != Signals::Values && matches!(endpoint, Endpoint::Serial { .. }) {
             return Err(Failure::usage(RunTrouble::SampledOnSerial));
         }
-        let by_the_clock = matches!(endpoint, Endpoint::Serial { .. } | Endpoint::Tcp(_));
-        let places = match self.places.as_str() {
-            "" => None,
-            name if self.slower == 1 && by_the_clock => {
-                Some(Arc::new(directory.bench_places(name)?))
-            }
-            _ => return Err(Failure::usage(Asked::BenchByTheClock)),
-        };
+        let places = self.bench(directory, &endpoint)?;
         let config = unit_config(directory, &self.unit_config, &self.settings)?;
         let line = directory.line(&self.line)?;
         let train = directory.train(&self.train)?;

@@ -13,8 +13,7 @@ use super::fault_watch::FaultSeen;
 use super::run_start::RunStart;
 use super::store_thread::{LinePrinter, RunStore};
 use super::trace_data::trace_data;
-use crate::failure::Exit;
-use crate::failure::Trouble;
+use crate::failure::{Exit, Failure, Trouble, prevented_by};
 use crate::stored::{WHOLE_RUN, fault_record, kind, outside_record, stored, whole_run};
 
 /// Receives the events of a run while it goes on.
@@ -166,10 +165,32 @@ impl<'a> Collector<'a> {
         self.say_of_whole(Verdict::Error, why);
     }
 
+    /// Nothing could be begun.
+    pub fn prevented(&mut self, failure: &Failure) {
+        self.verdict = match failure.exit {
+            Exit::Aborted => Verdict::Aborted,
+            _ => Verdict::Error,
+        };
+        let finding = match failure.message.of_the_bench() {
+            Some(why) => {
+                let lost = SessionEvent::LinkLost(why.clone());
+                self.listener.on_event(&whole_run(), &lost);
+                self.link_lost = Some(why.clone());
+                Finding::LinkLost { why: why.clone() }
+            }
+            None => prevented_by(&failure.message),
+        };
+        self.say(Outside::Bench, self.verdict, finding);
+    }
+
     /// Records a finding on the run as a whole, and tells it to the listener.
     fn say_of_whole(&mut self, verdict: Verdict, finding: Finding) {
+        self.say(Outside::Whole, verdict, finding);
+    }
+
+    fn say(&mut self, place: Outside, verdict: Verdict, finding: Finding) {
         let entry = OutsideStep {
-            place: Outside::Whole,
+            place,
             verdict,
             finding,
             at: Instant::ZERO,
@@ -347,6 +368,7 @@ impl<'a> Collector<'a> {
                 of,
                 left,
                 instrument,
+                bench: self.made.places.as_ref().map(|file| file.name.clone()),
             };
             self.say_of_whole(verdict, at);
         } else if self.search && left > 0 && is_passed(verdict) {

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{EventSource, LogState, UnitEvent};
-use btu_rig::rig::{Bench, TimeOfDay};
+use btu_rig::rig::{Bench, LinkTrouble, TimeOfDay};
 use btu_rig::stimulus::Stimulus;
 use protocol::event::Event;
 use protocol::message::Identity;
@@ -51,7 +51,7 @@ impl BenchSetup {
     pub(super) fn reach(&self, stop: &Stop) -> Result<ReadyUnit, Failure> {
         let mut link = WireLink::open(&self.endpoint)?.slower(self.slower);
         if let Some(places) = &self.places {
-            link = link.with_instruments(Placed::open(places).map_err(NoUnit::BadBench)?);
+            link = link.with_instruments(Placed::open(places).map_err(|why| self.bad_bench(why))?);
         }
         let mut rig = self.rig(self.seed, Instant::ZERO);
         rig.set_harness(self.harness);
@@ -157,10 +157,15 @@ impl BenchSetup {
         Ok(identity)
     }
 
+    fn bad_bench(&self, why: LinkTrouble) -> NoUnit {
+        let bench = self.places.as_ref().map(|places| places.name.clone());
+        NoUnit::BadBench(bench.unwrap_or_default(), why)
+    }
+
     fn link_holds(&self, session: &Session<WireLink>) -> Result<(), NoUnit> {
         match session.link_error() {
             None => Ok(()),
-            Some(why) if why.is_of_the_bench() => Err(NoUnit::BadBench(why)),
+            Some(why) if why.is_of_the_bench() => Err(self.bad_bench(why)),
             Some(why) => Err(NoUnit::BadLink(self.endpoint.clone(), why)),
         }
     }

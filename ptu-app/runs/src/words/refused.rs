@@ -144,7 +144,7 @@ sentences! {
         NotServed(at: String, why: String): "cannot connect to {at}: {why}; check that the unit is served there", "{at}에 연결할 수 없습니다 ({why}). 장치가 그 주소에 있는지 확인하십시오";
         Taken(at: Endpoint, why: LinkTrouble): "{at}: {why}; wait until it has left, or end it there", "{at}: {why}. 끝날 때까지 기다리거나 그 시험기를 끝내십시오";
         PortFailed(why: LinkTrouble): "{why}; check the cable and that the unit is served there", "{why}. 케이블과 장치를 확인하십시오";
-        BadBench(why: LinkTrouble): "{why}" ["; `ptu doctor --bench` checks each instrument" ""], "{why}" [". 계측기 점검: `ptu doctor --bench`" ""];
+        BadBench(bench: String, why: LinkTrouble): "{why}" ["; `ptu doctor --bench {bench}` checks each instrument" ""], "{why}" [". 계측기 점검: `ptu doctor --bench {bench}`" ""];
         BadLink(at: Endpoint, why: LinkTrouble): "{at}: {why}", "{at}: {why}";
         NotReady(at: Endpoint, within: Duration): "{at}: the unit answers but does not become ready within {within}; power it off and on", "{at}: 장치가 응답하지만 {within} 안에 준비되지 않습니다. 전원을 껐다 켜십시오";
         OtherPace(at: Endpoint, times: String): "{at}: the unit's clock goes {times} times as fast as the tester's; slow both ends down alike, or neither", "{at}: 장치의 시계가 시험기보다 {times}배 빠릅니다. 양쪽의 속도를 같게 하십시오";

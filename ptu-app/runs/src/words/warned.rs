@@ -16,9 +16,11 @@ sentences! {
         NoPlace(bench: String, what: String): "bench {bench} has no {what}", "시험대 {bench}에 {what} 없음";
         Beyond(bench: String, instrument: String, why: btu_rig::rig::InstrumentFault): "bench {bench}: {instrument} cannot: {why}", "시험대 {bench}: 계측기 {instrument} 불가 ({why})";
         Unread(bench: String, what: String): "bench {bench} does not read {what}", "시험대 {bench}에서 읽을 수 없음: {what}";
+        TooSlow(bench: String, what: String): "bench {bench}: a person reads {what}, too slowly for this step", "시험대 {bench}: 사람이 읽기에는 너무 빠름: {what}";
         Do(what: String): "Please do by hand: {what}. Done?", "손으로 조작하십시오: {what}. 완료했습니까?";
         See(what: String): "Please look: {what}. Is it so?", "확인하십시오: {what}. 맞습니까?";
         Wider(bench: String, used: String, by: String): "bench {bench}: {used} (limits wider by {by})", "시험대 {bench}: {used} (한계 확대 {by})";
+        Looks(bench: String, within_s: u64): "bench {bench}: a person (limits wider by {within_s} s)", "시험대 {bench}: 사람 (한계 확대 {within_s} s)";
         ByHand(instrument: String, what: String): "{instrument} has no watchdog: if this program is killed, {what}", "{instrument}에 워치독 없음. 이 프로그램이 강제로 종료되면: {what}";
     }
 

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use btu_rig::rig::LinkTrouble;
 use fault_db::{Address, Instrument, Store, StoreError};
 
 use super::Finding;
@@ -289,14 +288,9 @@ pub(super) fn bench(
         let took_ms = match tried {
             Ok(took_ms) => took_ms,
             Err(fault) => {
-                let instrument = name.clone();
-                let fault = LinkTrouble::Instrument {
-                    instrument,
-                    fault: fault.into(),
-                };
                 let why = words.told(&fault);
                 let found = fill(doctor.instrument_wrong, &[of[0], of[1], ("why", &why)]);
-                findings.push(Finding::wrong(doctor.bench, found, doctor.check_instrument));
+                findings.push(Finding::wrong(doctor.bench, found, doctor.remedy(&fault)));
                 continue;
             }
         };
@@ -330,7 +324,11 @@ pub(super) fn bench(
         registered.uncertainty.insert(REACTION.into(), rounded_ms);
         registered.at_us = now_us();
         store.register_instrument(&registered)?;
-        findings.push(Finding::ok(doctor.bench, fill(doctor.instrument_ok, &of)));
+        let found = fill(doctor.instrument_ok, &of);
+        findings.push(match registered.calibrated {
+            Some(_) => Finding::ok(doctor.bench, found),
+            None => Finding::warning(doctor.bench, found, fill(doctor.not_calibrated, &of)),
+        });
     }
     for note in places.by_hand() {
         let told = words.told(&note);

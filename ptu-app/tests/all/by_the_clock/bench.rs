@@ -258,9 +258,21 @@ fn a_bench_that_is_not_reached_is_reported_like_any_error() {
         (&last["event"], &last["verdict"], &last["exit"]),
         (&"run_finished".into(), &"error".into(), &3.into())
     );
+    assert!(
+        ran.out.contains("\"event\":\"bench_failed\""),
+        "{}",
+        ran.out
+    );
     let run = place.json("runs show latest --json");
     assert_eq!(run["run"]["steps_not_run"], last["not_run"]);
     assert!(last["not_run"].as_u64() > Some(10));
+    let of_whole = format!("instrument generator of bench {file} failed before the first");
+    assert!(run.to_string().contains(&of_whole), "{run}");
+    let diagnosis = place.json("diagnose latest --json");
+    let says = format!("the bench failed, not the unit: `ptu doctor --bench {file}`");
+    assert_eq!(diagnosis["conclusion"], says);
+    let doctor = place.ptu(&format!("doctor --bench {file}")).exits(1);
+    doctor.prints(&["generator GEN-0001: not reached", "check its supply"]);
     for file in [sheet, junit] {
         let text = std::fs::read_to_string(&file).expect("a report");
         assert!(

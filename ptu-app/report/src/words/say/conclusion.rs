@@ -17,7 +17,8 @@ pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names
         | Conclusion::OfBench { .. }
         | Conclusion::TwoFound { .. }
         | Conclusion::NoFault { .. }
-        | Conclusion::NotWeighed => None,
+        | Conclusion::NotWeighed
+        | Conclusion::BenchFailed { .. } => None,
         // A measurement tells which.
         Conclusion::OneOf { .. }
         | Conclusion::Common { .. }
@@ -156,6 +157,10 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
             )]);
             said
         }
+        Conclusion::BenchFailed { bench } => [
+            format!("the bench failed, not the unit: `ptu doctor --bench {bench}`"),
+            format!("장치가 아니라 시험대의 이상입니다: `ptu doctor --bench {bench}`"),
+        ],
         Conclusion::NotWeighed => {
             let [said] = both([(
                 "cannot tell: the run did not pass, and what did not pass was not run to its end or is not in the dictionary",

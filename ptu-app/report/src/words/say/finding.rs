@@ -215,12 +215,19 @@ pub fn korean(finding: &Finding) -> String {
             of,
             left,
             instrument,
+            bench,
         } => {
+            let bench = bench
+                .as_ref()
+                .map_or_else(String::new, |name| format!("{name} "));
             let what = instrument.as_ref().map_or_else(
                 || "연결 끊김".to_owned(),
-                |name| format!("시험대 계측기 {name} 고장"),
+                |name| format!("시험대 {bench}계측기 {name} 고장"),
             );
-            format!("{of}개 단계 중 {run}번째에서 {what}; {left}개 미실행")
+            match run {
+                0 => format!("{of}개 단계 시작 전에 {what}"),
+                _ => format!("{of}개 단계 중 {run}번째에서 {what}; {left}개 미실행"),
+            }
         }
         Finding::NotAcceptance { run, of } => {
             format!("인수 판정이 아님: {of}개 단계 중 {run}개 수행, 모두 합격")

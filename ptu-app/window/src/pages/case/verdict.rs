@@ -137,7 +137,8 @@ fn parts(said: &Conclusion) -> Vec<LruId> {
         Conclusion::NoFault { .. }
         | Conclusion::NothingSeen { .. }
         | Conclusion::BrokenOff
-        | Conclusion::NotWeighed => Vec::new(),
+        | Conclusion::NotWeighed
+        | Conclusion::BenchFailed { .. } => Vec::new(),
     }
 }
 
