@@ -17,8 +17,6 @@ const SCAN: Duration = Duration::from_millis(10);
 /// Scans of a beep, and of the silence around it, in which what was heard before is over.
 const BEEP: u32 = 5;
 const QUIET: u32 = 40;
-/// Beeps until the first is heard.
-const TRIES: u32 = 5;
 /// Level of a beep, mV, and by how much it is louder than the silence before it.
 const BEEP_MV: f32 = 500.0;
 const LOUDER: f32 = 4.0;
@@ -115,9 +113,6 @@ fn hear_beeps(stream: &Stream, at: &str, rounds: u32) -> Result<f64, InstrumentF
                 Ok(())
             })
         });
-        // A sound server takes its time to begin.
-        let begins = (0..TRIES).any(|_| beep(stream, &heard).is_some());
-        let rounds = if begins { rounds } else { 0 };
         let rounds = (0..rounds).try_fold(0.0f64, |longest, _| {
             Some(longest.max(beep(stream, &heard)?.as_secs_f64() * 1000.0))
         });
@@ -125,7 +120,7 @@ fn hear_beeps(stream: &Stream, at: &str, rounds: u32) -> Result<f64, InstrumentF
         let recorded = recorder.join();
         stream.clipped()?;
         match (rounds, recorded) {
-            (Some(longest_ms), Ok(Ok(_))) if begins => Ok(longest_ms),
+            (Some(longest_ms), Ok(Ok(_))) => Ok(longest_ms),
             _ => Err(InstrumentFault::NotHeard(at.to_owned())),
         }
     })
