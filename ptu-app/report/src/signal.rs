@@ -30,7 +30,7 @@ pub struct Recording {
     pub unit_config: String,
     /// Voltage of full scale, mV.
     pub full_scale_mv: f64,
-    /// What the receivers detected.
+    /// Codes, bytes and markers that the receivers detected.
     pub reading: Reading,
     /// Picture of each channel.
     pub pictures: Vec<Picture>,

@@ -29,7 +29,7 @@ pub struct Ended {
     /// Longest time to an answer, and in which this program said nothing.
     pub slowest: Duration,
     pub silent: Duration,
-    /// Forbidden acts of the unit.
+    /// Acts of the unit that no frame may bring about.
     pub faults: Vec<String>,
 }
 

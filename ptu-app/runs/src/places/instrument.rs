@@ -85,7 +85,7 @@ pub struct InstrumentEntry {
 #[derive(Clone, Copy, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Watchdog {
-    /// Its holding register.
+    /// Holding register of the module that sets the watchdog.
     pub register: u16,
     /// What is written there: ms until outputs drop.
     pub ms: u16,
@@ -100,7 +100,7 @@ fn poll_ms() -> u64 {
 }
 
 impl InstrumentEntry {
-    /// Its protocol.
+    /// Protocol by which the instrument is reached.
     pub(super) fn kind(&self) -> Kind {
         match self.at.split_once(':') {
             Some(("modbus", _)) => Kind::Modbus,

@@ -20,7 +20,7 @@ pub(super) const DRIVES: [Signal; 4] = [
     Signal::HoldingBrake,
 ];
 
-/// What a stimulus needs.
+/// Inputs of the unit that the bench must be able to set for a stimulus.
 pub(super) fn needs(stimulus: &Stimulus) -> &'static [UnitInput] {
     use UnitInput as U;
     match stimulus {
