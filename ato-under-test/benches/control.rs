@@ -1,4 +1,4 @@
-//! What ATO's part of a cycle costs: `cargo bench -p ato-under-test`.
+//! Time of ATO's part of a cycle: `cargo bench -p ato-under-test`.
 //!
 //! Goal: one control cycle of the slowest controller takes at most 5 µs.
 

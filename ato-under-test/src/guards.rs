@@ -3,11 +3,11 @@
 
 use protocol::injection::Place;
 
-use crate::front_end::Faults;
+use crate::faults::Faults;
 
 macro_rules! guards {
     ($($(#[$doc:meta])* $name:ident: $place:ident,)*) => {
-        /// What works now.
+        /// Guards that work now.
         #[derive(Clone, Copy, Debug)]
         pub struct Guards {
             $($(#[$doc])* pub $name: bool,)*
@@ -50,7 +50,7 @@ guards! {
     marker_debounce: MarkerDebounce,
     /// A marker is compared with the way from the one before.
     marker: MarkerGuard,
-    /// It is known where no loop lies.
+    /// Places without a loop are known.
     loop_places: LoopPlaces,
     // What the wayside sends.
     /// Data for another train are left out.

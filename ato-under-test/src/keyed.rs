@@ -1,16 +1,16 @@
-//! What is keyed in at the cab: a value counts once several frames in a row have said it.
+//! Values keyed in at the cab: a value counts once several frames in a row have said it.
 
 use protocol::{Duration, Instant};
 
 /// Silence after which what is keyed in is a new entry.
 pub const ENTRY_OVER: Duration = Duration::from_ms(300);
 
-/// What the last frames said alike, how many there were, and when the last one came.
+/// Value of the last frames that agree, their number, and the time of the last one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Keyed(Option<(u16, u8, Instant)>);
 
 impl Keyed {
-    /// Takes a frame; whether it is the last of so many in a row that say the same.
+    /// Takes a frame; whether it is the last of `frames` in a row with one value.
     pub fn hear(&mut self, now: Instant, value: u16, frames: u8) -> bool {
         let alike = self
             .0

@@ -10,6 +10,7 @@
 //! * [`flash`]: event log and run record over power-ups;
 //! * `test_board`: test signals of an armed tester;
 //! * [`receivers`]: from the waveforms in the coils to codes and bytes;
+//! * `faults`: injected faults by place;
 //! * `front_end`: antennas, sensors and relays, where injected faults act;
 //! * `guards`: what injected faults put out of action elsewhere.
 //!
@@ -20,8 +21,8 @@
 #![no_std]
 
 extern crate alloc;
-// For tests alone: here the whole library could name it whenever programs are built, too, and no build would see that
-// the controller does. Each file of `serve` names it for itself.
+// `std` is named for tests alone. Named here for all builds, it would hide a use of `std` in the controller whenever
+// programs are built. Each file of `serve` names it for itself.
 #[cfg(test)]
 extern crate std;
 
@@ -29,6 +30,7 @@ pub mod ato;
 mod atp;
 mod com;
 mod driverless;
+mod faults;
 pub mod flash;
 mod front_end;
 mod guards;
@@ -40,6 +42,7 @@ pub mod receivers;
 pub mod serve;
 mod setup;
 mod signals;
+mod speedometer;
 mod test_board;
 mod timer;
 mod twc;

@@ -1,4 +1,4 @@
-//! What a unit is made of: its configuration, track database and injected faults.
+//! Parts of a unit's set-up: its configuration, track database and injected faults.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -10,9 +10,7 @@ use protocol::line::Line;
 /// Everything a unit is built from at power-up.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// Serial number.
     pub serial: String,
-    /// Configuration.
     pub config: UnitConfig,
     /// CRC-32 of the configuration file.
     pub config_crc: u32,

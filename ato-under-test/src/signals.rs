@@ -3,7 +3,7 @@
 use protocol::message::{ModeSwitch, TrainLines};
 use protocol::{Duration, Instant};
 
-/// What is in the ATP antenna.
+/// Signal in the ATP antenna.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AntennaSignal {
     /// Carrier, Hz; 0 = none.

@@ -1,6 +1,14 @@
-//! On-delay timer and edge detector for conditions that are evaluated every scan.
+//! Time as the unit's clock tells it; on-delay timer and edge detector for conditions that are evaluated every scan.
 
 use protocol::{Duration, Instant};
+
+/// A time as a clock that runs this many times too fast tells it.
+pub fn at_rate(passed: Duration, rate: f64) -> Duration {
+    if rate == 1.0 {
+        return passed;
+    }
+    Duration::from_secs(passed.as_secs() * rate)
+}
 
 /// On-delay timer: true once its condition has held without a break for a given time.
 #[derive(Clone, Copy, Debug, Default)]

@@ -25,19 +25,19 @@ pub struct BenchScatter {
     pub timing: TimingScatter,
 }
 
-/// How sensors differ; each is one of [`Sensors`].
+/// Deviations of the sensors; each is one of [`Sensors`].
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensorScatter {
     /// Level in the antenna over the intended one.
     pub level_factor: Spread,
-    /// Its noise, as a share.
+    /// Noise of the level, as a share.
     pub level_noise: Spread,
     /// Added to the carrier, Hz.
     pub carrier_offset_hz: Spread,
     /// Added to the code rate, Hz.
     pub rate_offset_hz: Spread,
-    /// Its noise, Hz.
+    /// Noise of the code rate, Hz.
     pub rate_jitter_hz: Spread,
     /// Place of each tooth, share of the pitch.
     pub tooth_pitch: Spread,

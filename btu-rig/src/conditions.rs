@@ -38,7 +38,7 @@ pub struct Conditions {
     pub disturbance: Disturbance,
 }
 
-/// How sensors and signal sources differ from ideal ones, and how much they scatter. The default does not.
+/// Deviations of sensors and signal sources from ideal ones, and their scatter. By default there are none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensors {
     /// Level in the ATP antenna over the intended one: height of the antenna, its tuning.

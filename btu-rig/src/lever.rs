@@ -62,7 +62,7 @@ impl Lever {
         }
     }
 
-    /// As the unit's input has it: a power notch is one, however small.
+    /// Position as the unit's input has it; a power notch counts as one however small.
     pub fn wire(self) -> i8 {
         match self {
             Self::Emergency => -8,

@@ -10,7 +10,8 @@ use crate::procedure::{Driver, Evidence, Refusal};
 use crate::rig::Rig;
 use crate::stimulus::Stimulus;
 
-/// Entries kept of one procedure. Those beyond are counted, and the record then cannot be replayed.
+/// Entries kept of one procedure. Further entries are only counted, and the record then cannot be
+/// replayed.
 pub const MAX_RECORDED: usize = 100_000;
 
 /// What a procedure can do to a bench.
@@ -19,7 +20,7 @@ pub const MAX_RECORDED: usize = 100_000;
 pub enum BenchAction {
     /// A stimulus, whether the bench took it or refused it.
     Apply(Stimulus),
-    /// The bench was made safe in so many scans one after the other.
+    /// Number of scans in a row in which the bench was made safe.
     MakeSafe {
         /// Number of scans of 10 ms.
         scans: u32,
@@ -31,7 +32,7 @@ pub enum BenchAction {
 pub struct RecordedStimulus {
     /// Time of the scan after which it was done, µs.
     pub at_us: u64,
-    /// What was done; `act` in stored recordings.
+    /// Act of the bench; `act` in stored recordings.
     #[serde(rename = "act")]
     pub action: BenchAction,
 }

@@ -54,7 +54,7 @@ impl<const ROWS: usize> Ring<ROWS> {
         self.rows.push_back(row);
     }
 
-    /// At most `ROWS`, oldest first, one a cycle.
+    /// Rows, at most `ROWS`, one a cycle, oldest first.
     pub fn rows(&self) -> &VecDeque<Row> {
         &self.rows
     }
@@ -73,11 +73,11 @@ struct Open {
 pub struct RecordedWindow {
     /// Faults it shows, by their number in the procedure.
     pub faults: Vec<usize>,
-    /// Its rows; at least one.
+    /// Rows of the window; at least one.
     pub rows: Vec<Row>,
     /// The row at which it was triggered.
     pub trigger_row: usize,
-    /// It ends before its time was over.
+    /// The window ends before its time was over.
     pub partial: bool,
 }
 

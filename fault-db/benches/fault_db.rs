@@ -1,4 +1,4 @@
-//! What it costs to record a fault: `cargo bench -p fault-db --bench fault_db`; traces are in `traces.rs`.
+//! Time to record a fault: `cargo bench -p fault-db --bench fault_db`; traces are in `traces.rs`.
 //!
 //! Times of commits depend on the disk under the system's temporary directory.
 

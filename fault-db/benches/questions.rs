@@ -1,4 +1,4 @@
-//! What questions about a long history cost: `cargo bench -p fault-db --bench questions -- FILE`.
+//! Time of queries about a long history: `cargo bench -p fault-db --bench questions -- FILE`.
 //!
 //! FILE is a history as `cargo run --release -p fault-db --example history -- FILE --faults 1000000 --runs
 //! 100000` makes it. Each question is asked of another unit or another year each time; median and 99th
@@ -25,7 +25,7 @@ const MEASUREMENT: &str = "eb_reaction";
 /// Asks a question; returns the number of rows.
 type Ask = Box<dyn Fn(&Store, &Asked) -> Result<usize, StoreError>>;
 
-/// What differs from one time to the next.
+/// Values that differ from one query to the next.
 struct Asked {
     unit: String,
     since_us: i64,
@@ -65,7 +65,6 @@ const COUNTS: [(&str, bool, StatKey, Select); 5] = [
     ),
 ];
 
-/// All questions, by name.
 fn questions() -> Vec<(&'static str, Ask)> {
     let lists = [
         ("unit: last 50 faults", UNIT),

@@ -1,4 +1,4 @@
-//! What a trace costs, all cases in one run so that they compare: `cargo bench -p fault-db --bench traces`.
+//! Time of a trace, all cases in one run so that they compare: `cargo bench -p fault-db --bench traces`.
 //!
 //! 600 rows of 40 channels, 24 000 samples of realistic signals; an hour has 72 000 rows of them. Times
 //! of commits depend on the disk under the system's temporary directory.
@@ -80,7 +80,7 @@ mod write {
             .bench_local(|| writer.trace(&[], &trace).expect("stored"));
     }
 
-    /// The same bytes in a table that has nothing but them, one commit each.
+    /// Baseline: the same bytes in a table that has nothing else, one commit each.
     #[divan::bench(sample_count = 1000, sample_size = 1)]
     fn same_bytes_as_a_plain_blob(bencher: Bencher) {
         let (_directory, conn) =
@@ -93,7 +93,7 @@ mod write {
         });
     }
 
-    /// The same bytes in a table that is found by the same four keys as traces are.
+    /// Baseline: the same bytes in a table that is found by the four keys of traces.
     #[divan::bench(sample_count = 1000, sample_size = 1)]
     fn same_bytes_with_the_same_keys(bencher: Bencher) {
         let (_directory, conn) = plain_file(

@@ -53,7 +53,7 @@ const KINDS: [(i64, &str, &str); 20] = [
     (9000, "eb_relay", "major"),
 ];
 
-/// What a run measures: procedure, name, value as good as new.
+/// Measurements of a run: procedure, name, value as good as new.
 const CHECKS: [(&str, &str, f64); 6] = [
     ("atp/power_up", "release_time", 1.08),
     ("atp/limit_speed", "decoding_time", 0.72),
@@ -172,7 +172,7 @@ fn run(store: &Store, at_us: i64, seen: usize, random: &mut Random) -> Result<()
     Ok(())
 }
 
-/// What people do about a fault, in the days after the run: some are noted, some repaired, most closed.
+/// Acts of people on a fault, in the days after the run: some are noted, some repaired, most closed.
 fn handle(store: &Store, fault: Id, at_us: i64, random: &mut Random) -> Result<(), StoreError> {
     let note = NOTES[(random.next() % NOTES.len() as u64) as usize];
     let mut later_us = at_us;

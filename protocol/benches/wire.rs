@@ -1,4 +1,4 @@
-//! What a frame costs: `cargo bench -p protocol`.
+//! Time for a frame: `cargo bench -p protocol`.
 //!
 //! Goal: encoding and decoding one 64-byte frame takes at most 1 µs, both ends' checks included.
 

@@ -20,7 +20,7 @@ pub struct Backlog {
     late: bool,
 }
 
-/// Less than this is made up whatever the partner did.
+/// Shortest delay that counts as a standstill; a shorter one is made up whatever the partner did.
 const PAUSE: Duration = Duration::from_ms(100);
 /// The usual number of bytes is kept in parts of this size, and is an average of as many scans.
 const PARTS: usize = 64;

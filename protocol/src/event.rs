@@ -22,7 +22,7 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Those of faults.
+    /// Severities of faults.
     pub const OF_FAULTS: [Self; 3] = [Self::Minor, Self::Major, Self::Critical];
 
     /// The severity of a fault by its word; `None` for any other word.
@@ -48,15 +48,15 @@ pub struct Definition {
     pub code: u16,
     /// Name in scripts, databases and reports.
     pub name: &'static str,
-    /// How bad it is.
+    /// Severity in the event log.
     pub severity: Severity,
     /// Part under suspicion when only this event is known.
     pub lru: Option<LruId>,
-    /// What happened, in English.
+    /// Text in English.
     pub text: &'static str,
-    /// What happened, in Korean.
+    /// Text in Korean.
     pub text_ko: &'static str,
-    /// What the parameter is; empty = not used.
+    /// Meaning of the parameter; empty = not used.
     pub parameter: &'static str,
 }
 

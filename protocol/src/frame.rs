@@ -42,7 +42,7 @@ pub const FLAG: u8 = 0x7E;
 pub const SCAN_END: [u8; 3] = [FLAG; 3];
 /// Says that the next byte is sent with [`ESCAPE_XOR`].
 pub const ESCAPE: u8 = 0x7D;
-/// What an escaped byte is exclusive-ored with.
+/// Number with which an escaped byte is exclusive-ored.
 pub const ESCAPE_XOR: u8 = 0x20;
 
 /// Sixteen bytes a step: at one byte a step the check sequence would be the dearest part of a frame.
@@ -53,12 +53,12 @@ pub fn fcs(bytes: &[u8]) -> u32 {
     FCS.checksum(bytes)
 }
 
-/// What precedes the payload.
+/// Fields of a frame before the payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
     /// Kind of traffic; each has its own sequence numbers.
     pub channel: Channel,
-    /// Who sent it.
+    /// Address of the sender.
     pub source: Address,
     /// Whom it is for.
     pub destination: Address,
@@ -68,7 +68,7 @@ pub struct Header {
     pub stamp_ms: u32,
 }
 
-/// Why a frame is rejected. Each frame is counted under the first reason that applies.
+/// Reason for rejecting a frame. Each frame is counted under the first reason that applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reject {

@@ -42,7 +42,7 @@ impl LruId {
         Self(Cow::Borrowed(text))
     }
 
-    /// As in the table of events, where `-` is none.
+    /// Part of a row in the table of events, where `-` is none.
     pub(crate) const fn listed(text: &'static str) -> Option<Self> {
         match text.as_bytes() {
             b"-" => None,

@@ -26,7 +26,7 @@ impl ScanDeadlines {
         self.due.max(now + MAKE_UP.times(self.slower))
     }
 
-    /// The next scans are due so many µs of the bench later, or earlier.
+    /// Moves the deadlines of the next scans by this number of µs of the bench, later or earlier.
     pub fn shift(&mut self, later_us: i64) {
         let by = Duration::from_us(later_us.unsigned_abs()).times(self.slower);
         self.due = match later_us >= 0 {
@@ -35,7 +35,7 @@ impl ScanDeadlines {
         };
     }
 
-    /// How far the last scan, or what came after it, is behind its time, in the time of the bench.
+    /// Lag of the last scan, or of what came after it, in the time of the bench.
     pub const fn behind(&self, now: Instant) -> Duration {
         Duration::from_us(now.since(self.due).as_us() / self.slower as u64)
     }

@@ -7,7 +7,7 @@ use crate::message::{
     RunningMode, TrainOrder,
 };
 
-/// What a signal's number means.
+/// Meaning of a signal's number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// A quantity, exact in steps of `lsb`.
@@ -43,9 +43,9 @@ pub struct Definition {
     pub low: f64,
     /// Greatest value.
     pub high: f64,
-    /// Who makes it.
+    /// Maker of the signal.
     pub origin: Origin,
-    /// What it is.
+    /// Meaning of the signal.
     pub doc: &'static str,
 }
 
@@ -61,7 +61,7 @@ macro_rules! signals {
         impl Signal {
             /// All signals in recording order.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
-            /// How many there are.
+            /// Number of signals.
             pub const COUNT: usize = Self::ALL.len();
             /// Behind a reference: a table that is a value is copied to the stack at each use in a test's program.
             const DEFINITIONS: &'static [Definition; Self::COUNT] = &[$( Definition {
@@ -257,12 +257,12 @@ signals! {
 }
 
 impl Signal {
-    /// Its definition.
+    /// Definition of the signal.
     pub fn definition(self) -> &'static Definition {
         &Self::DEFINITIONS[self as usize]
     }
 
-    /// Its name.
+    /// Name of the signal.
     pub fn name(self) -> &'static str {
         self.definition().name
     }
@@ -284,7 +284,7 @@ impl Signal {
         }
     }
 
-    /// Its place in a sample row.
+    /// Place of the signal in a sample row.
     pub const fn index(self) -> usize {
         self as usize
     }

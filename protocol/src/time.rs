@@ -85,7 +85,7 @@ impl Duration {
         self.0
     }
 
-    /// This span so many times.
+    /// The span times a number.
     pub const fn times(self, count: u32) -> Self {
         Self(self.0 * count as u64)
     }

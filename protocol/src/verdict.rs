@@ -13,11 +13,11 @@ pub enum Verdict {
     Passed,
     /// The unit does not do what it should.
     Failed,
-    /// It could not be tested, which says nothing about the unit.
+    /// The unit could not be tested; an error says nothing about the unit.
     Error,
     /// Not run, by choice or condition.
     Skipped,
-    /// Of a search for a fault that found none: all that was run passed, and that was not enough to accept the unit.
+    /// Verdict of a search that found no fault: all that was run passed, and that was not enough to accept the unit.
     Inconclusive,
     /// Stopped by the operator.
     Aborted,

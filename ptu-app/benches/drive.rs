@@ -1,4 +1,4 @@
-//! How fast a station-to-station run is: `cargo bench -p ptu-app --bench drive`.
+//! Speed of a station-to-station run: `cargo bench -p ptu-app --bench drive`.
 
 use std::path::Path;
 
@@ -35,7 +35,7 @@ fn eight_cars(bencher: Bencher<'_, '_>, controller: ControllerKind) {
     run(bencher, controller, TrainData::line6(), true);
 }
 
-/// The same as a Monte Carlo does it.
+/// Eight cars with a silent tester, as a Monte Carlo drives them.
 #[divan::bench(args = ControllerKind::ALL, sample_count = 30)]
 fn eight_cars_tester_silent(bencher: Bencher<'_, '_>, controller: ControllerKind) {
     run(bencher, controller, TrainData::line6(), false);

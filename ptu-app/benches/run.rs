@@ -1,4 +1,4 @@
-//! How fast a bench runs: `cargo bench -p ptu-app`.
+//! Speed of a bench: `cargo bench -p ptu-app`.
 //!
 //! Items per second of `acceptance_suite` are seconds of bench time per second of wall time, loading
 //! of scripts and all SQLite commits included; items of `short_steps` are persisted steps.

@@ -20,16 +20,17 @@ use ptu_runs::stdio;
 use ptu_runs::table::{cell, padded};
 use ptu_runs::terminal::{self, Style};
 
-/// How often the bar's clock moves while nothing happens.
+/// Interval at which the bar's clock moves while nothing happens.
 const TICK: Duration = Duration::from_millis(250);
-/// What may wait for a terminal that takes nothing, as one that was halted: more is left out.
+/// Number of lines that may wait for a terminal that takes nothing, as a halted one; further lines
+/// are left out.
 const WAITING: usize = 4096;
-/// What a line begins with, in columns.
+/// Width of a line's beginning, columns.
 const LINE_BEGIN: usize = 7;
 /// Widest wording beside the bar, in columns.
 const BESIDE_BAR: usize = 100;
 
-/// How much is said of a run.
+/// Amount of detail about a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
     Quiet,
@@ -52,14 +53,14 @@ pub struct Console {
 }
 
 enum Shown {
-    /// What is under way, beside the bar.
+    /// Step under way, beside the bar.
     RunPosition(String),
     StepDone,
     Line(String),
 }
 
 impl Console {
-    /// For a run of this plan.
+    /// Console of a run of this plan.
     ///
     /// # Errors
     /// The system gives no thread.

@@ -19,13 +19,13 @@ use ptu_runs::stdio;
 const WAITING: usize = 65_536;
 
 #[derive(Clone, Debug)]
-pub enum Place {
+pub enum StreamTarget {
     /// Standard output, which then has nothing else.
     Stdout,
     File(PathBuf),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for StreamTarget {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Stdout => f.write_str("--json: standard output"),
@@ -44,7 +44,7 @@ struct Stream {
     lines: EventLines,
     to: Option<SyncSender<String>>,
     thread: JoinHandle<std::io::Result<()>>,
-    place: Place,
+    place: StreamTarget,
     is_cut: bool,
 }
 
@@ -53,7 +53,7 @@ impl<L: Listener> EventStream<L> {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn begin(listener: L, place: Option<Place>) -> Result<Self, Failure> {
+    pub fn begin(listener: L, place: Option<StreamTarget>) -> Result<Self, Failure> {
         let stream = place.map(Stream::begin).transpose()?;
         Ok(Self { listener, stream })
     }
@@ -69,7 +69,7 @@ impl<L: Listener> EventStream<L> {
 }
 
 impl Stream {
-    fn begin(place: Place) -> Result<Self, Failure> {
+    fn begin(place: StreamTarget) -> Result<Self, Failure> {
         let cannot = |error: &dyn fmt::Display| {
             Failure::usage(FileTrouble::Unwritten(place.to_string(), Why::of(error)))
         };
@@ -77,14 +77,14 @@ impl Stream {
         let first = event_lines.started();
         let mut is_begun = false;
         let out: Box<dyn Write + Send> = match &place {
-            Place::Stdout => Box::new(stdio::stdout()),
+            StreamTarget::Stdout => Box::new(stdio::stdout()),
             // A pipe or device is written to as it is.
-            Place::File(file) if std::fs::metadata(file).is_ok_and(|of| !of.is_file()) => {
+            StreamTarget::File(file) if std::fs::metadata(file).is_ok_and(|of| !of.is_file()) => {
                 let opened = OpenOptions::new().write(true).open(file);
                 Box::new(opened.map_err(|error| cannot(&error))?)
             }
             // In its place from the first line on: other programs read while it grows.
-            Place::File(file) => {
+            StreamTarget::File(file) => {
                 let begun = NewFile::begin(file, kind::EVENTS);
                 let mut file = begun.map_err(|why| why.because_of(Asked::Option("--events")))?;
                 writeln!(file, "{first}").map_err(|error| cannot(&error))?;

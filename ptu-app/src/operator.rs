@@ -1,4 +1,4 @@
-//! Who is at the terminal of a run answers what its scripts ask.
+//! Questions of a run's scripts to the operator at its terminal.
 
 use std::sync::{Arc, Mutex};
 

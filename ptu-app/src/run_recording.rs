@@ -18,7 +18,7 @@ pub struct RunRecording<L> {
 
 struct Recording {
     place: PathBuf,
-    /// What could not be written ends the recording, and not the run.
+    /// The file; a failed write ends the recording, not the run.
     file: Result<RunMcap<NewFile>, Failure>,
 }
 

@@ -37,7 +37,7 @@ fn repeated(run: &RunDetail, words: &Words) -> String {
     format!("\n\n{}", table.render())
 }
 
-/// Why steps were skipped, each reason once.
+/// Reasons of skipped steps, each reason once.
 fn skipped(run: &RunDetail, words: &Words) -> String {
     let mut reasons = BTreeMap::<_, BTreeSet<(&str, Option<u32>)>>::new();
     let skipped = standing(&run.steps);
@@ -93,7 +93,7 @@ pub fn verdict_table(run: &RunDetail, words: &Words) -> String {
     text
 }
 
-/// What did not pass, what was made again, and the verdict.
+/// Failures, repeated steps, and the verdict.
 pub fn failures(run: &RunDetail, words: &Words) -> String {
     let (failed, repeated) = (not_passed(run, words), repeated(run, words));
     format!("{failed}{repeated}\n\n{}", summary(run, words))

@@ -14,14 +14,13 @@ use protocol::message::{AtoFailure, AtoState};
 /// KRN's checks of what ATO needs: processor, self-test, stored data, TRA.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Checks {
-    /// Not finished yet.
+    /// The checks have not finished.
     #[default]
     Running,
     Passed,
     Failed(AtoFailure),
 }
 
-/// What the state depends on.
 #[derive(Clone, Copy, Debug)]
 pub struct ArtInputs {
     /// Every check passes and nothing has failed on the way.
@@ -30,7 +29,7 @@ pub struct ArtInputs {
     pub run: bool,
     /// Standing still.
     pub standstill: bool,
-    /// At the stop point, or the run has ended away from it.
+    /// The train is at the stop point, or the run has ended away from it.
     pub arrived: bool,
 }
 

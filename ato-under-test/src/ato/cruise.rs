@@ -6,9 +6,9 @@ use protocol::config::AtoConfig;
 use protocol::message::RunningMode;
 
 use super::AtoInputs;
-use super::track_limit::{Place, limit_ahead};
+use super::track_limit::{TrainPosition, limit_ahead};
 
-/// What the cruising speed depends on.
+/// Inputs of the cruising speed.
 #[derive(Clone, Copy, Debug)]
 pub struct CruiseInputs {
     /// Limit from ATP.
@@ -32,7 +32,7 @@ pub fn on_track(
         };
         cruise(inputs, config)
     };
-    let place = Place {
+    let place = TrainPosition {
         section: inputs.section,
         position_m: inputs.position_m,
         heard_within_m: inputs.speed.mps() * inputs.heard_within_s,

@@ -11,7 +11,7 @@ use protocol::line::Section;
 const KGF_PER_T: f64 = 9.80665e-3;
 /// Places along the train at which the track is looked at.
 const PLACES: u32 = 8;
-/// Parts of the approach at whose ends it is looked at.
+/// Parts of the approach, at whose ends the track is looked at.
 const APPROACH_PLACES: u32 = 10;
 
 /// Force that keeps the speed with the head at `position_m`, N, in the direction of travel; `weight_kg` is the mass
@@ -28,8 +28,8 @@ pub fn holding_force_n(
     (track_kgf_t + train.rolling_kgf_t) * KGF_PER_T * weight_kg
 }
 
-/// The least of it from PSM2 to the stop point, N for each kilogram that weighs, below 0 = downhill; 0 where nothing
-/// takes of the brake, as the rate that is asked for is the greatest on a climb, too.
+/// The least holding force from PSM2 to the stop point, N for each kilogram of weight, below 0 = downhill. 0 where
+/// no gradient takes part of the brake, since the demanded rate is the greatest on a climb, too.
 pub fn approach_n_per_kg(section: &Section, train: &AtoTrainConfig) -> f64 {
     let [_, psm2, _, _] = section.markers_m;
     let distance_m = (section.stop_m - psm2).max(0.0);
@@ -75,7 +75,8 @@ mod tests {
 
     use super::*;
 
-    /// On an approach of 35 ‰ down, with 3.3 kgf/t of rolling resistance: 31.7 kgf/t, 0.311 m/s²; level or up: nothing.
+    /// An approach of 35 ‰ down, with 3.3 kgf/t of rolling resistance, takes 31.7 kgf/t, 0.311 m/s²; level or up
+    /// nothing.
     #[test]
     fn an_approach_takes_of_the_brake_downhill_only() {
         let line8 = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();

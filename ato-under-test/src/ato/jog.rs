@@ -27,10 +27,11 @@ const START_MPS2: f64 = 0.15;
 const START_MPS: f64 = 0.15;
 /// Correction by speed error, 1/s.
 const GAIN_PER_S: f64 = 1.5;
-/// Distance to the stop point within which the rate stays as it is, m: a share of nothing is no rate.
+/// Distance to the stop point within which the rate stays, m: a rate by the distance left is
+/// undefined at 0.
 const HOLD_M: f64 = 0.05;
 
-/// What jogging looks at in a cycle.
+/// Inputs of jogging in a cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct JogInputs {
     /// ATO drives.
@@ -40,21 +41,21 @@ pub struct JogInputs {
     pub may_go: bool,
     /// Distance to the stop point, m, negative past it; `None` = not known.
     pub to_stop_m: Option<f64>,
-    /// Distance from it that counts as aligned, m.
+    /// Distance from the stop point that counts as aligned, m.
     pub aligned_m: f64,
-    /// The section's last marker was seen: an overrun is one by more than wheels.
+    /// The section's last marker was seen, so that not the wheels alone show an overrun.
     pub last_marker: bool,
     pub jogs: bool,
 }
 
-/// What came of a cycle.
+/// Result of a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JogOutcome {
     /// The run is over: aligned, or given up.
     pub ended: bool,
     /// A try begins: way to go, m, backward negative.
     pub begun_m: Option<f64>,
-    /// Given up: distance to the stop point, m.
+    /// Jogging was given up: distance to the stop point, m.
     pub failed_m: Option<f64>,
 }
 
@@ -63,11 +64,11 @@ enum Phase {
     /// The run's own controller drives.
     #[default]
     Idle,
-    /// Held before a try, for so many cycles.
+    /// The train is held before a try: cycles so far.
     Rests(u32),
-    /// Held, the direction ordered, for so many cycles.
+    /// The train is held with the direction ordered: cycles so far.
     Turns(u32),
-    /// Powered for so many cycles; whether the train has moved.
+    /// The train is powered: cycles so far, and whether it has moved.
     Goes(u32, bool),
 }
 
@@ -101,7 +102,7 @@ impl Jog {
             return JogOutcome::default();
         }
         if !inputs.stands {
-            // Pushed while it was held: the rest begins again.
+            // The train was pushed while held: the rest begins again.
             if self.phase != Phase::Idle {
                 self.phase = Phase::Rests(0);
             }
@@ -123,13 +124,14 @@ impl Jog {
         let short = to_stop_m > 0.0;
         let near = distance_m <= config.max_m && inputs.jogs;
         if short && distance_m > config.max_m {
-            // An ordinary run leads there.
+            // The run's controller drives there.
             self.phase = Phase::Idle;
             return JogOutcome::default();
         }
         let rested = matches!(self.phase, Phase::Rests(cycles) if cycles >= REST_CYCLES);
         let spent = rested && self.tries >= config.tries;
-        // Past it by wheels alone: where the stop point is, is unknown, and the missing marker is reported.
+        // Only the wheels show an overrun: the place of the stop point is unknown, and the missing marker
+        // is reported.
         let unproved = !short && !inputs.last_marker;
         if !near || spent || unproved {
             self.phase = Phase::Rests(0);
@@ -148,7 +150,7 @@ impl Jog {
             }
             Phase::Turns(_) if self.backward == short => Phase::Rests(0),
             Phase::Turns(cycles) if cycles < TURN_CYCLES => Phase::Turns(cycles + 1),
-            // Refused: a try all the same, so that it ends.
+            // A refused try counts, so that jogging ends.
             Phase::Turns(_) if !inputs.may_go => {
                 self.tries += 1;
                 Phase::Rests(0)
@@ -169,12 +171,12 @@ impl Jog {
         JogOutcome::default()
     }
 
-    /// It has the train, and the run's controller has not.
+    /// Jogging drives the train; the run's controller does not.
     pub fn acts(&self) -> bool {
         self.phase != Phase::Idle
     }
 
-    /// The direction it orders, from before the train is powered until it stands again: backward or not.
+    /// Ordered direction, from before the train is powered until it stands again: backward or not.
     pub fn direction(&self) -> Option<bool> {
         matches!(self.phase, Phase::Turns(_) | Phase::Goes(..)).then_some(self.backward)
     }
@@ -188,7 +190,7 @@ impl Jog {
         self.phase == Phase::Goes(0, false)
     }
 
-    /// It has given the stop point up.
+    /// Jogging has given the stop point up.
     pub fn gave_up(&self) -> bool {
         self.gave_up
     }
@@ -198,7 +200,7 @@ impl Jog {
         (matches!(self.phase, Phase::Goes(_, false)) && self.may_go).then_some(START_MPS2)
     }
 
-    /// What is asked for with `left_m` to go at `speed_mps`, both in the direction of the jog.
+    /// Demand with `left_m` to go at `speed_mps`, both in the direction of the jog.
     pub fn demand(
         &mut self,
         left_m: f64,
@@ -246,17 +248,18 @@ impl Jog {
             accel_mps2,
         } = self.setpoint;
         let rate = config.accel_mps2;
-        // The rate is built up at the jerk limit, for the length of half of it the speed stays as it is.
+        // While the rate is built up at the jerk limit, the speed counts as unchanged for half of that
+        // time.
         let turns_s = (accel_mps2.max(0.0) + rate) / jerk_mps3;
         let braking_m = speed_mps * speed_mps / (2.0 * rate) + speed_mps * turns_s / 2.0;
         self.brakes |= !self.may_go || left_m <= braking_m;
         let wanted = if !self.brakes {
             let most_mps = config.kmh / 3.6;
-            // As much as is gone at the jerk limit when the speed is there.
+            // The acceleration that the jerk limit takes away by the time the speed is reached.
             let rises = libm::sqrt(2.0 * jerk_mps3 * (most_mps - speed_mps).max(0.0));
             rate.min(rises)
         } else if left_m > HOLD_M {
-            // Not above twice the rate: beyond it nothing is gained in the last decimetre.
+            // At most twice the rate: more gains nothing in the last decimetre.
             -(speed_mps * speed_mps / (2.0 * left_m)).clamp(0.5 * rate, 2.0 * rate)
         } else {
             accel_mps2.min(-rate)

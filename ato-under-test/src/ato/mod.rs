@@ -33,8 +33,8 @@ pub use art::{ArtInputs, Checks};
 pub use jog::JogOutcome;
 pub use monitor::{Findings, TrainReport};
 
-/// Speed that is none: no pulse for half a second. Standstill as ATP means it is up to 0.3 m/s, at which a
-/// train that is stopping still has a second to go.
+/// Speed that counts as zero: no pulse for half a second. Standstill as ATP means it is up to 0.3 m/s, at
+/// which a train that is stopping still has a second to go.
 const STOPPED: Speed = Speed::from_kmh(0.2);
 /// Speed below which a train has come to its end, m/s.
 const ENDING_MPS: f64 = 0.05;
@@ -45,7 +45,7 @@ const RESTING_MPS2: f64 = 0.1;
 /// Effort of the full service brake.
 const FULL_BRAKE: i16 = -1024;
 
-/// What ATO looks at in one cycle.
+/// Inputs of ATO in one cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct AtoInputs<'a> {
     /// Operating mode set by ATP.
@@ -64,7 +64,7 @@ pub struct AtoInputs<'a> {
     pub section: Option<&'a Section>,
     /// Position in it, m.
     pub position_m: f64,
-    /// How much further the train may be, m, while markers do not come.
+    /// Distance by which the train may be farther on while markers do not come, m.
     pub ahead_m: f64,
     /// Distance from the stop point that counts as aligned, m.
     pub aligned_m: f64,
@@ -77,15 +77,15 @@ pub struct AtoInputs<'a> {
     pub standstill: bool,
     /// ATP or TCMS cuts powering.
     pub power_cut: bool,
-    /// What TCMS says of the train.
+    /// Report of TCMS on the train.
     pub train: TrainReport,
     /// Passenger load TCMS reports, kg.
     pub load_kg: f64,
-    /// What KRN's checks say.
+    /// Results of KRN's checks.
     pub checks: Checks,
 }
 
-/// What ATO commands.
+/// Commands of ATO.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AtoOutputs {
     /// ATO is out of inspection ([`AtoState::Inspection`]).
@@ -98,12 +98,12 @@ pub struct AtoOutputs {
     pub holding_brake: bool,
     /// Direction of the jog that is on: backward; `None` = no jog.
     pub jogs_backward: Option<bool>,
-    /// What came of jogging in this cycle.
+    /// Result of jogging in this cycle.
     pub jog: JogOutcome,
     /// Distance run in this cycle that sliding wheels did not tell, m.
     pub slid_m: f64,
     pub failure: AtoFailure,
-    /// What its watch found in this cycle.
+    /// Findings of the monitor in this cycle.
     pub findings: Findings,
 }
 
@@ -203,7 +203,7 @@ impl Ato {
         }
     }
 
-    /// What has failed: the first failure of a run is kept until the train stands outside Automatic
+    /// Failure of ATO: the first failure of a run is kept until the train stands outside Automatic
     /// Run; then ATO is inspected again.
     fn failure_after(&self, inputs: &AtoInputs<'_>, findings: &Findings) -> AtoFailure {
         let run = inputs.mode == Mode::AutomaticRun;

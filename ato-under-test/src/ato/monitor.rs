@@ -40,7 +40,7 @@ const FAR_PAST_M: f64 = 10.0;
 /// Time standing short of the stop point after which nothing more is expected, s [default].
 const STANDS_S: f64 = 5.0;
 
-/// What TCMS says of the train. Efforts are −1024 full brake .. 1023 full power.
+/// Report of TCMS on the train. Efforts are −1024 full brake .. 1023 full power.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TrainReport {
     /// TCMS brakes by itself, or gives no power.
@@ -51,7 +51,7 @@ pub struct TrainReport {
     pub given: Option<i16>,
 }
 
-/// What is monitored besides ATO's inputs.
+/// Inputs of the monitor besides ATO's inputs.
 #[derive(Clone, Copy, Debug)]
 pub struct MonitorInputs {
     /// State until now.
@@ -61,7 +61,7 @@ pub struct MonitorInputs {
     /// Neither limit nor order nor brake keeps the train standing.
     pub may_go: bool,
     pub stands: bool,
-    /// As near to the stop point as ATO could bring the train.
+    /// The train is as near to the stop point as ATO could bring it.
     pub arrived: bool,
 }
 
@@ -72,7 +72,8 @@ pub struct Findings {
     pub absurd: AbsurdInputs,
     /// Speed less the speed effort should have made, m/s.
     pub not_following_mps: Option<f64>,
-    /// The same of a train that withholds effort, by TCMS's own report; reported once until it is over.
+    /// Deviation of a train that withholds effort by its TCMS's own report, m/s; reported once until it
+    /// is over.
     pub withheld_mps: Option<f64>,
     /// Distance past the stop point, m; reported once a run.
     pub overrun_m: Option<f64>,
@@ -90,7 +91,7 @@ pub struct Monitor {
     jumps_again_s: f64,
     expected_mps2: f64,
     deviation_mps: f64,
-    /// What the effort sent should come to by now, m/s².
+    /// Acceleration that the sent effort should have by now, m/s².
     sent_mps2: f64,
     /// Speed that the train's own effort did not make of it, m/s.
     withheld_mps: f64,
@@ -261,7 +262,7 @@ impl Monitor {
     }
 }
 
-/// What the train does is not what ATO asks of it: powering is cut, or TCMS brakes by itself.
+/// Whether the train does something else than ATO asks: powering is cut, or TCMS brakes by itself.
 fn cut(inputs: &AtoInputs<'_>) -> bool {
     inputs.power_cut || inputs.train.overrides
 }

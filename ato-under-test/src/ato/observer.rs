@@ -21,10 +21,10 @@ const FRAME_S: f64 = 0.01;
 /// Time between pulses at which a measured speed begins to lose its weight, and has none left, s.
 const PULSE_S: (f64, f64) = (0.034, 0.1);
 
-/// How speed is measured.
+/// Quality of the measured speed.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedMeasurement {
-    /// Window over which it is averaged, s.
+    /// Window over which the speed is averaged, s.
     pub window_s: f64,
     /// Distance between pulses, m.
     pub pulse_m: f64,
@@ -34,9 +34,9 @@ pub struct SpeedMeasurement {
 pub struct Observer {
     config: ObserverConfig,
     measurement: SpeedMeasurement,
-    /// What was asked for, newest first, m/s².
+    /// Demanded efforts as acceleration, newest first, m/s².
     asked: [f64; CYCLES],
-    /// What of it the train gives by the model.
+    /// The part of the demand that the train gives, by the model.
     given: Lag,
     speed_mps: f64,
     missing_mps2: f64,
@@ -79,7 +79,7 @@ struct Times {
 }
 
 impl Times {
-    /// Of inverters, of air, or of both while one hands over to the other.
+    /// Times of inverters, of air, or between both while one hands over to the other.
     fn of(train: &AtoTrainConfig, speed_mps: f64, braking: bool) -> Self {
         let span = (train.air_from_kmh - train.air_alone_kmh).max(0.1);
         let air = ((train.air_from_kmh - speed_mps * 3.6) / span).clamp(0.0, 1.0);
@@ -180,8 +180,8 @@ impl Observer {
         self.missing_mps2 = (self.missing_mps2 + q * q / dt * error * sure).clamp(-bound, bound);
     }
 
-    /// The wheel that is measured slides under the brake: it says nothing of the train. It is not
-    /// believed to for long, since a protection ends a slide.
+    /// Whether the measured wheel slides under the brake and so says nothing of the train. A slide
+    /// is assumed for a short time only, as the wheel-slide protection ends it.
     fn slides(&mut self, error_mps: f64, dt: f64) -> bool {
         let slides = self.given.0 < 0.0
             && error_mps < -self.config.slide_mps
@@ -196,12 +196,12 @@ impl Observer {
         slides
     }
 
-    /// The measured wheel slides: that it stands does not say that the train does.
+    /// The measured wheel slides: a wheel at rest does not mean a train at rest.
     pub fn sliding(&self) -> bool {
         self.slid_m > 0.0
     }
 
-    /// What was asked for some cycles before the last effort.
+    /// Demand of some cycles before the last effort, m/s².
     fn asked_before(&self, cycles: f64) -> f64 {
         let whole = (cycles as usize).min(CYCLES - 2);
         let part = cycles - whole as f64;

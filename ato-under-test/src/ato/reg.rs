@@ -24,7 +24,6 @@ pub struct Bounds {
     pub speed_mps: f64,
     /// Mass to be accelerated, kg.
     pub mass_kg: f64,
-    /// No powering.
     pub power_cut: bool,
 }
 

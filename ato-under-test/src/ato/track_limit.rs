@@ -11,7 +11,7 @@ use protocol::line::Section;
 
 /// Where the train is, and what it hears there.
 #[derive(Clone, Copy, Debug)]
-pub struct Place<'a> {
+pub struct TrainPosition<'a> {
     /// Section of the track database.
     pub section: Option<&'a Section>,
     /// Position in it, m.
@@ -26,7 +26,7 @@ pub struct Place<'a> {
 
 /// Limit that ATO runs by. `slowing_m` tells the way in which it slows from the limit in force to that of another.
 pub fn limit_ahead(
-    place: Place<'_>,
+    place: TrainPosition<'_>,
     codes: &[SpeedCode],
     slowing_m: impl Fn(Speed) -> f64,
 ) -> Speed {
@@ -83,7 +83,7 @@ mod tests {
         let unit = include_str!("../../../scripts/units/sg100.toml");
         let unit = UnitConfig::from_toml(unit).unwrap();
         let line = Line::from_toml(line).unwrap();
-        let place = Place {
+        let place = TrainPosition {
             section: line.section(section),
             length_m: 160.0,
             position_m,
@@ -105,7 +105,8 @@ mod tests {
         }
     }
 
-    /// Until its code is heard: 15 m. A wayside that still sends 55 there has its reason.
+    /// A lower code counts behind its place until the receiver must have heard it: 15 m. A wayside
+    /// that still sends 55 there has its reason.
     #[test]
     fn behind_its_place_it_counts_until_the_code_must_have_been_heard() {
         assert!((at(245.0, 55.0) - 45.0).abs() < 1e-9);

@@ -8,21 +8,21 @@ use crate::timer::OnDelay;
 /// Scans over which the deceleration is measured (0.5 s).
 const DECEL_SCANS: usize = 50;
 
-/// What is known of the service brake in one scan.
+/// State of the service brake in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Proof {
+pub struct BrakeState {
     /// Deceleration, negative while the train gains speed, mm/s².
     pub decel_mms2: i32,
     /// The train slows as a braked one.
     pub proved: bool,
-    /// It has had its time and the train does not slow.
+    /// The service brake has had its time and the train does not slow.
     pub ineffective: bool,
 }
 
-/// For what the service brake is asked in one scan.
+/// Demand for the service brake in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Demand {
-    /// It is asked for, and the train must slow.
+    /// The service brake is asked for, and the train must slow.
     pub holds: bool,
     /// The speed is one at which a deceleration is to be measured: not close to what the train is braked to.
     pub measurable: bool,
@@ -58,7 +58,7 @@ impl BrakeProof {
         speed: Speed,
         demand: Demand,
         config: &OverspeedConfig,
-    ) -> Proof {
+    ) -> BrakeState {
         let before = core::mem::replace(&mut self.history[self.at], speed.mps());
         self.at = (self.at + 1) % DECEL_SCANS;
         let decel_mps2 = (before - speed.mps()) / (DECEL_SCANS as f64 * protocol::SCAN.as_secs());
@@ -73,7 +73,7 @@ impl BrakeProof {
         let measurable = self.measurable.update(now, demand.measurable, delay);
         let time = Duration::from_ms(u64::from(config.brake_proof_ms));
         let waited = self.demanded.update(now, demand.holds, time);
-        Proof {
+        BrakeState {
             decel_mms2: libm::round(decel_mps2 * 1000.0) as i32,
             proved,
             ineffective: waited && measurable && !self.effective,

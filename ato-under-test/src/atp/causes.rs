@@ -14,7 +14,7 @@ use crate::signals::Inputs;
 pub struct Found {
     /// The train ran against the reverser.
     pub rollback: bool,
-    /// It ran forward although ATO jogs it backward.
+    /// The train ran forward although ATO jogs it backward.
     pub wrong_way: bool,
     pub door_open: bool,
     /// Faster than the limit for too long.
@@ -106,8 +106,8 @@ impl Atp {
         self.brake.latch(EbCause::TestMode);
     }
 
-    /// What must hold whatever came in; the number of the first that does not. A processor that
-    /// computes this has failed, and nothing it says can be trusted.
+    /// Number of the first invariant that does not hold. Invariants hold whatever came in: a
+    /// processor that breaks one has failed, and nothing it says can be trusted.
     fn broken_invariant(&self) -> Option<i32> {
         let speed = self.tachometers.speed();
         let holds = [

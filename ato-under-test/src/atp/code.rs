@@ -23,7 +23,8 @@ pub enum Code {
 /// Greatest error of the beginning that a receiver states.
 const KNOWN_TO: Duration = Duration::from_ms(500);
 
-/// A code that comes more often than this within the hold time flickers: twice it comes at a border that is crossed.
+/// A code that comes more often than this within the hold time flickers; at a border that a train crosses it comes
+/// twice.
 const SELDOM: usize = 2;
 
 /// The decoder: a code counts once it has been steady, and stays in force for a hold time after the
@@ -37,9 +38,10 @@ pub struct CodeDecoder {
     /// When the code in force was confirmed last.
     confirmed: Instant,
     candidate: Code,
-    /// Since when the candidate is there, as far as was heard.
+    /// Time since which the candidate is heard.
     since: Instant,
-    /// The candidate comes back after a more restrictive code: it must be steady for the hold time.
+    /// The candidate comes back after a more restrictive code, and must be steady for the hold
+    /// time.
     comes_back: bool,
     heard: Heard,
     /// When a more restrictive code took the place of another, or came back after it.
@@ -56,7 +58,7 @@ pub struct CodeDecoder {
 }
 
 impl CodeDecoder {
-    /// Nothing received yet.
+    /// A decoder that has received no code.
     pub fn new() -> Self {
         Self {
             code: Code::None,
@@ -75,7 +77,7 @@ impl CodeDecoder {
         }
     }
 
-    /// One scan. Only if it `confirms` codes, a code in force is not renewed by any scan in which it is heard.
+    /// One scan. With `confirms`, single scans in which a code in force is heard do not renew the code.
     pub fn step(
         &mut self,
         now: Instant,
@@ -103,10 +105,10 @@ impl CodeDecoder {
         }
         // A receiver of waveforms has had the code for a while when it hands it on.
         self.since = self.since.min(now.back(signal.heard_for));
-        // What may be over already permits no more.
+        // A code that may be over already must not permit more.
         let patience = match stricter(match_, self.code) {
             true => detect,
-            // Its beginning is known only so exactly.
+            // The beginning of a code that comes and goes is known only to [`KNOWN_TO`].
             false if self.comes_back => hold + signal.heard_for.min(KNOWN_TO),
             false => detect + signal.lags,
         };

@@ -1,5 +1,5 @@
-//! Contacts of the desk that chatter, or contradict each other by turns: they come to rest at no position, by which no delay
-//! and no sum of the supervision is ever over.
+//! Contacts of the desk that chatter, or contradict each other by turns, come to rest at no position: no delay and
+//! no sum of the supervision would ever end.
 
 use protocol::event::Event;
 use protocol::{Duration, Instant};
@@ -39,7 +39,7 @@ impl<T: Copy + PartialEq> Contacts<T> {
         }
     }
 
-    /// They chatter, until a position has been chosen.
+    /// The contacts chatter, until a position has been chosen.
     pub fn chatters(&self) -> bool {
         self.chatters.value()
     }

@@ -12,7 +12,8 @@ use crate::timer::Edge;
 pub enum Towards {
     Forward,
     Backward,
-    /// In neutral, or its contacts contradict each other or chatter: no way is permitted.
+    /// The reverser is in neutral, or its contacts contradict each other or chatter: no direction
+    /// is permitted.
     Nowhere,
     /// Nothing is supervised: test signals in neutral, as a train in a depot is left.
     Anywhere,
@@ -44,9 +45,9 @@ impl Towards {
 /// Adds up the distance run against the reverser.
 #[derive(Clone, Debug, Default)]
 pub struct Rollback {
-    /// By each tachometer: one that is dead hides nothing.
+    /// Distance rolled back by each tachometer, m: a dead tachometer hides nothing.
     against_m: [f64; 2],
-    /// What it was when the wheels stood last: a lone pulse since then is spurious.
+    /// `against_m` when the wheels stood last: a lone pulse since then is spurious.
     stood_m: [f64; 2],
     towards: Option<Towards>,
     tripped: Edge,

@@ -27,7 +27,8 @@ pub struct DoorLines {
 }
 
 impl DoorLines {
-    /// Lines of a train that `told` of doors by side before: the supervision of sides outlasts that it does.
+    /// Lines of a train; `told` = the train has told of doors by side before. The supervision of sides goes
+    /// on when the train no longer tells.
     pub const fn new(lines: TrainLines, told: bool) -> Self {
         let by_side = told || lines.contains(TrainLines::DOORS_BY_SIDE);
         Self { lines, by_side }
@@ -48,7 +49,7 @@ impl DoorLines {
         self.sides(|_, closed, locked| !self.lines.contains(closed | locked))
     }
 
-    /// Of these, the sides that are not enabled.
+    /// Sides that are neither proved closed and locked nor enabled.
     pub fn open_without(self, enabled: Outputs) -> DoorSide {
         self.sides(|enable, closed, locked| {
             !enabled.contains(enable) && !self.lines.contains(closed | locked)
@@ -56,8 +57,8 @@ impl DoorLines {
     }
 
     /// Sides whose lines contradict each other: doors that are locked and not closed, or closed and open by the line
-    /// of all doors; `DoorSide::None` where that line alone is wrong, or the train tells of sides no more. Nothing while they
-    /// fit.
+    /// of all doors; `DoorSide::None` where that line alone is wrong, or the train tells of sides no more. `None`
+    /// while the lines agree.
     pub fn contradiction(self) -> Option<DoorSide> {
         if !self.by_side() {
             return None;

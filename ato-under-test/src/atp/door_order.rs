@@ -1,4 +1,4 @@
-//! What ATP lets through of ATO's orders to open doors: its contact for a side lies in series with the enable of
+//! Orders of ATO to open doors that ATP lets through: its contact for a side lies in series with the enable of
 //! that side, so that no order opens a door where none may be open.
 
 use protocol::event::Event;

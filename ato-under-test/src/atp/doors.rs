@@ -19,7 +19,7 @@ const SETTLES: Duration = Duration::from_ms(200);
 const CHATTER_OPENINGS: i32 = 4;
 const CHATTER_SPAN: Duration = Duration::from_ms(1_000);
 
-/// What the door supervision looks at.
+/// Inputs of the door supervision.
 #[derive(Clone, Copy, Debug)]
 pub struct DoorInputs {
     /// The train lines, while they are alive.
@@ -231,7 +231,7 @@ mod tests {
             train
         }
 
-        /// These lines for 600 ms, with doors enabled on a side. Whether the train is held.
+        /// Feeds these lines for 600 ms, with doors enabled on a side; whether the train is held.
         fn has(&mut self, lines: TrainLines, side: DoorSide) -> bool {
             let inputs = at_platform(lines, side);
             for _ in 0..60 {

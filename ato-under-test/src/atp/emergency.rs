@@ -7,18 +7,18 @@ use protocol::Instant;
 use protocol::event::Event;
 use protocol::message::EbCause;
 
-use super::Proof;
+use super::BrakeState;
 use crate::kernel::EventLog;
 use crate::timer::Edge;
 
-/// What the brake looks at in one scan.
+/// Inputs of the emergency brake in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct BrakeInputs {
     /// A cause that holds now, `None` = none.
     pub cause: EbCause,
     /// Speed above the limit, cm/s.
     pub excess_cms: i32,
-    pub proof: Proof,
+    pub proof: BrakeState,
     pub standstill: bool,
     /// Standstill, and no pulse, or a lone one, for the time of standstill.
     pub still: bool,
@@ -77,7 +77,8 @@ impl EmergencyBrake {
         }
     }
 
-    /// What keeps the brake applied although it is acknowledged; [`EbCause::None`] = the train moves.
+    /// Cause that keeps the brake applied although it is acknowledged; [`EbCause::None`] = the train
+    /// moves.
     fn holds(&self, inputs: &BrakeInputs) -> Option<EbCause> {
         let open = self.cause == EbCause::DoorOpen && !inputs.doors_closed;
         [

@@ -1,4 +1,5 @@
-//! How long each speed code was heard within the hold time, gaps and other codes between left out.
+//! Time for which each speed code was heard within the hold time, gaps and other codes between left
+//! out.
 
 use alloc::collections::VecDeque;
 
@@ -39,7 +40,7 @@ impl Heard {
         }
     }
 
-    /// How often a code came within the span.
+    /// Number of times a code came within the span.
     pub fn times(&self, code: Code) -> usize {
         let spells = self.spells.iter().filter(|spell| spell.code == code);
         spells.count()
@@ -75,7 +76,7 @@ mod tests {
         for scan in 0..200 {
             heard.note(Instant::from_ms(10 * scan), of(10 * scan), span);
         }
-        // Of 990 ms to 1 990 ms: five whole spells, and of none one scan more.
+        // From 990 ms to 1 990 ms: five whole spells of the code, and one scan more without it.
         assert_eq!(heard.time(Code::Known(1)).as_ms(), 500);
         assert_eq!(heard.time(Code::None).as_ms(), 510);
         assert_eq!(heard.times(Code::Known(1)), 5);

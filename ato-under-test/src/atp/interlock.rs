@@ -1,5 +1,5 @@
-//! What follows a brake: power only after the lever was at neutral, and the service brake where the emergency brake does
-//! not act.
+//! Interlocks that follow a brake: power only after the lever was at neutral, and the service brake where the
+//! emergency brake does not act.
 
 use protocol::event::Event;
 use protocol::{Duration, Instant};
@@ -15,7 +15,8 @@ const SLOWS: Duration = Duration::from_ms(2_500);
 /// Time in which the line alone follows the relay when it is released [default].
 const LINE_FOLLOWS: Duration = Duration::from_ms(300);
 
-/// Power that was asked for when something held the train is not given when that has gone: a person has to ask again.
+/// Interlock of power: power demanded while something held the train is not given afterwards. A person has to ask
+/// again.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Interlock {
     open: OnDelay,
@@ -48,8 +49,8 @@ pub struct BrakePath {
 }
 
 impl BrakePath {
-    /// One scan: the brake is asked for, its line is energised all the same, what TCMS tells of it, and whether the train
-    /// moves and does not slow.
+    /// One scan. `asked` = the brake is demanded; `line_stays` = its line is energised all the same; `tcms` = the
+    /// brake as TCMS tells it; `unslowed` = the train moves and does not slow.
     pub fn step(
         &mut self,
         now: Instant,
@@ -70,7 +71,7 @@ impl BrakePath {
         }
     }
 
-    /// It does not: the next brake has to.
+    /// Whether the path of the brake has failed: the next brake has to act.
     pub fn failed(&self) -> bool {
         self.failed.value()
     }

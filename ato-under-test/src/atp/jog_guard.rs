@@ -3,7 +3,7 @@
 //! Backward it may go only in Automatic Run with the reverser forward, doors closed, under a code that lets a train
 //! run, and after an overrun that the section's last marker proves: then rollback allows the way back to the stop
 //! point, from where the wheels stood. Whatever its direction, faster than `jog_kmh` the service brake stops the
-//! train. Way forward during a jog backward is the train's doing the opposite, and applies the emergency brake.
+//! train. A train that moves forward during a jog backward gets the emergency brake.
 
 use protocol::config::UnitConfig;
 use protocol::event::Event;
@@ -15,10 +15,11 @@ use crate::timer::{Edge, OnDelay};
 /// Time after which a permission that ATO no longer asks for is gone: a train that has stopped stands by then.
 const TAIL: Duration = Duration::from_ms(1_000);
 
-/// Time for which a refusal lasts until it is reported: a stray pulse of a tachometer makes none.
+/// Time for which a refusal lasts until it is reported: a stray pulse of a tachometer leads to no
+/// report.
 const REFUSAL_LASTS: Duration = Duration::from_ms(600);
 
-/// What the guard looks at in a scan.
+/// Inputs of the guard in a scan.
 #[derive(Clone, Copy, Debug)]
 pub struct JogInputs {
     /// Direction that ATO orders: backward or not; `None` = it does not jog.
@@ -105,7 +106,8 @@ impl JogGuard {
         if self.not_asked.update(now, !wanted, TAIL) {
             self.back_m = None;
         }
-        // A way is given while the wheels stand; what is left of it is not added to.
+        // The permitted way is set while the wheels stand; the rest of an earlier permission is not
+        // added.
         if inputs.still {
             self.back_m = overrun_m.filter(|_| wanted);
         }
@@ -140,7 +142,7 @@ impl JogGuard {
         self.back_m.unwrap_or_default()
     }
 
-    /// The permission has ended in this scan: what was run by it is no roll back.
+    /// The permission has ended in this scan: the way run under it is no rollback.
     pub fn ended(&self) -> bool {
         self.ended
     }
@@ -320,7 +322,7 @@ mod tests {
         };
         assert!(!train.run(490, forward));
         assert!(train.run(30, forward));
-        // One that is dead hides nothing.
+        // A dead tachometer hides nothing.
         let mut train = Train::new();
         let one = JogInputs {
             moved_m: [0.0, 0.01],

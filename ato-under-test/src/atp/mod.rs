@@ -1,11 +1,11 @@
 //! ATP: automatic train protection. [`Atp::scan`] runs every 10 ms, in order: speed code, speed, limit,
 //! overspeed, doors, direction of travel, brakes. The mode sequence runs with the 50 ms cycle.
 
-mod belief;
 mod brake_proof;
 mod causes;
 mod code;
 mod contacts;
+mod credible_speed;
 mod direction;
 mod door_lines;
 mod door_order;
@@ -17,7 +17,6 @@ mod jog_guard;
 mod mode;
 mod overspeed;
 mod sides;
-mod speedometer;
 mod stop_and_proceed;
 mod tachometers;
 mod yard;
@@ -40,28 +39,27 @@ use jog_guard::{JogGuard, JogInputs};
 use stop_and_proceed::{ProceedInputs, StopAndProceed};
 use yard::Yard;
 
-pub use belief::Witness;
-pub use brake_proof::{BrakeProof, Demand, Proof};
+pub use brake_proof::{BrakeProof, BrakeState, Demand};
 pub use causes::shown_cause;
 pub use code::{Code, CodeDecoder, lookup};
+pub use credible_speed::Witness;
 pub use door_lines::DoorLines;
 pub use doors::{DoorInputs, Doors};
 pub use emergency::{BrakeInputs, EmergencyBrake};
 pub use mode::{ModeInputs, ModeSequence};
 pub use overspeed::{Overspeed, OverspeedSupervision, SupervisedMotion};
-pub use speedometer::Speedometer;
 pub use tachometers::Tachometers;
 
-/// What the other parts tell ATP for a scan.
+/// Data of the other functions for a scan of ATP.
 #[derive(Clone, Copy, Debug)]
 pub struct ScanContext {
-    /// Start-up has finished with nothing vital failed.
+    /// Start-up has finished, and no vital item has failed.
     pub vital_passed: bool,
     pub started: bool,
     /// The harness has been alive at least once.
     pub ever_alive: bool,
     pub aligned: bool,
-    /// On the arrival station's loop with valid station data.
+    /// The train is on the arrival station's loop, with valid station data.
     pub at_platform: bool,
     pub door_side: DoorSide,
     /// Sides on which ATO orders doors to open.
@@ -69,7 +67,7 @@ pub struct ScanContext {
     pub twc_up: bool,
     pub tcms_up: bool,
     pub ato_ready: bool,
-    /// Direction in which ATO jogs: backward or not; `None` = it does not.
+    /// Direction in which ATO jogs: backward or not; `None` = no jog.
     pub jogs_backward: Option<bool>,
     /// Distance past the stop point, m, where the section's last marker proves it.
     pub overrun_m: Option<f64>,
@@ -77,11 +75,11 @@ pub struct ScanContext {
     pub runs_farther: f64,
     /// Speed of the axles that TCMS measures; `None` = it does not tell.
     pub tcms_speed: Option<Speed>,
-    /// Share by which the unit's clock is faster than TCMS's; 0 of one that is not.
+    /// Share by which the unit's clock is faster than TCMS's; 0 if it is not.
     pub clock_ahead: f64,
-    /// Others have opened the brake line, as it is read back or TCMS tells it.
+    /// Something else than the unit has opened the brake line, by read-back or as TCMS tells.
     pub line_open: bool,
-    /// Others have opened the line that had followed the relay.
+    /// Something else has opened the line after it had followed the relay.
     pub line_fell: bool,
     /// The brake line is energised although the unit's relay should have opened it.
     pub line_stays: bool,
@@ -125,7 +123,7 @@ pub struct Atp {
 }
 
 impl Atp {
-    /// Braking, since power-up.
+    /// ATP at power-up, with the emergency brake applied.
     pub fn new(config: &UnitConfig) -> Self {
         Self {
             decoder: CodeDecoder::new(),
@@ -300,12 +298,12 @@ impl Atp {
         run && ahead && self.doors_closed && self.limit > Speed::ZERO
     }
 
-    /// Whether the service brake that is asked for has a train to slow.
+    /// Demand on the service brake, if it is asked for and has a train to slow.
     fn demand(&self, motion: SupervisedMotion, margins: &OverspeedConfig) -> Demand {
         let alarm_kmh = motion.limit.kmh() + margins.alarm_margin_kmh;
         match self.fsb_cause {
             FsbCause::None => Demand::default(),
-            // Close to the limit a deceleration is no longer to be measured.
+            // Close to the limit a deceleration can no longer be measured.
             FsbCause::Overspeed => Demand {
                 holds: true,
                 measurable: motion.speed.kmh() > alarm_kmh,
@@ -317,7 +315,7 @@ impl Atp {
         }
     }
 
-    /// The receiver was used for a test: what it decoded counts no more.
+    /// Forgets the decoded code, after the receiver was used for a test.
     pub fn forget_code(&mut self) {
         self.decoder = CodeDecoder::new();
     }
@@ -327,7 +325,7 @@ impl Atp {
         self.sequence.step(now, inputs, log);
     }
 
-    /// What the output contacts should do.
+    /// States that the output contacts should have.
     pub fn outputs(&self, healthy: bool) -> Outputs {
         let mut outputs = self.doors.enable() | self.door_orders.passed();
         let code_valid = matches!(self.decoder.code(), Code::Known(_));
@@ -353,7 +351,7 @@ impl Atp {
             || self.tachometers.cuts_power()
     }
 
-    /// What the speed is held against.
+    /// Evidence against which the speed is held.
     fn witness(&self, inputs: &Inputs, context: ScanContext) -> Witness {
         let notch = match self.sequence.mode() {
             Mode::AutomaticRun => context.ato_powers,
@@ -371,7 +369,7 @@ impl Atp {
         }
     }
 
-    /// The mode switch comes to rest at no position: none of them counts.
+    /// The mode switch comes to rest at no position: no position counts.
     pub fn switch_chatters(&self) -> bool {
         self.switch.chatters()
     }
@@ -420,7 +418,8 @@ impl Atp {
         enabled_sides(self.doors.enable())
     }
 
-    /// ATO may order doors to close: one contact is for all of them, so none may be open where none is enabled.
+    /// ATO may order doors to close. One contact closes all doors, so none may be open on a side that is not
+    /// enabled.
     pub fn lets_close(&self) -> bool {
         let enabled = self.enabled();
         // Codes of sides are sets of bits.
@@ -432,7 +431,7 @@ impl Atp {
         self.doors.hold()
     }
 
-    /// Why the full service brake is requested.
+    /// Cause of the full service brake.
     pub fn fsb_cause(&self) -> FsbCause {
         self.fsb_cause
     }

@@ -38,10 +38,11 @@ const RUN_ENDS: Refusals = Refusals::DOORS_OPEN
     .union(Refusals::ATO_NOT_READY)
     .union(Refusals::SELF_TEST);
 
-/// Of these, what leaves a train in motion without a driver or with a door open: it is stopped.
+/// Refusals that stop a train in motion: it has no driver, or a door is open.
 const STOPS: Refusals = Refusals::DOORS_OPEN.union(Refusals::CAB_INACTIVE);
 
-/// Of these, what is kept until it is acknowledged: braking clears it, and driving on would cause it again.
+/// Refusals that stay until they are acknowledged: braking clears them, and driving on would cause them
+/// again.
 const KEPT: Refusals = Refusals::ATO_NOT_READY.union(Refusals::TCMS_NOT_READY);
 
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +63,7 @@ pub struct ModeInputs {
     pub arrived: bool,
     /// A section began: what was authorised was a run through the one before.
     pub relocated: bool,
-    /// It stands away from the stop point, and ATO has given that up.
+    /// The train stands away from the stop point, and ATO has given the stop point up.
     pub gave_up: bool,
     /// Others than the unit have opened the emergency brake line.
     pub line_open: bool,
@@ -81,7 +82,7 @@ pub struct ModeSequence {
     began: bool,
     /// Departure was heard withheld, and not given since.
     withheld: bool,
-    /// What ended a run and is not acknowledged, of [`KEPT`].
+    /// Refusal that ended a run and is not acknowledged, of [`KEPT`].
     failed: Refusals,
     /// The next run needs a departure of its own.
     departs_anew: bool,
@@ -93,7 +94,7 @@ pub struct ModeSequence {
 }
 
 impl ModeSequence {
-    /// As at power-up: off, and what is given is not known to be new.
+    /// State at power-up: off; a departure that is given does not count as new.
     pub fn new() -> Self {
         Self {
             mode: Mode::Off,
@@ -127,7 +128,8 @@ impl ModeSequence {
         self.refusals.set(Refusals::NO_DEPARTURE, !inputs.departure);
         let turned = core::mem::replace(&mut self.switch, inputs.switch) != inputs.switch;
         let stands = !inputs.lacking.contains(Refusals::NOT_STANDSTILL);
-        // Who turns the switch at rest has to authorise the next run: one position departs by a button, the other without.
+        // A driver who turns the switch at rest has to authorise the next run: one position departs by a button, the
+        // other without.
         inputs.arrived |= inputs.relocated || turned && stands;
         let next = next(self.mode, &inputs, departing);
         if pressed && next != Mode::AutomaticRun {
@@ -179,7 +181,7 @@ impl ModeSequence {
         self.departs_anew &= !departs;
     }
 
-    /// Whether a departure is heard that was heard withheld before.
+    /// Whether a departure is given now after it was withheld.
     fn new_departure(&mut self, heard: Option<bool>) -> bool {
         match heard {
             Some(true) => core::mem::take(&mut self.withheld),

@@ -11,11 +11,11 @@ use protocol::config::{OverspeedConfig, UnitConfig};
 use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
-use super::Proof;
+use super::BrakeState;
 use crate::kernel::EventLog;
 use crate::timer::{Edge, OnDelay};
 
-/// How the train moves in one scan, and what it may.
+/// Motion of the train in one scan, and its limits.
 #[derive(Clone, Copy, Debug)]
 pub struct SupervisedMotion {
     pub speed: Speed,
@@ -23,7 +23,8 @@ pub struct SupervisedMotion {
     /// The limit is zero because the code, or none, says so, or the mode is off.
     pub stop: bool,
     pub standstill: bool,
-    /// It does what no standing train does ([`Tachometers::moves`](super::Tachometers::moves)).
+    /// The train does what no standing train does
+    /// ([`Tachometers::moves`](super::Tachometers::moves)).
     pub moves: bool,
 }
 
@@ -110,7 +111,7 @@ impl OverspeedSupervision {
         &mut self,
         now: Instant,
         motion: SupervisedMotion,
-        proof: Proof,
+        proof: BrakeState,
         margins: &OverspeedConfig,
     ) -> bool {
         let in_grace =
@@ -192,7 +193,7 @@ mod tests {
                 moves: true,
             };
             let found = one.step(now, motion, &config, &mut log);
-            let beyond = one.emergency(now, motion, Proof::default(), &config.overspeed);
+            let beyond = one.emergency(now, motion, BrakeState::default(), &config.overspeed);
             (found.service_brake, beyond)
         };
         assert_eq!(scan(40.0, 40.0), (false, false));

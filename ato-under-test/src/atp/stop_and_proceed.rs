@@ -12,7 +12,7 @@ use protocol::{Duration, Instant, Speed};
 use crate::kernel::EventLog;
 use crate::timer::Edge;
 
-/// What it looks at in one scan.
+/// Inputs of stop and proceed in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct ProceedInputs {
     /// The code counts, and there is none.
@@ -58,7 +58,7 @@ impl StopAndProceed {
         });
     }
 
-    /// Its limit, once it is acknowledged.
+    /// Limit after an acknowledged stop.
     pub fn limit(&self) -> Option<Speed> {
         self.proceeds.map(|(_, limit)| limit)
     }
@@ -125,7 +125,7 @@ mod tests {
         }
         let limit = Some(Speed::from_kmh(15.0));
         assert_eq!(after(ACKNOWLEDGED, None, &mut log), limit);
-        // It lasts while the train runs, and ends with a code and with the driver.
+        // The permission lasts while the train runs, and ends with a code and with the driver.
         let [coded, automatic, runs, released] = lacking;
         for (then, limit) in [
             (coded, None),

@@ -5,10 +5,10 @@ use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
-use crate::atp::belief::{Belief, Witness};
-use crate::atp::speedometer::Speedometer;
+use crate::atp::credible_speed::{CredibleSpeed, Witness};
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
+use crate::speedometer::Speedometer;
 use crate::timer::{Edge, OnDelay};
 
 /// A channel slower than this beside a turning one counts as dead rather than as different.
@@ -40,7 +40,7 @@ pub struct Tachometers {
     /// Way by each channel in this scan, m, backward negative.
     ways_m: [f64; 2],
     distance_channel: usize,
-    belief: Belief,
+    credible: CredibleSpeed,
     /// Share by which the train is faster than its wheels tell.
     farther: f64,
 }
@@ -73,12 +73,12 @@ impl Tachometers {
             loose_mps2: None,
             ways_m: [0.0; 2],
             distance_channel: 0,
-            belief: Belief::default(),
+            credible: CredibleSpeed::default(),
             farther: 0.0,
         }
     }
 
-    /// Markers have proved that the wheels run so much farther than is measured.
+    /// Sets the share by which the wheels run farther than is measured, as markers have proved.
     pub fn correct(&mut self, farther: f64) {
         self.farther = farther;
     }
@@ -126,10 +126,10 @@ impl Tachometers {
             ..witness
         };
         let speeds = [0, 1].map(|i| self.meters[i].speed());
-        self.belief
+        self.credible
             .step(now, speeds, !silent, witness, &config.tacho, log);
         let told = witness.tcms_moves(&config.tacho) && !witness.tested && !witness.unguarded;
-        let doubted = self.belief.doubted().is_some();
+        let doubted = self.credible.doubted().is_some();
         let slow = self.speed().kmh() <= config.tacho.standstill_kmh && !told && !doubted;
         let span = Duration::from_ms(u64::from(config.tacho.standstill_ms));
         self.standstill = self.slow.update(now, slow, span);
@@ -184,18 +184,18 @@ impl Tachometers {
     /// The greater of the two.
     fn measured(&self) -> Speed {
         let greater = self.meters[0].speed().max(self.meters[1].speed());
-        Speed::from_mps(greater.mps() * (1.0 + self.farther) * (1.0 + self.belief.clock_fast()))
+        Speed::from_mps(greater.mps() * (1.0 + self.farther) * (1.0 + self.credible.clock_fast()))
     }
 
     /// The safe speed: the greater of the two, or what the train may still have where they are not believed.
     pub fn speed(&self) -> Speed {
         self.measured()
-            .max(self.belief.doubted().unwrap_or(Speed::ZERO))
+            .max(self.credible.doubted().unwrap_or(Speed::ZERO))
     }
 
     /// Power moves nothing: it is cut.
     pub fn cuts_power(&self) -> bool {
-        self.belief.cuts_power()
+        self.credible.cuts_power()
     }
 
     /// Speed of channel 0 or 1.
@@ -205,7 +205,7 @@ impl Tachometers {
 
     /// The channels cannot both be right, or neither is believed.
     pub fn faulty(&self) -> bool {
-        self.faulty || self.belief.doubted().is_some()
+        self.faulty || self.credible.doubted().is_some()
     }
 
     pub fn standstill(&self) -> bool {

@@ -3,8 +3,8 @@
 use protocol::message::{Crosstalk, IoInput};
 use protocol::{Duration, Instant};
 
-use crate::front_end::at_rate;
 use crate::receivers::Sampled;
+use crate::timer::at_rate;
 
 /// Time without a frame after which a second code counts as gone: two are lost.
 const CROSSTALK_LASTS: Duration = Duration::from_ms(150);
@@ -44,7 +44,7 @@ impl IoImage {
         self.clock_rate = rate;
     }
 
-    /// How fast the clock runs that times the inputs.
+    /// Rate of the clock that times the inputs.
     pub fn clock_rate(&self) -> f64 {
         self.clock_rate
     }
@@ -95,7 +95,7 @@ impl IoImage {
         self.latest.as_ref().map(|input| (input, self.sampled_at))
     }
 
-    /// What the receivers made of waveforms, if code, pulses and marker came as such.
+    /// Result of the receivers, where code, pulses and marker came as waveforms.
     pub fn sampled(&self) -> Option<&Sampled> {
         self.sampled.as_ref()
     }

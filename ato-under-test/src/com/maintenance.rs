@@ -27,14 +27,14 @@ const BRAKE_TIME: Duration = Duration::from_ms(250);
 const ENTRIES_PER_CYCLE: usize = 2;
 /// Rows of the run record sent in a cycle without log entries, for the same reason.
 const ROWS_PER_CYCLE: usize = 2;
-/// Most stored entries that a tester may ask for in a cycle without those.
+/// Most stored entries that a tester may ask for in a cycle without log entries and rows.
 const STORED_PER_CYCLE: usize = 4;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ArmConditions {
     pub started: bool,
     pub key_on: bool,
-    /// Standing still by the train's own tachometers.
+    /// The train stands by its own tachometers.
     pub standing: bool,
     /// No door is open, by which people might be getting on.
     pub doors_closed: bool,
@@ -58,14 +58,14 @@ pub struct Maintenance {
     reader: Option<u32>,
     /// Index of the next row of the run record to send.
     run_reader: Option<u32>,
-    /// What of the stored memory is to be sent, its next number and how much in a cycle.
+    /// Store to send from, next sequence number, and entries in a cycle.
     stored_reader: Option<(StoreKind, u32, usize)>,
     /// Sequence number of a request for a self-test that has not begun.
     self_test: Option<u16>,
 }
 
 impl Maintenance {
-    /// No tester yet; silence of `timeout` ends arming.
+    /// A session without a tester; silence of `timeout` ends arming.
     pub fn new(timeout: Duration, seed: u64) -> Self {
         Self {
             armed: None,
@@ -92,7 +92,7 @@ impl Maintenance {
         self.armed.is_some()
     }
 
-    /// The train's brake is held: armed, or arming is under way.
+    /// Whether the train's brake is held: the unit is armed, or arming is under way.
     pub fn holds_brake(&self, now: Instant) -> bool {
         let asked = self
             .challenge
@@ -111,13 +111,13 @@ impl Maintenance {
             .is_some_and(|heard| now.since(heard) < self.timeout)
     }
 
-    /// A tester wants `TrainState`; whether also at once in the scan of a change.
+    /// Whether a tester wants `TrainState`, and if so whether also at once in the scan of a change.
     pub fn subscribed(&self, now: Instant) -> Option<bool> {
         let (at, changes) = self.subscribed?;
         (now.since(at) < SUBSCRIPTION).then_some(changes)
     }
 
-    /// Moves on to the present; returns the notice to send when arming succeeds, fails or lapses.
+    /// One scan; returns the notice to send when arming succeeds, fails or lapses.
     pub fn step(
         &mut self,
         now: Instant,
@@ -378,7 +378,8 @@ fn answer_to(request_seq: u16, answer: Answer) -> Message {
     .into()
 }
 
-/// Sends what a reader has not had yet, at most `per_cycle` of it; true when that was the last.
+/// Sends entries that a reader has not had yet, at most `per_cycle`; true when the last one was
+/// sent.
 fn send<T: Copy + Into<Message>, const N: usize>(
     reader: &mut Option<u32>,
     ring: &Ring<T, N>,

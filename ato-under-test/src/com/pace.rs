@@ -1,6 +1,7 @@
 //! The unit's clock beside TCMS's: TCMS sends one frame in each cycle of the link and counts them.
 //!
-//! Only a fast clock is told, by two comparisons in a row: frames that were held up come all at once, as by a slow clock.
+//! Only a fast clock is reported, after two comparisons in a row: frames that were held up come all at once, as by a
+//! slow clock.
 
 use protocol::{CYCLE, Duration, Instant};
 
@@ -40,7 +41,7 @@ impl Pace {
         }
     }
 
-    /// Share by which the unit's clock is faster than TCMS's; 0 of one that is not, or that was not compared twice.
+    /// Share by which the unit's clock is faster than TCMS's; 0 if it is not, or was not compared twice.
     pub fn clock_ahead(&self) -> f64 {
         let [before, last] = self.ahead;
         before.min(last).max(0.0)
@@ -51,7 +52,7 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// Frames every so many milliseconds of the unit's clock; by what share the clock is ahead.
+    /// Share by which a clock seems ahead whose frames come every `period_ms` of that clock.
     fn ahead(period_ms: u64, frames: u64, held_up: impl Fn(u64) -> u64) -> f64 {
         let mut pace = Pace::default();
         for frame in 0..frames {
@@ -82,7 +83,8 @@ mod tests {
             _ => 0,
         };
         assert!(ahead(50, 600, owed) < 0.01);
-        // A frame that was lost was counted all the same; a counter that jumps is none.
+        // The next frame's counter includes a lost frame; a counter that jumps says nothing of the
+        // clock.
         let mut pace = Pace::default();
         for frame in (0..600_u64).filter(|frame| frame % 5 != 0) {
             let counts = match (frame, frame % 5) {

@@ -26,12 +26,12 @@ pub struct Ports {
     track_loop: Link,
     /// Where a tester was heard last: it is spoken to there.
     tester_at: Port,
-    /// What goes out on the maintenance port.
+    /// Bytes to be sent on the maintenance port.
     to_maintenance: Vec<u8>,
 }
 
 impl Ports {
-    /// Nothing was received on any.
+    /// Ports on which nothing was received.
     pub fn new() -> Self {
         Self {
             harness: Link::new(End::Unit),

@@ -13,7 +13,7 @@ const HINDERS: TcmsToAtcBits = TcmsToAtcBits::POWERING_CUT
     .union(TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED)
     .union(TcmsToAtcBits::HOLDING_BRAKE_APPLIED);
 
-/// What TCMS last said.
+/// Latest report of TCMS.
 #[derive(Debug)]
 pub struct TcmsLink {
     last: TcmsToAtc,

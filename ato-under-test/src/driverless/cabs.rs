@@ -29,7 +29,7 @@ enum Stage {
     Failed,
 }
 
-/// What the change of cabs goes by in a cycle.
+/// Inputs of the change of cabs in a cycle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CabInputs {
     /// Head control relay of this cab; `None` = the inputs are lost.
@@ -43,11 +43,10 @@ pub struct CabInputs {
     pub running: bool,
     /// Station of valid station data that are those of a section's beginning.
     pub departs_from: Option<u16>,
-    /// Departure is given.
     pub departure: bool,
 }
 
-/// Which cab has the train, as far as turn-backs change it.
+/// Decides which cab has the train, as far as turn-backs change that.
 #[derive(Clone, Debug, Default)]
 pub struct Cabs {
     stage: Stage,

@@ -1,4 +1,4 @@
-//! What ATO does in place of people when the mode switch is at driverless: doors at stations, turn-back with change of
+//! Work of ATO in place of people when the mode switch is at driverless: doors at stations, turn-back with change of
 //! cabs, put-away and wake-up.
 
 mod cabs;

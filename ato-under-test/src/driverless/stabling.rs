@@ -24,14 +24,13 @@ enum Stage {
     Failed,
 }
 
-/// What put-away and wake-up go by in a cycle.
+/// Inputs of put-away and wake-up in a cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct StablingInputs {
     /// The mode switch is at driverless; `None` = the inputs are lost.
     pub driverless: Option<bool>,
     /// The last self-test is over, and what failed of it.
     pub tested: Option<SelfTest>,
-    /// Departure is given.
     pub departure: bool,
     /// An automatic run is under way.
     pub running: bool,
@@ -46,7 +45,7 @@ pub struct Stabling {
 }
 
 impl Stabling {
-    /// As after a power-up of a train that was put away, or was not.
+    /// State after a power-up of a train that was put away, or was not.
     pub fn at_power_up(put_away: bool) -> Self {
         Self {
             stage: match put_away {
@@ -99,7 +98,8 @@ impl Stabling {
         matches!(self.stage, Stage::PutAway | Stage::Waking)
     }
 
-    /// It is, or was woken with a self-test that failed: put away until proved sound.
+    /// The unit is put away, or was woken with a self-test that failed: it stays put away until
+    /// proved sound.
     pub fn sleeps(&self) -> bool {
         self.asleep() || self.stage == Stage::Failed
     }

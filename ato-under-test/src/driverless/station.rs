@@ -184,7 +184,7 @@ impl Station {
         self.opens
     }
 
-    /// It orders all doors to close.
+    /// The station stop orders all doors to close.
     pub fn closes(&self) -> bool {
         matches!(self.state, State::Closing { .. })
     }

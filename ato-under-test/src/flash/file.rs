@@ -25,7 +25,7 @@ impl FileFlash {
     /// else is left as it is.
     ///
     /// # Errors
-    /// Why it is none, for a person.
+    /// The file cannot be used as a flash; the reason in words.
     pub fn open(path: &Path) -> Result<Self, String> {
         let cannot = |why: &dyn core::fmt::Display| {
             format!("cannot use {} as a unit's memory: {why}", path.display())
@@ -65,7 +65,7 @@ impl FileFlash {
         }
     }
 
-    /// At least one block is a unit's, or all are erased.
+    /// Whether the flash holds a block of a unit, or is erased as a whole.
     fn is_ours(&self) -> Result<bool, FlashError> {
         let mut block = vec![0; BLOCK_BYTES];
         let mut erased = true;

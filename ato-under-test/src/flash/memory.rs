@@ -1,4 +1,4 @@
-//! What the unit stores over power-ups: its event log with the times that testers sent, and its run record.
+//! Stored memory of the unit over power-ups: its event log with the times that testers sent, and its run record.
 //!
 //! Both are kept in working memory first, in the rings of `kernel`; each scan stores what is new there, a few
 //! entries at most, so that a scan's time stays bounded. An entry that is not stored when the power fails is lost.
@@ -42,7 +42,7 @@ pub struct Memory {
     /// `None`: the device failed.
     rings: Option<Rings>,
     power_up: u32,
-    /// As the tester sent it last.
+    /// The time that the tester sent last.
     clock: Option<StoredClock>,
     clocks: u8,
     /// Index since power-up of the next event to store.
@@ -57,10 +57,10 @@ struct Rings {
     rows: LogRing,
 }
 
-/// Why a time is not stored.
+/// Reason for which a time is not stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SetClockError {
-    /// It is none that can be, or too many were sent.
+    /// The time is impossible, or too many times were sent.
     OutOfRange,
     Failed,
 }
@@ -149,7 +149,7 @@ impl Memory {
     /// Stores the time that a tester tells.
     ///
     /// # Errors
-    /// Why it is not stored.
+    /// The time is out of range, too many were sent, or it could not be stored.
     pub fn set_clock(&mut self, now: Instant, told: SetClock) -> Result<(), SetClockError> {
         // However many were sent, one at most half as uncertain as the best is stored: at most 17 more.
         let best = self.clock.map_or(u16::MAX, |clock| clock.uncertainty_ms);

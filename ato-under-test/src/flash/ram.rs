@@ -27,8 +27,8 @@ impl Default for RamFlash {
 }
 
 impl RamFlash {
-    /// Lets the power fail after so many more bytes are erased or programmed; from there on nothing is done, until
-    /// it is called with `None`.
+    /// Lets the power fail after this number of bytes is erased or programmed; nothing is done from then on, until
+    /// the next call with `None`.
     pub fn fail_after(&mut self, bytes: Option<usize>) {
         self.power_left = bytes;
     }

@@ -34,11 +34,10 @@ pub struct Stored {
     pub sequence: u32,
     /// The power-up that it was written in, from 1.
     pub power_up: u32,
-    /// What the writer put in; what it left out is [`ERASED`].
+    /// Content as the writer put it in; what the writer left out is [`ERASED`].
     pub content: [u8; CONTENT_BYTES],
 }
 
-/// What stands in a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
     Empty,
@@ -192,7 +191,8 @@ impl LogRing {
         Ok(())
     }
 
-    /// What stands under a number; `Empty` also for a number that is kept no more, or not yet.
+    /// Reads the entry with this number; `Empty` also for a number that is kept no more, or not
+    /// yet.
     ///
     /// # Errors
     /// The device cannot be read.

@@ -15,7 +15,7 @@ pub struct EffortOutput {
 }
 
 impl EffortOutput {
-    /// What comes out this cycle, -1024 .. 1023.
+    /// Effort that comes out this cycle, -1024 .. 1023.
     pub fn give(&mut self, effort: i16, effect: Option<Effect>) -> i16 {
         match effect {
             Some(Effect::StuckOn) => 1023,

@@ -4,7 +4,6 @@
 
 mod delay_queue;
 mod effort;
-mod faults;
 mod outputs;
 mod relay_watch;
 mod sensors;
@@ -13,27 +12,28 @@ mod supply;
 
 use protocol::injection::{Effect, Place};
 use protocol::message::{IoInput, ModeSwitch, TrainLines};
-use protocol::{Duration, Instant, SCAN};
+use protocol::{Duration, Instant};
 
 pub use delay_queue::DelayQueue;
 pub use effort::EffortOutput;
-pub use faults::Faults;
 pub use outputs::OutputStage;
 pub use relay_watch::RelayWatch;
 pub use sensors::PulseSensor;
 pub use stored_data::apply_stored_data_faults;
-pub use supply::{PowerAndClock, Supply, at_rate};
+pub use supply::{PowerAndClock, Supply};
 
 use crate::com::IoImage;
+use crate::faults::Faults;
 use crate::signals::{AntennaSignal, Inputs, MarkerPulse, Pulses};
 use crate::test_board::TestBoard;
+use crate::timer::at_rate;
 
 /// The inputs of one scan, with the test signals and without.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ScannedInputs {
-    /// As the receiver and the pulse inputs have them: where the TEST board makes a signal, that.
+    /// Inputs of receiver and pulse inputs: the TEST board's signal where the board makes one.
     pub tested: Inputs,
-    /// What comes from the train and the track alone. A receiver that hears a test signal hears no track.
+    /// Inputs from the train and the track alone. A receiver that hears a test signal hears no track.
     pub train: Inputs,
     /// The track's signal behind the antenna, also while the receiver hears another.
     pub track: AntennaSignal,
@@ -41,7 +41,7 @@ pub struct ScannedInputs {
     pub receiver_taken: bool,
 }
 
-/// What the receiver hands on, and what is in the rail.
+/// Signal that the receiver hands on, and signal in the rail.
 struct Received {
     signal: AntennaSignal,
     track: AntennaSignal,
@@ -164,8 +164,8 @@ impl FrontEnd {
         }
     }
 
-    /// What is heard of a code and that of a neighbouring track circuit: the stronger, as far as the weaker does not come
-    /// near to it; else they disturb each other, and nothing is heard.
+    /// Signal that is heard of a code and the code of a neighbouring track circuit: the stronger, if the weaker does
+    /// not come near to it. Otherwise they disturb each other, and nothing is heard.
     fn separate(
         &self,
         own: AntennaSignal,
@@ -276,7 +276,7 @@ impl FrontEnd {
     }
 }
 
-/// What injected faults leave of the level of a waveform between rail and ATP receiver.
+/// Share of a waveform's level that injected faults leave between rail and ATP receiver.
 pub fn atp_gain(faults: &Faults) -> f32 {
     let of = |place| match faults.at(place) {
         Some(Effect::Dead) => 0.0,
@@ -332,9 +332,4 @@ fn lines(mut lines: TrainLines, faults: &Faults) -> TrainLines {
         }
     }
     lines
-}
-
-/// Events of a Poisson process of `per_s` in one scan, at most one.
-pub(crate) fn one_in_scan(per_s: f64) -> f64 {
-    per_s * SCAN.as_secs()
 }

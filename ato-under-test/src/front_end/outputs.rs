@@ -4,7 +4,8 @@ use protocol::injection::{Effect, Place};
 use protocol::message::Outputs;
 use protocol::{Duration, Instant};
 
-use super::{DelayQueue, Faults};
+use super::DelayQueue;
+use crate::faults::Faults;
 
 #[derive(Debug, Default)]
 pub struct OutputStage {

@@ -2,7 +2,7 @@
 
 use protocol::injection::{Effect, Place};
 
-use super::{Faults, one_in_scan};
+use crate::faults::{Faults, one_in_scan};
 use crate::signals::Pulses;
 
 #[derive(Debug, Default)]

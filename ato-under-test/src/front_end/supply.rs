@@ -3,18 +3,19 @@
 use protocol::injection::{Effect, Place};
 use protocol::{Duration, Instant};
 
-use super::{Faults, one_in_scan};
+use crate::faults::{Faults, one_in_scan};
+use crate::timer::at_rate;
 
 /// Length of a single dip: enough to reset the processors.
 const DIP: Duration = Duration::from_ms(100);
 
-/// What the supply does in a scan.
+/// State of the supply in a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Supply {
     /// Voltage is there.
     Up,
     Down,
-    /// It has just come back.
+    /// The supply has just come back.
     Back,
 }
 
@@ -65,14 +66,6 @@ impl PowerAndClock {
         self.own += at_rate(passed, rate);
         self.own
     }
-}
-
-/// A time as a clock that runs this many times too fast tells it.
-pub fn at_rate(passed: Duration, rate: f64) -> Duration {
-    if rate == 1.0 {
-        return passed;
-    }
-    Duration::from_secs(passed.as_secs() * rate)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use alloc::collections::VecDeque;
 
-/// At most `N` entries, the newest.
+/// Keeps the newest `N` entries.
 #[derive(Debug)]
 pub struct Ring<T, const N: usize> {
     entries: VecDeque<T>,

@@ -66,7 +66,7 @@ impl RunRecord {
     }
 }
 
-/// The same but for its time, and standing.
+/// Whether a row of a standing train repeats the last one but for its time.
 fn repeats(last: &RunRow, row: &RunRow) -> bool {
     let same = RunRow {
         index: last.index,

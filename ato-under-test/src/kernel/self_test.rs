@@ -27,7 +27,7 @@ const BLOCK: usize = 1024;
 /// Results sent in a cycle, so that its byte budget holds.
 const RESULTS_PER_CYCLE: usize = 2;
 
-/// What the parts answered in a scan of the self-test.
+/// Answers of the parts in a scan of the self-test.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SelfTestInputs {
     /// The receiver hands on the test code that is fed in behind its antenna.
@@ -41,7 +41,8 @@ pub struct SelfTestInputs {
     pub tcms_link_hears: bool,
     pub board_answers: bool,
     pub line_energised: bool,
-    /// It should be: the relay is energised for long enough, and the line is fed.
+    /// The brake line should be energised: the relay has been energised for long enough, and the
+    /// line is fed.
     pub line_due: bool,
     /// Cells of the tested memory that do not keep what is written.
     pub bad_cells: usize,
@@ -197,7 +198,7 @@ impl SelfTester {
         self.start_up_failed
     }
 
-    /// Of these, items without which no run begins: the TEST board takes no part in running.
+    /// Failed items without which no run begins: the TEST board takes no part in running.
     pub fn failed_for_running(&self) -> SelfTest {
         self.start_up_failed.difference(SelfTest::TEST_BOARD)
     }

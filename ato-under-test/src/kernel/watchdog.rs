@@ -3,7 +3,7 @@
 /// Cycles without progress after which the processor counts as stopped [default].
 const CYCLES: u8 = 3;
 
-/// What KRN has seen of the counter.
+/// State of the counter as KRN has seen it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watchdog {
     seen: Option<u8>,

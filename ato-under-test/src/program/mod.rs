@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use ato_under_test::serve::{
-    Listener, NO_AUTHENTICATION, Place, ServeError, Served, Wire, in_real_time,
+    Listener, NO_AUTHENTICATION, PortAddress, ServeError, Served, Wire, in_real_time,
 };
 use ato_under_test::{Port, Unit};
 use clap::{ArgGroup, Parser};
@@ -33,8 +33,8 @@ pub struct Arguments {
     #[arg(long)]
     pty: bool,
     /// Serve on a serial port
-    #[arg(long, value_name = "PATH[@BAUD]", value_parser = Place::serial)]
-    serial: Option<Place>,
+    #[arg(long, value_name = "PATH[@BAUD]", value_parser = PortAddress::serial)]
+    serial: Option<PortAddress>,
     /// Serve one TCP client at a time; others are told that the unit is taken
     #[arg(long, value_name = "HOST:PORT")]
     tcp: Option<String>,
@@ -85,7 +85,7 @@ pub struct Arguments {
     scripts: Option<PathBuf>,
 }
 
-/// What went wrong: a [`UsageError`], or what a port, file or pipe says.
+/// Error of the program: a [`UsageError`], or what a port, file or pipe says.
 type Failure = Box<dyn Error>;
 
 /// Serves until the process is ended.
@@ -98,9 +98,9 @@ pub fn serve(arguments: &Arguments) -> Result<(), Failure> {
     let flash = arguments.flash.as_deref().map(data::flash).transpose()?;
     let mut wire = match (&arguments.serial, &arguments.tcp) {
         (Some(port), _) => Wire::open(port)?,
-        (_, Some(address)) => Wire::open(&Place::Tcp(address.clone()))?,
+        (_, Some(address)) => Wire::open(&PortAddress::Tcp(address.clone()))?,
         _ if arguments.lock_step => Wire::open_lock_step()?,
-        _ => Wire::open(&Place::Pty)?,
+        _ => Wire::open(&PortAddress::Pty)?,
     };
     stdio::place(wire.name())?;
     stdio::note(&format!(
@@ -136,7 +136,7 @@ fn sound_device(text: &str) -> Result<String, String> {
         .ok_or_else(|| "it is sound:DEVICE".to_owned())
 }
 
-/// Those that a sound device can be calibrated to.
+/// Levels to which a sound device can be calibrated, mV.
 fn millivolts(text: &str) -> Result<f32, String> {
     let mv = text.parse().ok().filter(|mv| (1e-3..1e9).contains(mv));
     mv.ok_or_else(|| "it is from 0.001 to 1e9".to_owned())

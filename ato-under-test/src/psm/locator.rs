@@ -131,7 +131,7 @@ impl Locator {
         self.rescaled = true;
     }
 
-    /// At a departure loop a new section begins; whether one does.
+    /// Begins a new section at a departure loop; whether one begins.
     pub fn locate(&mut self, data: &TwcWayside, line: &Line, standstill: bool) -> bool {
         let Some(section) = line.section(data.section) else {
             return false;
@@ -247,7 +247,8 @@ impl Locator {
         }
         self.hold_against_the_way(now, place_m, &detection, log);
         self.note_way(place_m, &detection);
-        // Of a section's start only the distance is known; a span on sliding wheels tells nothing of their diameter.
+        // At the start of a section only the distance is known; a span on sliding wheels tells nothing of their
+        // diameter.
         let start = self.span_from(&detection, self.fix.marker != 0);
         if let Some((start, _)) = start.filter(|_| self.slid_m == 0.0) {
             let track_m = place_m - start.place_m;
@@ -324,7 +325,7 @@ impl Locator {
             .map(|section| section.stop_m - self.position_m())
     }
 
-    /// What is added to the odometer's distance, as a share.
+    /// Correction of the odometer's distance, as a share.
     pub fn wheel_correction(&self) -> f64 {
         self.wheel.correction()
     }
@@ -359,7 +360,8 @@ impl Locator {
         }
     }
 
-    /// How much further the train may be, m; 0 as long as markers come when they should.
+    /// Distance by which the train may be farther on, m; 0 as long as markers come when they
+    /// should.
     pub fn ahead_m(&self) -> f64 {
         let unsure_m = self.unsure_since_m.map_or(0.0, |since_m| {
             let distance_m = self.odometer.distance_m();

@@ -35,7 +35,7 @@ pub struct MarkerDetection {
     pub slid_m: f64,
 }
 
-/// How the odometer's distance is related to the distance run since the last fix.
+/// Relation between the odometer's distance and the distance run since the last fix.
 #[derive(Clone, Copy, Debug)]
 pub struct Wheels {
     /// Distance run over the odometer's.
@@ -55,15 +55,15 @@ impl Wheels {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MarkerCheck {
-    /// Its place is the train's position.
+    /// The marker's place is the train's position.
     Accepted,
-    /// Not its turn: one that has been passed, or one at another's place.
+    /// The marker is out of turn: it has been passed, or lies at another marker's place.
     OutOfOrder,
     /// Away from its place by this, m, position ahead positive.
     Away(f64),
 }
 
-/// How far from its place a marker is believed after `run_m` from a fix, m.
+/// Distance from its place at which a marker is believed after `run_m` from a fix, m.
 pub fn window_m(fix: &PositionFix, run_m: f64, wheels: &Wheels, config: &MarkerConfig) -> f64 {
     let least = if fix.marker == 0 {
         config.start_window_m
@@ -77,7 +77,7 @@ pub fn window_m(fix: &PositionFix, run_m: f64, wheels: &Wheels, config: &MarkerC
 /// The detection that was away from its place before this one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PendingDetection {
-    /// It, none since the fix.
+    /// The detection; none since the fix.
     pub detection: Option<MarkerDetection>,
     /// A marker is overdue: even the fix may have been wrong.
     pub unsure: bool,
@@ -116,9 +116,9 @@ pub fn judge(
     MarkerCheck::Away(at_m - place_m)
 }
 
-/// How much further than it seems the train may be after a detection `error_m` from its place, m: wheels
-/// greater than configured hear every marker early. Calibrated wheels do not, and the next marker alone
-/// tells it.
+/// Distance by which the train may be farther on than it seems after a detection `error_m` from its
+/// place, m: wheels greater than configured hear every marker early. Calibrated wheels do not, and only
+/// the next marker shows it.
 pub fn further_m(
     fix: &PositionFix,
     detection: MarkerDetection,

@@ -9,7 +9,7 @@ use protocol::SCAN;
 /// Scans over which the change of speed is taken.
 const SCANS: usize = 20;
 
-/// How the train moves in this scan.
+/// Motion of the train in this scan.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Movement {
     /// Distance counted since the last scan, m, backward negative.
@@ -30,7 +30,7 @@ pub struct Odometer {
     counted_m: f64,
     beyond_m: f64,
     direction: f64,
-    /// At the last edge: speed, m/s, and its change, m/s².
+    /// Speed at the last edge, m/s, and its change, m/s².
     speed_mps: f64,
     accel_mps2: f64,
     edge_age_s: f64,

@@ -28,7 +28,7 @@ const ROLLS_AGAIN: Duration = Duration::from_ms(1_000);
 /// Markers of a section.
 const MARKERS: usize = 4;
 
-/// How both wheels turn in one scan.
+/// Motion of both wheels in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct WheelMotion {
     /// Way by each in this scan, m, backward negative.
@@ -43,7 +43,7 @@ pub struct WheelMotion {
 pub struct MarkerSpan {
     /// Marker at its begin, 1 to 4.
     pub from: u8,
-    /// As the track database has it, m.
+    /// Length of the span in the track database, m.
     pub track_m: f64,
 }
 
@@ -54,7 +54,7 @@ struct Count {
     loosened: u32,
 }
 
-/// Nothing is compared at first.
+/// Compares the tachometers; at first there is nothing to compare.
 #[derive(Clone, Debug, Default)]
 pub struct TachoCompare {
     total: Count,

@@ -26,8 +26,8 @@ pub struct WheelCalibration {
 }
 
 impl WheelCalibration {
-    /// Nothing known but that the wheel is within `spread` (1σ share) of the configured one; markers
-    /// scatter by `scatter_m` (1σ) and the correction is kept within ±`bound`.
+    /// A calibration that knows only that the wheel is within `spread` (1σ share) of the configured
+    /// one; markers scatter by `scatter_m` (1σ) and the correction is kept within ±`bound`.
     pub fn new(spread: f64, scatter_m: f64, bound: f64) -> Self {
         Self {
             share: 0.0,
@@ -55,7 +55,7 @@ impl WheelCalibration {
         self.variance *= 1.0 - gain;
     }
 
-    /// What is added to the distance the wheel tells, as a share; bounded.
+    /// Correction of the distance that the wheel tells, as a share; bounded.
     pub fn correction(&self) -> f64 {
         self.share.clamp(-self.bound, self.bound)
     }

@@ -10,7 +10,7 @@ use core::f32::consts::{PI, SQRT_2, TAU};
 use protocol::config::UnitConfig;
 
 use super::downmix::{Downmix, Phasor};
-use super::window::{hann, mean_of, on_share, power_around, wrapped};
+use super::window::{mean_of, on_share, power_around};
 
 /// Rate of the envelope, about, Hz: fast enough for the third harmonic of the fastest code rate; and its pass band.
 const ENVELOPE_HZ: f32 = 600.0;
@@ -33,22 +33,10 @@ const WEAKER_HALF: f32 = 1.0 - core::f32::consts::LN_2;
 /// Least share of the keying's power that the rate's fundamental has, of the window and of each half. A square wave has
 /// 0.81; two codes spliced in the window, or noise, have less.
 pub(super) const LEAST_SHARE: f32 = 0.55;
-const LEAST_SHARE_OF_HALF: f32 = 0.4;
 /// Share of a square wave's power at its fundamental, and how near to it a code must come: less is another shape, as of a
 /// jump of the phase.
 pub(super) const OF_SQUARE_WAVE: f32 = 8.0 / (PI * PI);
 const NEARLY: f32 = 0.88;
-/// Least amplitude of a rate in the whole window and its middle half, over that in the other halves: less has a break.
-const WHOLE: f32 = 0.88;
-/// Periods of a rate in half a window with fewer of which its mean and its tone there are told apart step by step.
-const FEW_PERIODS: f32 = 1.4;
-const STEPS: usize = 3;
-/// Most that the phase of a code that shifts turns more from the middle of the window on than up to it, rad.
-const BENDS: f32 = 0.6;
-/// Least amplitude of a rate in the newest half of the window over that in the oldest, and most that it is off a code's, Hz:
-/// else it has just ended.
-const GOES_ON: f32 = 0.9;
-const GOES_ON_HZ: f32 = 0.15;
 /// Most power in quadrature of one code alone, over that of the keying.
 const BESIDE: f32 = 0.12;
 /// With less noise than this, over the power of the keying, each break of a rate shows.
@@ -61,10 +49,6 @@ const SHARES_ON: core::ops::RangeInclusive<f32> = 0.25..=0.75;
 const MOST_DEPTH: f32 = 2.7;
 /// An envelope with less depth than this is a carrier without a code.
 const FLAT: f32 = 0.15;
-/// Slowest and fastest rate that is looked for besides those of the table, and the step between them, Hz.
-const RATES_HZ: (f32, f32) = (2.5, 42.0);
-const RATE_STEP_HZ: f32 = 2.0;
-
 /// What is received.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reception {
@@ -139,7 +123,7 @@ pub struct CodeReceiver {
     /// Ratio of the powers of two codes of which the stronger counts.
     pub(super) apart: f32,
     /// Share of the steps of rates that fit a usual window.
-    finer: f32,
+    pub(super) finer: f32,
     pub(super) line: [Phasor; MOST],
     pub(super) window: usize,
     pub(super) place: usize,
@@ -217,30 +201,35 @@ impl CodeReceiver {
         if self.reception.shift_hz > 0.0 {
             return self.heard_shifted(rates_hz);
         }
-        let all = 0..self.window;
         let on = self.on_carrier();
-        let mean = mean_of(&on.values[all.clone()], |value| value);
-        let power = power_around(&on.values[all.clone()], mean);
-        let heard = |rate_hz, level_mv, validity, snr_db, goes_on, is_clear, spell_s| {
-            (level_mv >= self.reception.level_min_mv).then_some(Heard {
-                carrier_hz: self.reception.carrier_hz + on.offset_hz,
-                rate_hz,
-                level_mv,
-                validity,
-                snr_db,
-                goes_on,
-                is_clear,
-                spell_s,
-            })
-        };
-        let is_slow = self.finer < 1.0;
+        let mean = mean_of(&on.values[..self.window], |value| value);
+        let power = power_around(&on.values[..self.window], mean);
         let flat = libm::sqrtf(2.0 * (power - on.noise).max(0.0)) < FLAT * mean;
-        if flat && on.beside < BESIDE * mean * mean {
-            // The window's ends count for little.
-            let spell_s = is_slow.then(|| [NEARLY * self.window_s(), 0.0]);
-            return heard(0.0, mean / SQRT_2, 1.0, None, true, true, spell_s);
-        }
-        let (tone, rate_hz, [is_whole, goes_on]) = self.rate(&on, mean, rates_hz)?;
+        let heard = match flat && on.beside < BESIDE * mean * mean {
+            true => Heard {
+                carrier_hz: self.reception.carrier_hz + on.offset_hz,
+                rate_hz: 0.0,
+                level_mv: mean / SQRT_2,
+                validity: 1.0,
+                snr_db: None,
+                goes_on: true,
+                is_clear: true,
+                // The window's ends count for little.
+                spell_s: self.is_slow().then(|| [NEARLY * self.window_s(), 0.0]),
+            },
+            false => self.keyed(&on, (mean, power), rates_hz)?,
+        };
+        (heard.level_mv >= self.reception.level_min_mv).then_some(heard)
+    }
+
+    /// The window holds codes that need a long one.
+    fn is_slow(&self) -> bool {
+        self.finer < 1.0
+    }
+
+    /// The code of a carrier that is not flat, with its mean and its power around that.
+    fn keyed(&self, on: &OnCarrier, (mean, power): (f32, f32), rates_hz: &[f32]) -> Option<Heard> {
+        let (tone, rate_hz, [is_whole, goes_on]) = self.rate(on, mean, rates_hz)?;
         let share = tone.power() / power;
         if share < LEAST_SHARE || tone.amplitude < LEAST_DEPTH * mean {
             return None;
@@ -251,35 +240,34 @@ impl CodeReceiver {
             && on.beside < BESIDE * keying
             && (is_whole || !is_clear);
         let share_on = on_share(tone.amplitude / mean);
-        let spell_s = match is_slow {
-            true => Some(self.spell_s(&on, (tone, rate_hz), share_on)?),
+        let spell_s = match self.is_slow() {
+            true => Some(self.spell_s(on, (tone, rate_hz), share_on)?),
             false => None,
         };
         let signal = match SHARES_ON.contains(&share_on) {
             true if code_alone => {
-                let square = mean_of(&on.values[all], |value| value * value);
+                let square = mean_of(&on.values[..self.window], |value| value * value);
                 (square - on.noise).max(0.0) / share_on
             }
             // The mean is of both codes: of one that is on for half of the time the fundamental tells.
             _ if is_whole
                 && tone.amplitude < MOST_DEPTH * mean
-                && self.is_second_code(&on, mean, tone, power, rates_hz) =>
+                && self.is_second_code(on, mean, tone, power, rates_hz) =>
             {
                 tone.amplitude * tone.amplitude * (PI / 2.0) * (PI / 2.0)
             }
             _ => return None,
         };
-        let snr_db = Some(10.0 * libm::log10f(signal / (2.0 * on.noise).max(1e-6)));
-        let level_mv = libm::sqrtf(signal / 2.0);
-        heard(
+        Some(Heard {
+            carrier_hz: self.reception.carrier_hz + on.offset_hz,
             rate_hz,
-            level_mv,
-            share.min(1.0),
-            snr_db,
+            level_mv: libm::sqrtf(signal / 2.0),
+            validity: share.min(1.0),
+            snr_db: Some(10.0 * libm::log10f(signal / (2.0 * on.noise).max(1e-6))),
             goes_on,
             is_clear,
             spell_s,
-        )
+        })
     }
 
     /// Level of a carrier that is on for half of the window, mV rms.
@@ -347,107 +335,5 @@ impl CodeReceiver {
         let powers = &mut powers[..self.window];
         let (weakest, _, _) = powers.select_nth_unstable_by(quarter, f32::total_cmp);
         weakest.iter().sum::<f32>() / quarter as f32 / WEAKER_HALF / 2.0
-    }
-
-    /// The strongest rate, what it is exactly, and whether it goes on through the window without a break, and at its end: of
-    /// the table, or of all others.
-    pub(super) fn rate(
-        &self,
-        on: &OnCarrier,
-        mean: f32,
-        table_hz: &[f32],
-    ) -> Option<(Tone, f32, [bool; 2])> {
-        let strongest = |rates: &mut dyn Iterator<Item = f32>| {
-            let tones = rates.map(|rate_hz| self.tone(on, mean, rate_hz, 0, self.window));
-            tones.max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))
-        };
-        let nearest = strongest(&mut table_hz.iter().copied())?;
-        if let Some((offset_hz, lasts)) = self.offset_of_rate(on, nearest)
-            && offset_hz.abs() < self.finer * RATE_STEP_HZ / 2.0
-        {
-            return Some((nearest, nearest.rate_hz + offset_hz, lasts));
-        }
-        let steps = ((RATES_HZ.1 - self.finer * RATES_HZ.0) / self.finer / RATE_STEP_HZ) as usize;
-        let others = (0..steps).map(|step| self.finer * (RATES_HZ.0 + step as f32 * RATE_STEP_HZ));
-        let nearest = strongest(&mut others.chain(table_hz.iter().copied()))?;
-        let (offset_hz, lasts) = self.offset_of_rate(on, nearest)?;
-        let rate_hz = nearest.rate_hz + offset_hz;
-        let tone = self.tone(on, mean, rate_hz, 0, self.window);
-        Some((tone, rate_hz, lasts))
-    }
-
-    /// By how much the code rate is above this one, Hz, from how its phase goes on: judged in three halves that overlap,
-    /// since a jump of the phase looks like another rate, and shows in the middle half.
-    fn offset_of_rate(&self, on: &OnCarrier, whole: Tone) -> Option<(f32, [bool; 2])> {
-        let half = self.window / 2;
-        let half_s = half as f32 / self.downmix.envelope_hz();
-        let few = whole.rate_hz * half_s < FEW_PERIODS;
-        let steps = if few { STEPS } else { 0 };
-        let mut halves = [whole; 3];
-        for (place, of_half) in halves.iter_mut().enumerate() {
-            let (from, to) = (place * half / 2, place * half / 2 + half);
-            let mut mean = mean_of(&on.values[from..to], |value| value);
-            *of_half = self.tone(on, mean, whole.rate_hz, from, to);
-            for _ in 0..steps {
-                mean = self.mean_beside(on, *of_half, from, to);
-                *of_half = self.tone(on, mean, whole.rate_hz, from, to);
-            }
-            let power = power_around(&on.values[from..to], mean);
-            if of_half.power() < LEAST_SHARE_OF_HALF * power {
-                return None;
-            }
-        }
-        // The phases are those at the middle of each half, of the nominal rate's own clock.
-        let turned = wrapped(halves[2].angle - halves[0].angle);
-        let offset_hz = turned / TAU / half_s;
-        let least = whole.amplitude.min(halves[1].amplitude);
-        let is_whole = least >= WHOLE * halves[0].amplitude.max(halves[2].amplitude);
-        let as_strong = halves[2].amplitude >= GOES_ON * halves[0].amplitude;
-        // One rate that becomes another next to it has the rate between them on the whole.
-        let turns = [0, 1].map(|half| wrapped(halves[half + 1].angle - halves[half].angle));
-        let bends = self.reception.shift_hz > 0.0 && wrapped(turns[1] - turns[0]).abs() > BENDS;
-        let is_whole = is_whole && !bends;
-        let goes_on = as_strong && offset_hz.abs() < self.finer * GOES_ON_HZ;
-        Some((offset_hz, [is_whole, goes_on]))
-    }
-
-    /// Mean of a part of the window beside a tone.
-    fn mean_beside(&self, on: &OnCarrier, tone: Tone, from: usize, to: usize) -> f32 {
-        let step = TAU * tone.rate_hz / self.downmix.envelope_hz();
-        let (mut at, turn) = (
-            Phasor::at(tone.angle + step * from as f32),
-            Phasor::at(step),
-        );
-        let mut sum = 0.0;
-        for (value, w) in on.values[from..to].iter().zip(hann(to - from)) {
-            sum += (value - tone.amplitude * at.re) * w;
-            at = at.times(turn);
-        }
-        sum * 2.0 / (to - from) as f32
-    }
-
-    /// Amplitude and phase of a rate in a part of the window.
-    pub(super) fn tone(
-        &self,
-        on: &OnCarrier,
-        mean: f32,
-        rate_hz: f32,
-        from: usize,
-        to: usize,
-    ) -> Tone {
-        let step = TAU * rate_hz / self.downmix.envelope_hz();
-        let (mut at, turn) = (Phasor::at(-step * from as f32), Phasor::at(-step));
-        let mut sum = Phasor::default();
-        for (value, w) in on.values[from..to].iter().zip(hann(to - from)) {
-            let of = (value - mean) * w;
-            sum.re += at.re * of;
-            sum.im += at.im * of;
-            at = at.times(turn);
-        }
-        Tone {
-            rate_hz,
-            amplitude: sum.abs() * 4.0 / (to - from) as f32,
-            angle: sum.angle(),
-        }
     }
 }

@@ -7,6 +7,7 @@ mod coils;
 mod downmix;
 mod fsk;
 mod marker;
+mod rate;
 mod second_code;
 mod sensor;
 mod shifted;

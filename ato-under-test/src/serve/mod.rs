@@ -26,9 +26,9 @@ pub use serial_end::{PORT_WAITS, SerialEnd};
 pub use sound::{DEFAULT, Listener, carrier, is_there};
 pub use steady::{Pair, Steady, TAPS};
 pub use tcp::{NO_AUTHENTICATION, check_exposed};
-pub use wire::{Place, Wire};
+pub use wire::{PortAddress, Wire};
 
-/// What is at the far end of a wire.
+/// Device at the far end of a wire.
 pub trait Served {
     /// One scan: takes what came and appends what goes out. A break ends serving.
     fn scan(&mut self, received: &[u8], to_send: &mut Vec<u8>) -> ControlFlow<()>;
@@ -43,7 +43,7 @@ pub trait Served {
 /// The wire does not work.
 #[derive(Debug)]
 pub struct ServeError {
-    /// What was done to it.
+    /// Work that failed.
     doing: String,
     source: io::Error,
 }

@@ -1,5 +1,5 @@
-//! What a sound card hears, as samples in the unit's coils; and the programs of the system that carry sound, those of
-//! PulseAudio, which PipeWire has, too, or of ALSA.
+//! Sound of a sound card as samples in the unit's coils; and the system's programs that carry it: of PulseAudio,
+//! which PipeWire has, too, or of ALSA.
 
 extern crate std;
 
@@ -19,7 +19,7 @@ use super::steady::{Pair, Steady};
 pub const DEFAULT: &str = "default";
 /// Channels: the first is the ATP antenna's, the second that of TWC and markers.
 const CHANNELS: usize = 2;
-/// How long samples wait in the sound server on their way here, ms.
+/// Time for which samples wait in the sound server on their way here, ms.
 const LATENCY_MS: u32 = 20;
 /// Samples that are to wait here, 40 ms: more than a block of the sound server and a scan together.
 const WAITING: usize = 4 * COIL_SAMPLES;
@@ -80,12 +80,12 @@ pub fn is_there(program: &str) -> bool {
 /// Listens at a sound card.
 pub struct Listener {
     child: Child,
-    /// What was heard, mV; `None` = the program that carries it has ended.
+    /// Level that was heard, mV; `None` = the program that carries the sound has ended.
     heard: Arc<Mutex<Option<Steady>>>,
 }
 
 impl Listener {
-    /// Listens at a device, of which a whole sample stands for so many mV.
+    /// Listens at a device, a whole sample of which stands for this number of mV.
     ///
     /// # Errors
     /// Nothing here carries sound.
@@ -121,7 +121,7 @@ impl Listener {
         Ok(Self { child, heard })
     }
 
-    /// What was heard in a scan: the steps of each channel's samples.
+    /// Samples of a scan, as steps of each channel.
     ///
     /// # Errors
     /// The device is gone.
@@ -138,7 +138,7 @@ impl Listener {
 
 impl Drop for Listener {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The process may have ended by itself.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -30,7 +30,7 @@ pub struct Steady {
 }
 
 impl Steady {
-    /// So many samples are to wait.
+    /// A buffer that keeps `aim` samples waiting.
     pub fn new(aim: usize) -> Self {
         let middle = (TAPS / 2 - 1) as f64;
         let tap = |place: usize, tap: usize| {
@@ -123,7 +123,7 @@ mod tests {
                 steady.push((made..until).map(tone));
                 made = until;
                 steady.take(&mut out);
-                // Of three samples a third of a turn apart the squares add up to 1.5.
+                // The squares of three samples a third of a turn apart add up to 1.5.
                 let power: f32 = out.iter().map(|pair| pair[0] * pair[0]).sum();
                 if block > 10 {
                     worst = worst.max((f64::from(power) / 240.0 - 1.0).abs());

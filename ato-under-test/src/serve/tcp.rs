@@ -25,7 +25,7 @@ const LEAVES_WITHIN: Duration = Duration::from_ms(1000);
 /// Newcomers attended to at once; others wait for them in the system's queue.
 const MOST_COMING: usize = 16;
 
-/// What is to be known of every unit at a TCP address.
+/// Warning about every unit at a TCP address.
 pub const NO_AUTHENTICATION: &str =
     "there is no authentication: whoever reaches this address has the unit";
 
@@ -33,7 +33,7 @@ pub const NO_AUTHENTICATION: &str =
 /// listens there.
 ///
 /// # Errors
-/// What to do instead, for a person.
+/// Other computers reach the address; the text says what to do instead.
 pub fn check_exposed(address: &str, expose: bool) -> Result<(), String> {
     let mut found = address.to_socket_addrs().into_iter().flatten();
     match !expose && found.any(|at| !at.ip().is_loopback()) {
@@ -69,7 +69,7 @@ struct SecondClient {
     stream: TcpStream,
     address: SocketAddr,
     since: Instant,
-    /// It was sent who has the unit.
+    /// The client was sent `Taken`, which says who has the unit.
     answered: bool,
 }
 
@@ -197,7 +197,7 @@ impl Server {
 }
 
 impl Client {
-    /// What another client is sent, as a frame.
+    /// Frame that tells another client who has the unit.
     fn taken(&self, now: Instant) -> Vec<u8> {
         let ip = match self.address.ip() {
             IpAddr::V4(ip) => ip.to_ipv6_mapped(),
@@ -243,7 +243,8 @@ fn is_of_one_client(error: &io::Error) -> bool {
 mod tests {
     use super::*;
 
-    /// What a server that is `behind` its time hears of a client that spoke before it was taken.
+    /// Bytes that a server which is `behind` its time hears of a client that spoke before it was
+    /// taken.
     fn heard(behind: Duration) -> usize {
         let (mut server, at) = Server::listen("127.0.0.1:0").unwrap();
         let mut client = TcpStream::connect(at).unwrap();

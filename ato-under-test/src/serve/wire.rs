@@ -18,7 +18,7 @@ use super::tcp::Server;
 const BAUD: u32 = 115_200;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum PortAddress {
     /// On a new pseudo-terminal.
     Pty,
     /// On a serial port.
@@ -27,7 +27,7 @@ pub enum Place {
     Tcp(String),
 }
 
-impl Place {
+impl PortAddress {
     /// A serial port, `PATH` or `PATH@BAUD`.
     ///
     /// # Errors
@@ -66,10 +66,10 @@ impl Wire {
     ///
     /// # Errors
     /// The system has no such port, or another program has it.
-    pub fn open(place: &Place) -> Result<Self, ServeError> {
+    pub fn open(place: &PortAddress) -> Result<Self, ServeError> {
         match place {
-            Place::Pty => Self::open_pty(false),
-            Place::Serial { path, baud } => {
+            PortAddress::Pty => Self::open_pty(false),
+            PortAddress::Serial { path, baud } => {
                 let port = serialport::new(path, *baud)
                     .timeout(PORT_WAITS)
                     .open()
@@ -80,7 +80,7 @@ impl Wire {
                     end: FarEnd::Serial(SerialEnd(port)),
                 })
             }
-            Place::Tcp(address) => {
+            PortAddress::Tcp(address) => {
                 let (server, at) = Server::listen(address)
                     .map_err(ServeError::new(format!("listening on {address}")))?;
                 Ok(Self {

@@ -1,14 +1,14 @@
-//! What is wrong with the TEST board: the injected faults that act on its outputs.
+//! Defects of the TEST board: the injected faults that act on its outputs.
 
 use protocol::injection::{Effect, Place};
 
-use crate::front_end::Faults;
+use crate::faults::Faults;
 use crate::signals::AntennaSignal;
 
 /// The board's faults of the present scan.
 #[derive(Clone, Copy, Debug)]
 pub struct Defects {
-    /// It makes nothing and does not answer.
+    /// The board makes no signal and does not answer.
     pub dead: bool,
     /// Pulses made for one that should be.
     pub speed_gain: f64,

@@ -14,7 +14,7 @@ use protocol::message::{
 };
 use protocol::{Instant, Speed};
 
-use crate::front_end::Faults;
+use crate::faults::Faults;
 use crate::signals::{AntennaSignal, Pulses};
 use defects::Defects;
 use modem::TestModem;

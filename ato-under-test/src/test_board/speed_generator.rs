@@ -4,8 +4,8 @@
 use protocol::message::TestSpeed;
 use protocol::{Duration, Instant, SCAN, Speed};
 
-use crate::atp::Speedometer;
 use crate::signals::Pulses;
+use crate::speedometer::Speedometer;
 
 /// Acceleration when none is asked for, mm/s².
 const OWN_ACCEL_MMS2: u16 = 3000;
@@ -22,7 +22,7 @@ pub struct SpeedGenerator {
 }
 
 impl SpeedGenerator {
-    /// At rest, for tachometers of this resolution.
+    /// A generator at rest, for tachometers of this resolution.
     pub fn new(metres_per_pulse: f64) -> Self {
         Self {
             metres_per_pulse,
@@ -33,7 +33,7 @@ impl SpeedGenerator {
         }
     }
 
-    /// Goes to another speed from the one it has.
+    /// Goes from the present speed to another one.
     pub fn go(&mut self, mut request: TestSpeed) {
         if request.accel_mms2 == 0 {
             request.accel_mms2 = OWN_ACCEL_MMS2;

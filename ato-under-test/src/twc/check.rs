@@ -8,7 +8,7 @@ use protocol::message::{DoorSide, TwcWayside};
 
 use crate::guards::Guards;
 
-/// What the data say that the track database does not: its event, with the parameter.
+/// Event, with its parameter, for data that contradict the track database.
 pub fn contradiction(data: &TwcWayside, line: &Line, guards: Guards) -> Option<(Event, i32)> {
     let unknown = (Event::TwcStationInvalid, i32::from(data.station));
     let Some(section) = line.section(data.section) else {

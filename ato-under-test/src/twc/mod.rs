@@ -27,7 +27,8 @@ pub struct TrainState {
     pub speed: Speed,
 }
 
-/// Who sent station data into the TWC antenna and hears the answer, with the sequence number of its frame.
+/// Sender of station data into the TWC antenna, which hears the answer, with the sequence number of its
+/// frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StationSender {
     Loop(u16),
@@ -60,7 +61,7 @@ pub struct Twc {
     valid: bool,
     refusal_reported: Option<(Event, i32)>,
     ordered: Option<Ordered>,
-    /// Why the last orders were refused, if they were.
+    /// Event of the last refused orders, with its parameter.
     orders_refusal: Option<(Event, i32)>,
     /// Train that data were for last, and when.
     other_train: Option<(u16, Instant)>,
@@ -125,7 +126,8 @@ impl Twc {
         self.refusal_reported = refusal;
     }
 
-    /// Whether a frame is for another train. Such are counted, and logged once for as long as they come.
+    /// Whether a frame is for another train. Such frames are counted, and logged once for as long as
+    /// they come.
     fn passes_over(
         &mut self,
         now: Instant,

@@ -71,8 +71,8 @@ impl Twc {
     }
 }
 
-/// What the orders say that the track database does not: its event, with the parameter. Stations are those of `route`,
-/// or of any while no station data are in force.
+/// Event, with its parameter, for orders that contradict the track database. Stations are those of `route`, or of
+/// any while no station data are in force.
 fn contradiction(
     orders: &TwcOrders,
     route: Option<u16>,

@@ -18,7 +18,7 @@ use crate::receivers::Coils;
 use crate::setup::Setup;
 use crate::twc::StationSender;
 
-/// What came through the TWC antenna.
+/// Data that came through the TWC antenna.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum FromWayside {
     Station(StationSender, TwcWayside),
@@ -93,7 +93,7 @@ impl Unit {
         self.coils.get_or_insert_with(new).hear(heard);
     }
 
-    /// What came through the loop as tones is frames again, which are received as any others.
+    /// Receives the tones of the loop as frames, like any others.
     fn hear_loop(&mut self) {
         if let Some(coils) = &mut self.coils {
             self.ports.link_mut(Port::Loop).push(coils.twc_bytes());
@@ -140,7 +140,7 @@ impl Unit {
         }
     }
 
-    /// What the TWC CPU hands on of station data, and when; `None` = nothing.
+    /// Station data that the TWC CPU hands on, and when; `None` = nothing.
     pub(super) fn hand_on(
         &self,
         now: Instant,

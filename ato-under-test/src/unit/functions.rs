@@ -1,4 +1,4 @@
-//! What the unit knows and decides from one set of inputs: ATP, TWC data, PSM and ATO.
+//! Knowledge and decisions of the unit from one set of inputs: ATP, TWC data, PSM and ATO.
 //!
 //! A scan is protection and position, a cycle is station data, mode and ATO. Nothing here drives an output: the
 //! unit does that with what its functions ask for.
@@ -15,7 +15,8 @@ use crate::ato::{Ato, AtoOutputs};
 use crate::atp::{Atp, Code, ModeInputs, ScanContext};
 use crate::com::TcmsLink;
 use crate::driverless::{Cabs, Stabling, Station, StationInputs};
-use crate::front_end::{EffortOutput, Faults};
+use crate::faults::Faults;
+use crate::front_end::EffortOutput;
 use crate::guards::Guards;
 use crate::kernel::{EventLog, FreezeFrame, SelfTester, Watchdog};
 use crate::psm::{Debounce, Locator, Movement, TachoCompare, Tra, WheelMotion};
@@ -24,7 +25,7 @@ use crate::signals::{Inputs, MarkerPulse};
 use crate::timer::Edge;
 use crate::twc::{TrainState, Twc};
 
-/// What the functions look at beside their inputs.
+/// Data that the functions need beside their inputs.
 pub struct Surroundings<'a> {
     pub setup: &'a Setup,
     pub self_tester: &'a SelfTester,
@@ -32,7 +33,7 @@ pub struct Surroundings<'a> {
     pub tra: &'a Tra,
     pub faults: &'a Faults,
     pub guards: Guards,
-    /// The brake line has followed the relay, and others have opened it since.
+    /// The brake line has followed the relay, and something else has opened the line since.
     pub line_fell: bool,
     /// The harness has been alive at least once.
     pub ever_heard: bool,
@@ -47,7 +48,7 @@ pub struct Functions {
     pub twc: Twc,
     pub locator: Locator,
     debounce: Debounce,
-    /// Station data are of another place than that at which the train is known to stand.
+    /// Station data name another place than the known place of the standing train.
     elsewhere: Edge,
     /// A section began in this cycle.
     relocated: bool,
@@ -65,7 +66,7 @@ pub struct Functions {
 }
 
 impl Functions {
-    /// As at power-up: nothing is known, the brake is applied.
+    /// Functions at power-up: nothing is known, the brake is applied.
     pub fn new(config: &UnitConfig) -> Self {
         Self {
             inputs: Inputs::default(),
@@ -152,7 +153,8 @@ impl Functions {
             tcms_holds: around.tcms.overrides(),
             ato_powers: self.ato_outputs.effort > 0,
             jogs_backward: self.ato_outputs.jogs_backward,
-            // Behind its last marker alone; wheels may be wrong by more than an overrun.
+            // An overrun counts only behind the section's last marker: wheels may be wrong by more
+            // than an overrun.
             overrun_m: self
                 .locator
                 .to_stop_m()
@@ -217,7 +219,7 @@ impl Functions {
         self.atp.tachometers().standstill() && self.locator.aligned()
     }
 
-    /// On the arrival station's loop, with valid station data.
+    /// Whether the train is on the arrival station's loop, with valid station data.
     pub(super) fn at_platform(&self) -> bool {
         let on_loop = self.twc.data().zip(self.locator.section());
         self.twc.valid() && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
@@ -236,7 +238,7 @@ impl Functions {
             })
     }
 
-    /// What the train says of itself to the wayside.
+    /// State of the train, as told to the wayside.
     pub fn train_state(&self) -> TrainState {
         let tachometers = self.atp.tachometers();
         TrainState {
@@ -287,13 +289,14 @@ impl Functions {
         self.twc.data().filter(|_| !refused)
     }
 
-    /// Departure as valid station data have it, given or withheld; `None` = nothing is heard, or no run may begin.
+    /// Departure in valid station data, given or withheld; `None` = no data, or no run may begin.
     fn departure(&self, around: &Surroundings<'_>) -> Option<bool> {
         let data = self.station_data()?;
         (!around.barred).then_some(data.departure == 1)
     }
 
-    /// ATO holds the train, driving or at a station; so it stays when ATO has failed, until the driver takes it.
+    /// ATO holds the train, while driving or at a station. After a failure of ATO the train stays held until the
+    /// driver moves the controller.
     pub fn holds(&self) -> bool {
         let left_alone = self.atp.sequence().failed()
             && self.atp.tachometers().standstill()
@@ -347,7 +350,8 @@ impl Functions {
                 ModeSwitch::Off
             },
             lacking,
-            // At its stop point it has nowhere to run: data of the next section are still to come.
+            // A train at its stop point has nowhere to run: data of the next section are still to
+            // come.
             departure: heard == Some(true) && !self.aligned(),
             heard,
             start: !around.barred && lines.contains(TrainLines::START),
@@ -361,7 +365,8 @@ impl Functions {
         }
     }
 
-    /// The reverser is not forward, where ATO drives. ATP itself refuses a jog with it at neutral, and tells that.
+    /// The reverser is not forward while ATO drives. A jog with the reverser at neutral is refused by ATP itself,
+    /// which reports it.
     fn turned(&self) -> bool {
         let lines = self.inputs.lines;
         let forward = lines.contains(TrainLines::FORWARD) && !lines.contains(TrainLines::BACKWARD);

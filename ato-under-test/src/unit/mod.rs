@@ -22,9 +22,10 @@ use protocol::{Duration, Instant};
 
 use crate::com::{IoImage, Maintenance, Port, Ports, RejectWatch, TcmsLink};
 use crate::driverless::Stabling;
+use crate::faults::Faults;
 use crate::flash::{BlockDevice, Memory, RamFlash};
 use crate::front_end::{
-    DelayQueue, Faults, FrontEnd, OutputStage, PowerAndClock, RelayWatch, ScannedInputs, Supply,
+    DelayQueue, FrontEnd, OutputStage, PowerAndClock, RelayWatch, ScannedInputs, Supply,
     apply_stored_data_faults, atp_gain,
 };
 use crate::guards::Guards;
@@ -52,7 +53,7 @@ pub struct Unit {
     maintenance: Maintenance,
     board: TestBoard,
     self_tester: SelfTester,
-    /// Those of the train; nothing of test signals gets into them.
+    /// Functions that see the train; nothing of test signals gets into them.
     functions: Functions,
     test_mode: Option<TestMode>,
     scanned: ScannedInputs,
@@ -67,7 +68,7 @@ pub struct Unit {
     faults: Faults,
     guards: Guards,
     power: PowerAndClock,
-    /// What a slow TWC CPU has not handed on yet.
+    /// Data that a slow TWC CPU has not handed on yet.
     late: DelayQueue<FromWayside>,
     /// Number of the unit's own train.
     number: OwnNumber,
@@ -77,7 +78,7 @@ pub struct Unit {
     front_end: FrontEnd,
     output_stage: OutputStage,
     relay_watch: RelayWatch,
-    /// What was asked of the contacts in this scan, and what they do.
+    /// States asked of the contacts in this scan, and then their actual states.
     commanded: Outputs,
     contacts: Outputs,
     /// Count of markers, and when it last changed, ms since power-up.

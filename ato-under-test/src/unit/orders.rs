@@ -133,7 +133,7 @@ impl Functions {
         }
     }
 
-    /// What an order needs and the train is not.
+    /// Conditions of an order that the train lacks.
     fn lacks(&self, order: TrainOrder, armed: bool) -> OrderLacks {
         let mut lacks = OrderLacks::empty();
         lacks.set(OrderLacks::DISARMED, armed);
@@ -201,7 +201,6 @@ impl Functions {
         self.inputs.mode_switch == ModeSwitch::Driverless
     }
 
-    /// How far the last order is carried out.
     pub(super) fn order_state(&self) -> OrderState {
         match (self.stabling.state(), self.cabs.state()) {
             // A train that is ready for a departure may have changed its cabs meanwhile.

@@ -1,5 +1,5 @@
-//! What the contacts do, and what TCMS is sent: what the functions ask for, and while a tester is armed never more
-//! than lets a train stand.
+//! States of the contacts, and frames to TCMS: those that the functions ask for, and while a tester is armed never
+//! more than lets a train stand.
 
 use protocol::Instant;
 use protocol::message::{Mode, Outputs};
@@ -13,7 +13,7 @@ const EITHER: Outputs = Outputs::FSB
     .union(Outputs::POWER_CUT)
     .union(Outputs::ALARM)
     .union(Outputs::HOLDING_BRAKE);
-/// Both must ask for these: what releases the train, or says that it is well.
+/// Outputs that both instances must set: they release the train, or say that the unit is well.
 const BOTH: Outputs = Outputs::EB_RELAY
     .union(Outputs::STANDSTILL)
     .union(Outputs::HEALTHY);
@@ -26,12 +26,12 @@ impl Unit {
             .map_or(&self.functions, |mode| &mode.functions)
     }
 
-    /// What the functions that a tester sees ask for.
+    /// Outputs of the functions that a tester sees.
     pub(super) fn asked(&self) -> Outputs {
         self.outputs_of(self.tested())
     }
 
-    /// What the contacts should do.
+    /// Outputs that the contacts should have.
     pub(super) fn wanted(&self, now: Instant) -> Outputs {
         let train = self.outputs_of(&self.functions);
         if !self.maintenance.holds_brake(now) {

@@ -67,7 +67,8 @@ fn code_index(unit: &Unit) -> u8 {
     }
 }
 
-/// What the unit does to the train and has from it, at the end of a scan.
+/// State that the unit reports to a tester at the end of a scan: its outputs to the train and its
+/// inputs from it.
 pub fn train_state(unit: &Unit, now: Instant) -> TrainState {
     let (train, tested) = (&unit.functions, unit.tested());
     let speeds = [0, 1].map(|channel| train.atp.tachometers().channel(channel).to_cms());
@@ -113,7 +114,7 @@ pub fn train_state(unit: &Unit, now: Instant) -> TrainState {
     }
 }
 
-/// Why the relay is open.
+/// Cause for which the relay is open.
 fn eb_cause(unit: &Unit) -> EbCause {
     let held = unit.test_mode.is_some() && !unit.commanded.contains(Outputs::EB_RELAY);
     shown_cause(&unit.tested().atp, &unit.functions.atp, held)

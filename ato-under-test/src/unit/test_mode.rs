@@ -37,7 +37,7 @@ pub struct TestMode {
     moved_m: [f64; 2],
     mode_switch: ModeSwitch,
     code: Code,
-    /// Until when the receiver may still hear a code that was over at arming.
+    /// Time until which the receiver may still hear a code that was over at arming.
     heard_until: Option<Instant>,
     other_code: OnDelay,
     unbraked: OnDelay,

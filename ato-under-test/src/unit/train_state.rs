@@ -11,7 +11,7 @@ use super::{Unit, report};
 /// Scans in which no second frame is sent for changes, so that the bytes of the line suffice.
 const SPACING: u8 = 3;
 
-/// What a frame dates to its scan.
+/// Values that a frame dates to its scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Dated {
     outputs: Outputs,

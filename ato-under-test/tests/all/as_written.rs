@@ -264,7 +264,7 @@ fn the_test_board_refuses_what_it_cannot_make_and_nothing_else() {
     }
 }
 
-/// What a bench does while the unit is watched.
+/// Act of a bench while the unit is watched.
 type Act = Box<dyn Fn(&mut Bench)>;
 
 /// All that a unit in automatic mode, ready to depart, says while this is done to it.
@@ -513,7 +513,7 @@ impl Player {
         }
     }
 
-    /// What was said under this name within the last cycles.
+    /// Messages of this name within the last cycles.
     fn said(&self, name: &str) -> Vec<Message> {
         let lately = |at: Instant| self.now.since(at) < Duration::from_ms(100);
         let heard = self.heard.iter().rev().take_while(|(at, _)| lately(*at));

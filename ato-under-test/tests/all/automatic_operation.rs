@@ -222,7 +222,8 @@ fn full_power_that_does_not_end_is_noticed() {
     assert!(journey.stop_error_m() < 0.0, "{}", journey.stop_error_m());
 }
 
-/// Its outputs stay as they were until the watchdog bites; then ATP brakes and ATO says why.
+/// Outputs of a stopped processor stay as they were until the watchdog bites; then ATP brakes and
+/// ATO says why.
 #[test]
 fn a_processor_that_stops_on_the_way_is_noticed_by_the_watchdog() {
     let dead = fault_from(Place::AtoCpu, Effect::Dead, 20.0);
@@ -242,7 +243,7 @@ fn a_processor_that_stops_on_the_way_is_noticed_by_the_watchdog() {
     assert_eq!(journey.parameters("ato_failed"), [processor]);
 }
 
-/// Both tachometers keep saying the same while ATO powers.
+/// Tachometers that both keep their value while ATO powers are frozen.
 #[test]
 fn a_frozen_speed_stops_the_train() {
     let mut journey = Journey::new(&[]).until_position(60.0);

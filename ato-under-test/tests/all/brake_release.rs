@@ -1,4 +1,4 @@
-//! Who may release the emergency brake: no person as long as its cause holds, and an attempt is answered with what holds.
+//! Release of the emergency brake: no person as long as its cause holds, and an attempt is answered with what holds.
 
 use crate::common::{Bench, fault};
 use protocol::event::Event;

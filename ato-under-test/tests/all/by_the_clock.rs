@@ -13,7 +13,7 @@ use crate::served::{Client, Unit};
 /// A client of which nothing is heard is let go after this time, and what a busy machine may add.
 const SILENT: Duration = Duration::from_secs(10);
 const SLACK: Duration = Duration::from_secs(3);
-/// How often a client acts.
+/// Interval at which a client acts.
 const EVERY: Duration = Duration::from_millis(100);
 
 fn taken(heard: &[Message]) -> Option<Taken> {

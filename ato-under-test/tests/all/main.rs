@@ -1,4 +1,4 @@
-//! What the unit promises, in process and in virtual time.
+//! Promises of the unit, in process and in virtual time.
 
 mod as_written;
 mod ato_inputs;

@@ -1,4 +1,4 @@
-//! What the unit promises to a tester: arming, stimuli, the event log.
+//! Promises of the unit to a tester: arming, stimuli, the event log.
 
 use crate::common::Bench;
 use protocol::injection::FaultMode;
@@ -9,7 +9,7 @@ use protocol::message::{
 
 pub const SESSION: u32 = 0xBEEF;
 
-/// Why the unit refuses to arm; `None` = it is armed.
+/// Reason for which the unit refuses to arm; `None` = it is armed.
 pub fn arm(bench: &mut Bench) -> Option<ArmRefusal> {
     bench.answers.clear();
     bench.send(ArmRequest { session: SESSION });

@@ -1,4 +1,4 @@
-//! What the unit promises on the maintenance port, where a laptop is connected aboard a train.
+//! Promises of the unit on the maintenance port, where a laptop is connected aboard a train.
 
 use ato_under_test::Port;
 use protocol::link::{End, Link};

@@ -26,10 +26,10 @@ const FILLED: usize = 3200;
 const HELD_UP: Duration = Duration::from_millis(100);
 /// Rounds that may be spoiled by that, beside one in ten.
 const MOST_SPOILED: u64 = 3;
-/// Memory after the first tenth may grow by one part of so many.
+/// After the first tenth memory may grow by one part in this many.
 const MOST_GROWTH: u64 = 10;
 
-/// What came of a campaign.
+/// Figures of a campaign.
 #[derive(Clone, Default)]
 struct Figures {
     kinds: [u64; Kind::ALL.len()],

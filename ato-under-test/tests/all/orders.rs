@@ -79,7 +79,7 @@ impl Wayside {
         });
     }
 
-    /// Gives an order for a second; the state of it then.
+    /// Gives an order for a second, and returns its state then.
     fn order(&mut self, order: TrainOrder) -> OrderState {
         self.orders.order = order;
         self.run(1.0);
@@ -117,7 +117,7 @@ impl Wayside {
     }
 }
 
-/// At the end of the first section.
+/// Station data at the end of the first section.
 fn arrival() -> TwcWayside {
     let sections = line().sections;
     TwcWayside {

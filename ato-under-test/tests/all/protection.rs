@@ -1,4 +1,4 @@
-//! What the unit promises about braking, seen from the wire.
+//! Promises of the unit about braking, seen from the wire.
 
 use crate::common::{Bench, fault};
 use protocol::injection::{Effect, Place};

@@ -95,7 +95,7 @@ fn each_part_that_fails_later_fails_its_item_and_the_log_names_it() {
     let cases = [
         (Place::Memory, Effect::StuckOn, SelfTest::MEMORY, 4),
         (Place::EbRelay, Effect::StuckOn, SelfTest::EB_RELAY, 460),
-        // It drops what it does not energise.
+        // The relay drops, as nothing energises it.
         (Place::EbRelay, Effect::StuckOff, SelfTest::EB_RELAY, 0),
         (
             Place::EbRelay,

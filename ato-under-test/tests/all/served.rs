@@ -100,11 +100,11 @@ impl Client {
     }
 
     pub fn write(&mut self, bytes: &[u8]) {
-        // Who has been turned away may not be able to write any more.
+        // A client that has been turned away may not be able to write any more.
         let _ = self.stream.write_all(bytes);
     }
 
-    /// What arrives within the next few milliseconds.
+    /// Messages that arrive within the next few milliseconds.
     pub fn hear(&mut self) -> Vec<Message> {
         let mut chunk = [0; 4096];
         match self.stream.read(&mut chunk) {

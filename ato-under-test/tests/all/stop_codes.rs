@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::message::{EbCause, FsbCause, ModeSwitch, Outputs, TcmsToAtcBits};
 
-/// What says stop.
+/// Signal that demands a stop.
 #[derive(Clone, Copy, Debug)]
 enum Stop {
     Code0,
@@ -65,7 +65,7 @@ fn a_creep_under_a_stop_is_braked_and_then_braked_by_the_emergency_brake() {
     }
 }
 
-/// What stands may be pushed: less than 0.3 m/s, and less than half a metre on end.
+/// A standing train may be pushed: slower than 0.3 m/s, and less than half a metre on end.
 #[test]
 fn a_roll_below_the_tolerance_of_standstill_is_not_braked_and_one_that_does_not_end_is() {
     let mut bench = standing_under(Stop::Code0, &[]);
@@ -160,14 +160,14 @@ fn code_lost() -> Bench {
     bench
 }
 
-/// At 200 m of section 61, ATO running, and this is done to it.
+/// A bench at 200 m of section 61 with ATO running, after `act`.
 fn on_the_way(faults: &[FaultMode], act: impl Fn(&mut Bench)) -> Bench {
     let mut journey = Journey::new(faults).until_position(200.0);
     act(&mut journey.bench);
     journey.bench
 }
 
-/// In the loop that it departs from.
+/// A bench that loses TWC in the loop of its departure.
 fn twc_lost() -> Bench {
     let mut bench = Journey::new(&[]).until_position(12.0).bench;
     bench.station = None;

@@ -1,4 +1,4 @@
-//! What the unit promises of its stored memory: to a tester, over power-ups, and to one of version 1.
+//! Promises of the unit's stored memory: to a tester, over power-ups, and to one of version 1.
 
 use ato_under_test::flash::{BlockDevice, RamFlash};
 use ato_under_test::{Port, Unit};

@@ -20,7 +20,7 @@ fn running(kmh: f64) -> Bench {
     bench
 }
 
-/// The same, and tachometer 2 tells so many times the speed.
+/// A running train whose tachometer 2 tells `factor` times the speed.
 fn unlike(kmh: f64, factor: f64) -> Bench {
     let mut bench = running(kmh);
     let sound_mps = bench.speeds[0];
@@ -84,7 +84,7 @@ fn the_one_that_counts_another_way_between_markers_is_named() {
     }
 }
 
-/// Both alike: the diameter that the unit is set to is wrong, and neither sensor.
+/// Tachometers that deviate alike name no sensor: the diameter set in the unit is wrong.
 #[test]
 fn wheels_of_another_size_name_no_sensor() {
     let mut journey = Journey::new(&[]);

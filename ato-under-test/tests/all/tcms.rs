@@ -1,5 +1,5 @@
-//! What TCMS tells the unit: who opens the emergency brake line, what lets a train not run, and whose
-//! fault it is that a train does not do what ATO asks.
+//! Reports of TCMS to the unit: who opens the emergency brake line, what lets a train not run, and
+//! whose fault it is that a train does not do what ATO asks.
 
 use crate::common::{Bench, fault};
 use crate::journey::Journey;
@@ -164,7 +164,7 @@ fn what_tcms_does_by_itself_is_not_the_units_fault() {
         let error_m = journey.stop_error_m();
         assert!(error_m.abs() < 0.3, "{bits:?}: {error_m}");
         let mut faults = journey.faults();
-        // It stood on the way, where no door may open.
+        // The train stood on the way, where no door may open.
         faults.retain(|event| *event != "door_enable_refused");
         assert_eq!(faults, [""; 0], "{bits:?}");
     }
@@ -232,7 +232,7 @@ fn a_train_with_little_power_runs_late_and_is_told() {
     assert!(journey.stop_error_m().abs() < 0.3);
 }
 
-/// What ATO's processor makes of its own effort is read back: then it is not the train that withholds.
+/// The effort that ATO's processor spoils is read back: then the train is not said to withhold it.
 #[test]
 fn an_effort_that_is_spoilt_before_it_is_sent_stays_atos() {
     let limited = fault(Place::AtoCpu, Effect::Limit { to: 100.0 });

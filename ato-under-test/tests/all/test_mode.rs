@@ -1,5 +1,5 @@
-//! What the unit promises while a tester is armed: the train stands and stays braked, whatever test signals say, and
-//! nothing of them is left afterwards.
+//! Promises of the unit while a tester is armed: the train stands and stays braked, whatever test signals say, and
+//! no test signal is left afterwards.
 
 use crate::common::{Bench, departure, fault, line, test_station};
 use crate::maintenance::{SESSION, arm};
@@ -73,7 +73,7 @@ fn departing(faults: &[FaultMode]) -> Bench {
     bench
 }
 
-/// What must hold in every scan while a tester is armed.
+/// Invariants in every scan while a tester is armed.
 fn held(bench: &Bench) -> Result<(), String> {
     let outputs = bench.output.outputs;
     let to_tcms = &bench.to_tcms;
@@ -415,8 +415,8 @@ fn ready(automatic: bool) -> Bench {
     bench
 }
 
-/// The same by numbers: as many sequences as the promise is made for, a hundred on each unit, which is brought back
-/// to rest and armed where it is not.
+/// No sequence of acts releases an armed train, by numbers: as many sequences as the promise is made for, a hundred
+/// on each unit, which is brought back to rest and armed where it is not.
 #[test]
 #[ignore = "minutes: cargo test --release -p ato-under-test --test all -- --ignored sequences"]
 fn a_million_sequences_release_no_armed_train() {

@@ -1,4 +1,4 @@
-//! What leaves the TEST board, and what the unit answers its TEST modem through the TWC antenna.
+//! Signals that leave the TEST board, and answers to its TEST modem through the TWC antenna.
 
 use crate::common::{Bench, departure, fault, line, test_station};
 use crate::maintenance::{SESSION, answer_to, armed_with};

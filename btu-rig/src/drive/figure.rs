@@ -2,7 +2,6 @@
 
 use super::Metrics;
 
-/// A figure of a run.
 #[derive(Debug)]
 pub struct Figure {
     /// Key in JSON and CSV, ending in its unit.

@@ -12,7 +12,7 @@ use crate::procedure::{EventSource, UnitEvent};
 
 /// Share of the highest target that counts as reached.
 const REACHED: f64 = 0.99;
-/// Holding a target for so many rows, 1 s, is driving at it.
+/// Rows, 1 s, for which a held target counts as driving at the target.
 const HOLDS_ROWS: usize = 20;
 /// Targets up to here are the approach's own, km/h.
 const APPROACH_KMH: f64 = 10.0;

@@ -63,7 +63,7 @@ const COASTS: Duration = Duration::from_ms(60_000);
 /// Distance after which the train has left the departure station's loop, m.
 const LOOP_LEFT_M: f64 = 50.0;
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
@@ -90,7 +90,7 @@ pub enum Ending {
     /// The unit applied the emergency brake; the train stands.
     #[error("emergency brake{}", because(*.cause))]
     EmergencyBrake {
-        /// Why, if the unit said.
+        /// Cause of the brake, if the unit said it.
         cause: Option<EbCause>,
     },
     /// ATP took the train out of Automatic Run while it moved; it stands, or rolls on.
@@ -121,7 +121,6 @@ fn into(mode: Option<Mode>) -> String {
     mode.map_or_else(String::new, |mode| format!(": mode {}", mode.label()))
 }
 
-/// What a run came to.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub ending: Ending,
@@ -151,7 +150,7 @@ enum Phase {
     Leaving {
         since: Instant,
     },
-    /// It moves, or stands after having moved.
+    /// The train moves, or stands after having moved.
     Running {
         since: Instant,
         stands: Option<Instant>,
@@ -358,7 +357,7 @@ impl Drive {
         Duration::from_us(RUN_BASE.as_us() + at_slowest.as_us())
     }
 
-    /// What it all came to.
+    /// Ends the run and gives its result.
     fn end(&mut self, ending: Ending) -> Outcome {
         self.phase = Phase::Over;
         let mut recording = std::mem::take(&mut self.recording);

@@ -16,9 +16,7 @@ pub enum PlanError {
     /// The line has no such section.
     #[error("line {line} has no section {section}; it has {known}")]
     NoSection {
-        /// Name of the line.
         line: String,
-        /// Number that was asked for.
         section: u16,
         /// Numbers of its sections, with commas.
         known: String,
@@ -26,7 +24,6 @@ pub enum PlanError {
     /// A code is not in the unit's code table.
     #[error("section {section}: code \"{code}\" is not in the code table; it has {known}")]
     NoCode {
-        /// Number of the section.
         section: u16,
         /// Name that the track database has.
         code: String,
@@ -54,7 +51,7 @@ pub enum Load {
     Empty,
     /// Full load of the train's data, kg.
     Full,
-    /// So many, kg.
+    /// Mass of the passengers, kg.
     Passengers(f64),
 }
 
@@ -76,7 +73,7 @@ impl FromStr for Load {
 /// Speed codes of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Codes {
-    /// Those the section has, each from its place on.
+    /// Codes of the section, each from its place on.
     Along,
     /// One from start to end.
     Fixed(Stimulus),
@@ -97,7 +94,7 @@ pub struct DrivePlan {
     pub train: TrainData,
     /// Passengers, kg.
     pub load_kg: f64,
-    /// How train and track differ from the unit's configuration.
+    /// Differences of train and track from the unit's configuration.
     pub conditions: Conditions,
     /// The tester listens: unit's own position, refusals and log. Without it a run is quicker.
     pub tester: bool,
@@ -135,7 +132,7 @@ impl DrivePlan {
         })
     }
 
-    /// What the departure station's loop sends, departure given.
+    /// Station data of the departure station's loop, departure given.
     pub(super) fn at_departure(&self) -> StationData {
         StationData {
             departure: true,
@@ -143,7 +140,7 @@ impl DrivePlan {
         }
     }
 
-    /// What the arrival station's loop sends.
+    /// Station data of the arrival station's loop.
     pub(super) fn at_arrival(&self) -> StationData {
         StationData::at_arrival(&self.section, self.onward_station)
     }
@@ -162,7 +159,7 @@ pub(super) fn fixed_code(
     })
 }
 
-/// The same; `None` = the table has no such code.
+/// The code of this name as a stimulus of the antenna; `None` = the table has no such code.
 pub fn code_in_antenna(config: &UnitConfig, name: &str) -> Option<Stimulus> {
     let code = &config.codes[find_code(&config.codes, name)?];
     Some(Stimulus::Code {

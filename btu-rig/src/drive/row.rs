@@ -1,4 +1,4 @@
-//! What is recorded of a drive each 50 ms cycle: every signal, and the truth that no signal has.
+//! Record of a 50 ms cycle of a drive: every signal, and the truth that no signal has.
 
 use protocol::signal::Signal;
 

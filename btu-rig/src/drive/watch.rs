@@ -1,4 +1,4 @@
-//! What a drive looks at each scan: the link, and what the unit says of mode and brakes.
+//! Observations of a drive in each scan: the link, and what the unit says of mode and brakes.
 
 use protocol::message::{EbCause, Mode};
 use protocol::signal::{Sample, Signal};

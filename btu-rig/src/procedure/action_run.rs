@@ -1,66 +1,21 @@
 //! Carries out a list of actions, one after the other, without blocking.
 
-use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
-use super::condition::{Answer, Captured};
+use super::Driver;
+use super::condition::Answer;
 use super::describe::bits_seen;
 use super::finding::Finding;
+use super::operator::{Operator, PromptPolicy};
 use super::plan::Action;
+use super::problem::Problem;
 use super::report::RunEvent;
-use super::runner::PromptPolicy;
-use super::{Driver, UnitTime};
+use super::scan::Scan;
 
 /// How often a wait is reported.
 const WAITING_EVERY: Duration = Duration::from_ms(500);
 
-/// What one scan gives to everything that watches.
-#[derive(Clone, Copy)]
-pub(super) struct Scan<'a> {
-    pub now: Instant,
-    pub sample: &'a Sample,
-    pub captured: &'a Captured,
-    /// By which reactions of the unit are timed; `None` = by `now`.
-    pub unit_time: Option<UnitTime>,
-}
-
-/// Operator's side of a prompt.
-#[derive(Debug)]
-pub(super) struct Operator {
-    pub policy: PromptPolicy,
-    /// Answer given since the last scan.
-    pub answer: Option<bool>,
-}
-
-/// Why an action did not succeed.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Problem {
-    /// The unit did not do its part.
-    Failed(Finding),
-    /// Data are missing, so nothing can be said.
-    NoData(Finding),
-    /// The unit refused a request of the tester, or did not answer it.
-    Refused(Finding),
-    /// The bench, the link or the operator did not do theirs.
-    Bench(Finding),
-}
-
-impl Problem {
-    pub(super) fn is_failure(&self) -> bool {
-        matches!(self, Self::Failed(_))
-    }
-
-    pub(super) fn finding(&self) -> &Finding {
-        match self {
-            Self::Failed(found)
-            | Self::NoData(found)
-            | Self::Refused(found)
-            | Self::Bench(found) => found,
-        }
-    }
-}
-
-/// How far a list of actions is.
+/// Progress of a list of actions.
 #[derive(Debug, PartialEq)]
 pub(super) enum Progress {
     /// An action takes its time.

@@ -6,27 +6,26 @@ use serde::{Deserialize, Serialize};
 use super::Driver;
 use super::names::{Name, Part};
 
-/// What a signal is compared with, or a limit: a number in the unit of the thing compared.
+/// Comparison value of a signal, or a limit: a number in the unit of the thing compared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Operand {
     /// Written in the script.
     Literal(f64),
     /// Measured by an earlier step.
     Measured {
-        /// Which of the procedure's measurements.
+        /// Place of the measurement in the procedure.
         slot: usize,
-        /// Its name, for people.
+        /// Name of the measurement, for people.
         name: String,
         /// Added to it, in its own unit.
         offset: f64,
     },
 }
 
-/// How a signal is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Comparison {
     Equal,
-    /// Another recorded step.
+    /// Recorded steps differ.
     NotEqual,
     /// Less.
     Below,
@@ -48,7 +47,7 @@ pub enum Comparison {
 }
 
 impl Comparison {
-    /// It is about bits, not about a number's size.
+    /// The comparison is about bits, not about a number's size.
     pub fn is_bits(self) -> bool {
         matches!(self, Self::Has | Self::Lacks)
     }
@@ -61,7 +60,7 @@ pub enum Condition {
     Compare {
         /// Signal of the present sample.
         signal: Signal,
-        /// By value, or by bits ([`Comparison::is_bits`]).
+        /// Comparison by value, or by bits ([`Comparison::is_bits`]).
         comparison: Comparison,
         /// Right-hand side, in the signal's unit.
         operand: Operand,
@@ -121,7 +120,7 @@ impl Operand {
 }
 
 impl Condition {
-    /// Whether it holds in `sample`.
+    /// Whether the condition holds in `sample`.
     pub(super) fn truth(&self, sample: &Sample, captured: &Captured) -> Answer {
         match self {
             Self::Compare {
@@ -134,7 +133,7 @@ impl Condition {
         }
     }
 
-    /// What is behind the first of its signals that has more to say than its value.
+    /// Detail behind the first of the condition's signals that has one.
     pub(super) fn said<'a>(&self, driver: &'a dyn Driver) -> Option<&'a str> {
         let mut said = None;
         self.for_each_signal(&mut |signal| said = said.or_else(|| driver.said(signal)));

@@ -14,7 +14,7 @@ use super::plan::{
 use crate::stimulus::text::number;
 use crate::tcms::{EbSources, Lamps, PowerCuts};
 
-/// What a clock of the unit does that is faster than the bench's by so many thousandths.
+/// Behaviour of a clock of the unit that is faster than the bench's by this number of thousandths.
 pub fn clock_wrong(by_permille: i32) -> String {
     let way = if by_permille > 0 { "fast" } else { "slow" };
     let percent = f64::from(by_permille.abs()) / 10.0;
@@ -172,7 +172,7 @@ pub fn bit_names(signal: Signal, bits: u16) -> Option<String> {
     }
 }
 
-/// What the bits that are set in a word of the wire mean.
+/// Meanings of the bits that are set in a word of the wire.
 pub fn meanings(word: &WordSpec, bits: u16) -> String {
     let found = words_of(word, bits);
     if found.is_empty() {
@@ -181,7 +181,7 @@ pub fn meanings(word: &WordSpec, bits: u16) -> String {
     found.join("; ")
 }
 
-/// What each of the bits that are set in a word of the wire means.
+/// Meaning of each bit that is set in a word of the wire.
 fn words_of(word: &WordSpec, bits: u16) -> Vec<String> {
     let meaning = |bit: u8| {
         let known = word.entries.iter().find(|entry| entry.0 == bit);

@@ -8,7 +8,7 @@ use protocol::message::{
 
 use super::describe::meanings;
 
-/// What an event's parameter says, by name or with its unit; empty for an event that has none.
+/// Parameter of an event as text, by name or with its unit; empty for an event without one.
 pub fn parameter(event: Event, number: i32) -> String {
     let what = event.definition().parameter;
     if what.is_empty() {
@@ -20,7 +20,8 @@ pub fn parameter(event: Event, number: i32) -> String {
     })
 }
 
-/// The same for an event whose parameter stands for a name; `None` for a measured one or none.
+/// Name that an event's parameter stands for; `None` where the parameter is a measured value or not
+/// used.
 pub fn named(event: Event, number: i32) -> Option<String> {
     let (code, bits) = (number as u8, number as u16);
     Some(match event {
@@ -65,7 +66,7 @@ pub fn named(event: Event, number: i32) -> Option<String> {
     })
 }
 
-/// What a measured parameter is, and its value with its unit: `excess, cm/s` or `difference, 0.01 %`.
+/// Kind of a measured parameter, and its value with its unit: `excess, cm/s` or `difference, 0.01 %`.
 pub fn measured(event: Event, number: i32) -> (&'static str, String) {
     let what = event.definition().parameter;
     let Some((what, unit)) = what.split_once(", ") else {

@@ -11,7 +11,7 @@ use protocol::Duration;
 use protocol::event::Event;
 use protocol::message::{AtoFailure, SelfTest};
 
-/// How far the unit's log is read.
+/// Progress of reading the unit's log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LogState {
     /// Every event the unit says it has logged.
@@ -38,7 +38,7 @@ pub struct LineState {
     pub lost_or_damaged_lately: u64,
     /// Nothing comes now: the line is lost, or the unit starts again.
     pub silent: bool,
-    /// By how much the last frames came later than others: what they show was so before.
+    /// Time by which the last frames came later than others: what they show was so before.
     pub late: Duration,
 }
 
@@ -64,7 +64,7 @@ pub struct UnitTime {
     pub answered_ms: Option<u32>,
 }
 
-/// How far a driver can trust what it receives.
+/// Evidence by which a driver can trust the data that it receives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Evidence {
     /// The unit's log.
@@ -73,11 +73,11 @@ pub struct Evidence {
     pub not_kept: u64,
     /// The line to the unit.
     pub line: LineState,
-    /// By how much the unit's clock is faster than the bench's, thousandths, if it is wrong.
+    /// Excess of the unit's clock over the bench's, thousandths, if the unit's clock is wrong.
     pub clock_wrong_by_permille: Option<i32>,
     /// Self-test items that failed, as the unit says.
     pub self_test: SelfTest,
-    /// By which the unit's reactions are timed; `None` = by the bench's clock.
+    /// Clock by which the unit's reactions are timed; `None` = the bench's clock.
     pub unit_time: Option<UnitTime>,
 }
 

@@ -4,14 +4,14 @@ use protocol::Instant;
 use protocol::event::Event;
 
 use super::Driver;
-use super::action_run::{Problem, Scan};
 use super::condition::{Answer, MissingData};
 use super::describe::bits_seen;
 use super::evidence::LogState;
 use super::finding::Finding;
 use super::plan::Expectation;
+use super::problem::Problem;
+use super::scan::Scan;
 
-/// What is known about an expectation so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ExpectationRun {
     decided: bool,
@@ -83,7 +83,7 @@ impl ExpectationRun {
                 if logged.iter().any(said) {
                     self.decided = true;
                 } else if since_end.is_some_and(|waited| waited >= *within)
-                    // It may be among those that are not read yet.
+                    // The event may be among the entries that are not read yet.
                     && log == LogState::Read
                 {
                     self.fail(Answer::No, |_| Finding::NotLogged {

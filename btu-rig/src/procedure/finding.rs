@@ -1,4 +1,5 @@
-//! What a run finds, as data: stored as JSON, told in English here and in other languages by whoever shows it.
+//! Findings of a run, as data: stored as JSON, told in English here and in other languages by whoever shows
+//! it.
 
 mod english;
 mod list;
@@ -9,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 pub use super::condition::MissingData;
 use super::link_trouble::LinkTrouble;
-use super::plan::{Condition, Expectation};
+use super::plan::{Condition, Connection, Expectation};
 use super::{EventSource, UnitEvent};
 pub use list::{Findings, Found};
 
@@ -19,7 +20,7 @@ pub struct LoggedEvent {
     pub source: EventSource,
     /// Number in the event dictionary, also one that this version does not know.
     pub code: u16,
-    /// What the dictionary says it is.
+    /// Parameter; its meaning is in the dictionary of events.
     pub parameter: i32,
 }
 
@@ -30,7 +31,7 @@ pub struct LimitMissed {
     pub measurement: String,
     /// Measured value.
     pub value: f64,
-    /// How far the true value may be off.
+    /// Uncertainty of the true value.
     pub uncertainty: Option<f64>,
     /// Least value allowed.
     pub low: Option<f64>,
@@ -60,7 +61,7 @@ pub enum Finding {
     /// A condition did not stay true.
     HeldOnlyFor {
         condition: Condition,
-        /// For how long it did.
+        /// Time for which the condition stayed true.
         held: Duration,
         /// The data that were missing then.
         missing: Option<MissingData>,
@@ -105,7 +106,7 @@ pub enum Finding {
     NoValue {
         /// Name in its script.
         measurement: String,
-        /// How many others of the step have none for the same reason.
+        /// Number of other measurements of the step without a value for the same reason.
         others: u32,
         why: WhyNoValue,
     },
@@ -158,16 +159,16 @@ pub enum Finding {
     /// The tester's computer, or the link, stood still in an attempt at a step.
     StoodStill {
         by: Duration,
-        /// In which attempt, from 1.
+        /// Number of the attempt, from 1.
         attempt: u32,
     },
-    /// It was found before the tester's computer, or the link, stood still.
+    /// A finding from before the tester's computer, or the link, stood still.
     BeforeStandstill(Box<Finding>),
-    /// In the actions before the first step.
+    /// A finding in the actions before the first step.
     InSetUp(Box<Finding>),
-    /// In the actions after the last step.
+    /// A finding in the actions after the last step.
     InCleanUp(Box<Finding>),
-    /// These actions did not end in time.
+    /// Clean-up actions did not end in time.
     CleanUpTooLong {
         within: Duration,
     },
@@ -185,12 +186,10 @@ pub enum Finding {
     NotBegun(Box<Finding>),
     /// A step before did not pass, after which no other is run.
     NotPassed {
-        /// Name of the step.
         step: String,
     },
     /// The step before, from which this one continues, was not tested.
     NotTestedBefore {
-        /// Name of the step.
         step: String,
     },
     /// Only a bench with its harness can do it.
@@ -219,6 +218,9 @@ pub enum Finding {
         /// The instrument of the bench that failed; none = the link to the unit.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         instrument: Option<String>,
+        /// The bench that it is of, where that is known.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        bench: Option<String>,
     },
     /// A search for a fault found none and accepts nothing.
     NotAcceptance {
@@ -231,18 +233,17 @@ pub enum Finding {
     SelfTestFailed {
         items: u16,
     },
-    /// More entries of logs than are kept.
+    /// Logs had more entries than are kept.
     TooManyEvents {
         more: u64,
     },
     /// The unit's clock goes wrong by the bench's.
     ClockWrong {
-        /// By how much it is faster, thousandths.
+        /// Excess of the unit's clock, thousandths.
         by_permille: i32,
     },
     /// A fault was found while the unit was brought up, or settled again.
     FoundBefore {
-        /// Name of the fault.
         fault: String,
         before: Before,
     },
@@ -260,15 +261,14 @@ pub enum Finding {
     CheckFailed {
         /// Procedure of the step.
         procedure: String,
-        /// Name of the step.
         step: String,
-        /// Which repetition of it, from 1.
+        /// Number of the repetition, from 1.
         turn: u32,
         /// Number of repetitions that were asked for.
         turns: u32,
         findings: Findings,
     },
-    /// More that was found, and is not kept.
+    /// Number of further findings, which are not kept.
     More {
         n: u32,
     },
@@ -276,14 +276,11 @@ pub enum Finding {
     NotToldByUnit {
         /// Version of the software, if the unit says it.
         software: Option<String>,
-        /// Names of the signals.
         signals: Vec<String>,
     },
     /// The tester could not begin or go on, in both languages, because a file, a port or a setting does not serve.
     Prevented {
-        /// Why, in English.
         english: String,
-        /// Why, in Korean.
         korean: String,
     },
     /// Words of a script.
@@ -295,12 +292,12 @@ pub enum Finding {
 #[serde(rename_all = "snake_case")]
 pub enum WhyNoValue {
     Missing(MissingData),
-    /// What ends it did not come about.
+    /// The condition that ends the measurement did not come true.
     NeverEnded(Condition),
     NotMeasured,
 }
 
-/// What a unit is brought up for, or settles again for.
+/// Purpose of bringing a unit up, or of letting it settle again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Before {
@@ -312,7 +309,7 @@ pub enum Before {
     Repetition,
 }
 
-/// What a step was waiting for when its time was over.
+/// Condition that a step was waiting for when its time was over.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WaitedFor {
@@ -321,13 +318,21 @@ pub enum WaitedFor {
     Expectation(Expectation),
 }
 
+impl Connection {
+    /// Why what needs this connection cannot be done on another, if so: the harness can do all that the
+    /// maintenance port can.
+    pub fn lacks(self, on: Self) -> Option<Finding> {
+        (self == Self::Btu && on == Self::Ptu).then_some(Finding::NeedsHarness)
+    }
+}
+
 impl Finding {
     /// The step, procedure or unit it is about was not run for this reason.
     pub fn not_run(self) -> Self {
         Self::NotRun(Box::new(self))
     }
 
-    /// It is why nothing could be run without the harness of a bench.
+    /// The finding says that nothing could be run without the harness of a bench.
     pub fn needs_harness(&self) -> bool {
         match self {
             Self::NeedsHarness => true,
@@ -341,6 +346,7 @@ impl Finding {
         match self {
             Self::LinkLost { why } => why.is_of_the_bench(),
             Self::StoodStill { .. } | Self::BeforeStandstill(_) => true,
+            Self::LinkLostAt { instrument, .. } => instrument.is_some(),
             Self::NotRun(why) | Self::InSetUp(why) | Self::InCleanUp(why) => why.is_of_the_bench(),
             _ => false,
         }

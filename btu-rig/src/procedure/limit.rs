@@ -23,7 +23,6 @@ impl Bound {
         }
     }
 
-    /// Its number, if it has one.
     pub(super) fn number(self) -> Option<f64> {
         match self {
             Self::At(value) => Some(value),

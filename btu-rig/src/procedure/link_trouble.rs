@@ -13,13 +13,12 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[error("{link}: {why}")]
 pub struct LinkFailure {
-    /// What it is connected by, as the user named it.
+    /// Port of the link, as the user named it.
     pub link: String,
-    /// How it broke.
     pub why: PortFailure,
 }
 
-/// How a port fails; the strings are the operating system's.
+/// Failures of a port; the strings are the operating system's.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PortFailure {
@@ -37,7 +36,7 @@ pub enum PortFailure {
     NotInLockStep(String),
 }
 
-/// What is wrong with the connection, with who answers, or with reading the unit's log.
+/// Trouble of the connection, of the unit that answers, or of reading the unit's log.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LinkTrouble {
@@ -47,9 +46,8 @@ pub enum LinkTrouble {
     /// An instrument of the bench does not do its part.
     #[error("instrument {instrument} of the bench: {fault}")]
     Instrument {
-        /// As the bench file names it.
+        /// Name of the instrument in the bench file.
         instrument: String,
-        /// What is wrong with the instrument.
         fault: Box<InstrumentFault>,
     },
     /// Another tester has the unit.
@@ -57,12 +55,12 @@ pub enum LinkTrouble {
     Taken {
         /// Where that tester is.
         by: SocketAddr,
-        /// For how long it has it.
+        /// Time for which the other tester has had the unit.
         held: Duration,
-        /// For how long it has said nothing, if that is long.
+        /// Time for which the other tester has been silent, if that is long.
         silent: Option<Duration>,
     },
-    /// Nothing at all came.
+    /// Not one byte came.
     #[error("unit silent: not one byte in {:.1} s — check the cable, the port and the unit's power", .within.as_secs())]
     NotOneByte {
         /// The time it had.
@@ -70,18 +68,15 @@ pub enum LinkTrouble {
     },
     /// Frames came that another version of this program makes.
     #[error("{frames} frames of another version of the wire — unit and bench programs differ")]
-    OtherVersion {
-        /// How many.
-        frames: u64,
-    },
+    OtherVersion { frames: u64 },
     /// Bytes came, and no frame that can be taken.
     #[error("garbage: {bytes} bytes, no valid frame{} — {cause}", refused_for(*.refused))]
     Garbage {
-        /// How many bytes.
+        /// Number of bytes that came.
         bytes: u64,
         /// The most frequent reason for which frames were refused, and how many were for it.
         refused: Option<(u64, Reject)>,
-        /// What it looks like.
+        /// Probable cause.
         cause: GarbageCause,
     },
     /// The unit was heard before, and is not any more.
@@ -89,9 +84,8 @@ pub enum LinkTrouble {
     Silent {
         /// Where it is silent.
         channel: Channel,
-        /// For how long.
         silence: Duration,
-        /// What came in the place of frames.
+        /// Refused frames in place of good ones.
         refused: Option<Refused>,
     },
     /// The line loses or damages more than one may.
@@ -111,19 +105,19 @@ pub enum LinkTrouble {
         /// Frames that the unit refused.
         to_unit: u64,
     },
-    /// Who answers says other things of itself than before.
+    /// The unit that answers differs from the one before.
     #[error("another unit answers: {}", changes(.0))]
     OtherUnit(Vec<Changed>),
     /// The log grows faster than it can be read.
     #[error("the unit logs without end: {entries} entries came beyond what a log can hold")]
     LogWithoutEnd {
-        /// How many came that are not kept.
+        /// Number of entries that are not kept.
         entries: u64,
     },
     /// The unit does not answer questions for its log.
     #[error("the unit's log could not be read: asked {times} times, no answer")]
     LogNotAnswered {
-        /// How many questions.
+        /// Number of questions.
         times: u32,
     },
     /// The unit answers, and does not give an entry that it says it has.
@@ -131,7 +125,7 @@ pub enum LinkTrouble {
         "the unit's log could not be read: asked {times} times for entry {entry} of {of}, which never came"
     )]
     EntryNeverCame {
-        /// How many questions.
+        /// Number of questions.
         times: u32,
         /// Index of the entry.
         entry: u32,
@@ -141,7 +135,7 @@ pub enum LinkTrouble {
     /// Entries were lost in the unit before they could be read.
     #[error("{entries} entries of the unit's log were overwritten before they could be read")]
     Overwritten {
-        /// How many.
+        /// Number of entries lost.
         entries: u64,
     },
     /// The unit ceased to answer questions for its stored memory.
@@ -150,7 +144,7 @@ pub enum LinkTrouble {
     /// The unit says that it stores more than its memory can hold.
     #[error("the unit says that it stores {entries} entries, more than a unit can")]
     MemoryTooLarge {
-        /// How many.
+        /// Number of entries the unit claims.
         entries: u32,
     },
     /// The stored memory has become shorter while it was read.
@@ -165,7 +159,7 @@ impl LinkTrouble {
     }
 }
 
-/// What an instrument of the bench does wrong: never a fault of the unit. Texts are the instrument's or the system's own.
+/// Fault of an instrument of the bench: never a fault of the unit. Texts are the instrument's or the system's own.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum InstrumentFault {
@@ -180,21 +174,24 @@ pub enum InstrumentFault {
     /// The connection ended.
     #[error("disconnected: {0}")]
     Disconnected(String),
-    /// It took a question and does not answer.
+    /// The instrument ended the connection.
+    #[error("it closed the connection")]
+    Closed,
+    /// The instrument took a question and does not answer.
     #[error("no answer within {:.2} s", .0.as_secs())]
     Silent(Duration),
-    /// It answers later than the bench file says.
+    /// The instrument answers later than the bench file says.
     #[error("slow: it took {:.0} ms, and the bench file states {:.0} ms", ms(*.took), ms(*.stated))]
     Slow {
-        /// What a command or a reading took.
+        /// Time that a command or a reading took.
         took: Duration,
         /// `uncertainty_ms` of the bench file.
         stated: Duration,
     },
-    /// Another model answers.
+    /// An instrument of another model answers.
     #[error("wrong model: {found} answers where {expected} is expected")]
     OtherModel {
-        /// Its answer to `*IDN?`.
+        /// Answer to `*IDN?`.
         found: String,
         /// Part of the answer to `*IDN?` that its driver names.
         expected: String,
@@ -202,12 +199,12 @@ pub enum InstrumentFault {
     /// The right model with another serial number.
     #[error("another instrument: serial number {found} answers where {expected} is expected")]
     OtherSerial {
-        /// In its answer to `*IDN?`.
+        /// Serial number in its answer to `*IDN?`.
         found: String,
         /// `serial` of the bench file.
         expected: String,
     },
-    /// Its line is locked.
+    /// The line of the instrument is locked.
     #[error("another program of this computer uses it")]
     Taken,
     /// A carrier without a code was ordered.
@@ -224,21 +221,24 @@ pub enum InstrumentFault {
     NoPlayer {
         /// Error of the sound server.
         server: String,
-        /// That of ALSA.
+        /// Error of ALSA.
         alsa: String,
     },
-    /// It ended, and said nothing.
+    /// The card plays, and is not heard.
+    #[error("nothing that it plays is heard at {0}")]
+    NotHeard(String),
+    /// The program ended without a word.
     #[error("the program that plays on it has ended")]
     PlayerEnded,
-    /// It reports an error after a command.
+    /// The instrument reports an error after a command.
     #[error("it refused {command}: {error}")]
     Refused {
-        /// As it was sent.
+        /// Command as it was sent.
         command: String,
         /// The entry of its error queue, as it answered.
         error: String,
     },
-    /// More errors came than it keeps.
+    /// The instrument has more errors than its queue holds.
     #[error("its error queue is full: {0}")]
     QueueFull(String),
     /// A value beyond what its driver states.
@@ -246,19 +246,19 @@ pub enum InstrumentFault {
     OutOfRange {
         /// The driver's name of the value.
         what: String,
-        /// As the driver would have put it.
+        /// Value that the driver would have set.
         value: String,
         /// Least that the driver states.
         low: String,
         /// Greatest that the driver states.
         high: String,
     },
-    /// What it answered cannot be read.
+    /// The instrument's answer cannot be read.
     #[error("{found} is no answer to {asked}")]
     NoAnswer {
-        /// As it was sent, or how much was asked for.
+        /// Command as it was sent, or number of bytes asked for.
         asked: String,
-        /// As it came.
+        /// Answer as it came.
         found: String,
     },
     /// The contact that proves a relay says otherwise.
@@ -275,7 +275,7 @@ fn ms(duration: Duration) -> f64 {
     duration.as_secs() * 1000.0
 }
 
-/// What bytes without a valid frame look like.
+/// Probable cause of bytes without a valid frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GarbageCause {
@@ -294,20 +294,21 @@ pub enum GarbageCause {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Refused {
-    /// So many do not continue those before them, as those of a unit that starts again and again.
+    /// Number of frames that do not continue those before, as from a unit that starts again and
+    /// again.
     OfStarts(u64),
-    /// So many were refused for any reason.
+    /// Number of frames refused for any reason.
     Frames(u64),
 }
 
 /// A property of a unit that is not what it was.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Changed {
-    /// Which.
+    /// The property that differs.
     pub property: Property,
-    /// As the unit said it first.
+    /// Value that the unit told first.
     pub was: String,
-    /// As it says it now.
+    /// Value that the unit tells now.
     pub is: String,
 }
 
@@ -315,11 +316,8 @@ pub struct Changed {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Property {
-    /// Serial number.
     Serial,
-    /// Name of its configuration.
     Configuration,
-    /// Checksum of its configuration.
     ConfigurationChecksum,
     /// Checksum of its track database.
     TrackChecksum,

@@ -9,12 +9,12 @@ use protocol::signal::Signal;
 
 use super::UnitTime;
 use super::Verdict;
-use super::action_run::Scan;
 use super::condition::{Answer, Captured, MissingData};
 use super::finding::{Finding, LimitMissed, WhyNoValue};
 use super::limit::{Bound, judge};
 use super::plan::{Condition, Measure, TimeFrom, What};
 use super::report::Measurement;
+use super::scan::Scan;
 use super::unit_clock::Moment;
 
 /// Watches for a condition to *become* true: it must have been seen false first. A brake that is
@@ -255,7 +255,7 @@ impl MeasurementRun {
         value
     }
 
-    /// Why it did not pass.
+    /// Reason for which the measurement did not pass; none if it did.
     fn found(&self, measure: &Measure, measured: &Measurement) -> Option<Finding> {
         let measurement = measure.name.clone();
         Some(match (measured.verdict, measured.value) {

@@ -21,10 +21,13 @@ pub mod link_trouble;
 pub mod loader;
 mod measure_run;
 mod names;
+pub mod operator;
 pub mod origin;
 pub mod plan;
+mod problem;
 pub mod report;
 pub mod runner;
+mod scan;
 mod step_run;
 mod step_verdict;
 mod unit_clock;
@@ -41,14 +44,15 @@ pub use evidence::{Evidence, LineState, LogState, UnitTime, UnitTimeBounds};
 pub use finding::{Finding, Findings};
 pub use loader::{LoadError, Loaded, Scripts};
 pub use names::spoken;
+pub use operator::PromptPolicy;
 pub use plan::{Procedure, Step};
 pub use protocol::Verdict;
 pub use report::{Measurement, Outside, OutsideStep, ResultKind, RunEvent, StepResult};
-pub use runner::{Poll, PromptPolicy, RunOptions, Runner};
+pub use runner::{Poll, RunOptions, Runner};
 
 use crate::stimulus::Stimulus;
 
-/// What a procedure drives: the rig, or a stand-in for it.
+/// Interface that a procedure drives: the rig, or a stand-in for the rig.
 pub trait Driver {
     /// Begins a stimulus.
     ///
@@ -73,17 +77,17 @@ pub trait Driver {
         true
     }
 
-    /// How far what it hears of the unit can be trusted.
+    /// Evidence by which data from the unit can be trusted.
     fn evidence(&self) -> Evidence {
         Evidence::default()
     }
 
-    /// What the last self-test asked for found of an item; `None` before its result came.
+    /// Result of an item in the last requested self-test; `None` before the result came.
     fn self_test_item(&self, _item: SelfTest) -> Option<SelfTestItem> {
         None
     }
 
-    /// What is behind a signal that says only whether the unit is as it should be.
+    /// Detail behind a signal which says only whether the unit matches its record.
     fn said(&self, _signal: Signal) -> Option<&str> {
         None
     }
@@ -94,7 +98,7 @@ pub trait Driver {
 #[error("{0}")]
 pub struct Refusal(pub String);
 
-/// Whose log an event stands in.
+/// Unit that logs an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EventSource {
@@ -106,7 +110,7 @@ pub enum EventSource {
 /// An entry of the unit's event log as received, or of TCMS's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitEvent {
-    /// Whose log it stands in.
+    /// Unit that logs it.
     pub source: EventSource,
     /// Place in the log.
     pub index: u32,
@@ -114,7 +118,7 @@ pub struct UnitEvent {
     pub code: u16,
     /// Time of the unit or TCMS that logged it, ms since its start.
     pub at_ms: u32,
-    /// What the dictionary says it is.
+    /// Parameter; its meaning is in the dictionary of events.
     pub parameter: i32,
     /// Measured speed at that time.
     pub speed: Speed,
@@ -124,7 +128,7 @@ pub struct UnitEvent {
     pub position_m: f64,
     /// Operating mode at that time.
     pub mode: Mode,
-    /// Why the emergency brake was applied.
+    /// Cause of the emergency brake.
     pub eb_cause: EbCause,
 }
 
@@ -161,7 +165,7 @@ impl UnitEvent {
         }
     }
 
-    /// What its parameter says, in words; empty for an event without one.
+    /// Parameter in words; empty for an event without one.
     pub fn said(&self) -> String {
         Event::from_code(self.code).map_or_else(
             || format!("parameter {}", self.parameter),
@@ -176,7 +180,7 @@ impl UnitEvent {
 }
 
 impl EventSource {
-    /// Who it is, in a message.
+    /// Name of the source in a message.
     pub fn who(self) -> &'static str {
         match self {
             Self::Unit => "the unit",
@@ -184,7 +188,7 @@ impl EventSource {
         }
     }
 
-    /// Who logs this event.
+    /// The source that logs this event.
     pub fn of(event: Event) -> Self {
         if event.by_tcms() {
             Self::Tcms

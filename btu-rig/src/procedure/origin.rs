@@ -17,7 +17,7 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// Of a number that names no source.
+    /// Origin of a number that names no source.
     pub(super) fn lacking() -> Self {
         Self {
             lacks: true,
@@ -25,7 +25,6 @@ impl Origin {
         }
     }
 
-    /// Of a number with this source.
     pub(super) fn of(source: impl Into<String>) -> Self {
         Self {
             sources: BTreeSet::from([source.into()]),
@@ -33,7 +32,7 @@ impl Origin {
         }
     }
 
-    /// Of a number made of this one and another.
+    /// Adds the origin of another number, of which this one is made, too.
     pub(super) fn join(&mut self, other: &Self) {
         self.sources.extend(other.sources.iter().cloned());
         self.lacks |= other.lacks;
@@ -52,7 +51,7 @@ impl Origin {
         self.lacks = false;
     }
 
-    /// What a bench makes of the limit beside where it comes from.
+    /// Adds a source of the limit, such as a change by the bench.
     pub fn add(&mut self, source: String) {
         self.sources.insert(source);
     }
@@ -72,7 +71,7 @@ impl Origin {
 /// Between the sources of one limit, which have none of it.
 pub const SEPARATOR: &str = "; ";
 
-/// What a source is, by its first word.
+/// Kind of a source, by its first word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SourceKind {
     /// A paper, `S0` to `S4`, with its section, equation, table or figure.
@@ -93,7 +92,7 @@ pub enum SourceKind {
     Default,
 }
 
-/// What stands before the name of each kind; of a paper, its number does.
+/// Word before the name of each kind; a paper has its number there.
 const WORDS: [(&str, SourceKind); 7] = [
     ("configuration ", SourceKind::Configuration),
     ("track database ", SourceKind::Track),

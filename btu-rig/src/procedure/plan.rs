@@ -1,4 +1,4 @@
-//! What a check procedure is: plain data that can be shown, chosen from, stored and run.
+//! Data of a check procedure: plain data that can be shown, chosen from, stored and run.
 
 use protocol::event::Event;
 use protocol::message::SelfTest;
@@ -7,7 +7,6 @@ use protocol::{Duration, LruId};
 use serde::{Deserialize, Serialize};
 
 pub use super::condition::{Comparison, Condition, Operand};
-use super::finding::Finding;
 use super::origin::Origin;
 use crate::stimulus::Stimulus;
 
@@ -21,12 +20,6 @@ pub enum Connection {
 }
 
 impl Connection {
-    /// Why what needs this connection cannot be done on another, if so: the harness can do all that the
-    /// maintenance port can.
-    pub fn lacks(self, on: Self) -> Option<Finding> {
-        (self == Self::Btu && on == Self::Ptu).then_some(Finding::NeedsHarness)
-    }
-
     pub fn word(self) -> &'static str {
         match self {
             Self::Btu => "harness",
@@ -40,13 +33,13 @@ impl Connection {
 pub struct Procedure {
     /// Path under the scripts folder without `.star`, for instance `atp/overspeed`.
     pub id: String,
-    /// What it checks, in English.
+    /// Purpose of the check, in English.
     pub title: String,
     pub title_ko: Option<String>,
     pub needs: Connection,
     /// Run only when it is asked for by name: too long for a run of everything.
     pub on_request: bool,
-    /// What unit type, line or train lack for it: all its steps are skipped, and this is why.
+    /// Reason in unit type, line or train for which all steps of the procedure are skipped.
     pub lacks: Option<String>,
     /// Part to suspect when a step fails that names none itself.
     pub suspect: Option<LruId>,
@@ -59,7 +52,7 @@ pub struct Procedure {
     /// Done after the last step, whatever happened.
     pub cleanup: Vec<Action>,
     pub steps: Vec<Step>,
-    /// How many measurements its steps make: the number of slots to capture them.
+    /// Number of measurements in the steps: the number of slots to capture them.
     pub slots: usize,
 }
 
@@ -69,7 +62,7 @@ pub struct Step {
     pub name: String,
     /// Source line of the `step()` call.
     pub line: u32,
-    /// What is done, in order.
+    /// Actions of the step, in order.
     pub actions: Vec<Action>,
     pub expectations: Vec<Expectation>,
     /// Where the numbers of its expectations come from: times, and what signals are compared with.
@@ -79,13 +72,13 @@ pub struct Step {
     pub provokes: Vec<Event>,
     /// Run only if this holds when the step's turn comes; else skipped.
     pub when: Option<Condition>,
-    /// What unit type, line or train lack for it: it is skipped, and this is why.
+    /// Reason in unit type, line or train for which the step is skipped.
     pub lacks: Option<String>,
-    /// How often it is run; every repetition must pass.
+    /// Number of repetitions, each of which must pass.
     pub repeat: u32,
-    /// What happens after it did not pass.
+    /// Course after a failure of the step.
     pub on_fail: OnFail,
-    /// It begins in the state that the step before left, and cannot be run without that.
+    /// The step begins in the state that the step before left, and cannot be run without that step.
     pub continues: bool,
     /// When it is ended as an error.
     pub time_limit: Duration,
@@ -97,7 +90,7 @@ pub struct Step {
     pub note: Option<String>,
 }
 
-/// What happens after a step that did not pass.
+/// Course of a procedure after a step that did not pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OnFail {
     /// The next step is run.
@@ -137,7 +130,7 @@ pub enum Action {
     OnTrain(Box<Action>),
 }
 
-/// What must be seen for a step to pass.
+/// Observation that a step needs to pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Expectation {
     /// True at the end of the actions or at some time after.
@@ -192,7 +185,7 @@ pub enum What {
     Time {
         /// Beginning of the measured time.
         from: TimeFrom,
-        /// Its end: the first scan in which this holds.
+        /// End of the time: the first scan in which this condition holds.
         to: Condition,
     },
     /// Value at the end of the step.
@@ -210,7 +203,7 @@ pub enum What {
     Minimum(Signal),
     /// Value at the end of the step less value at its beginning.
     Change(Signal),
-    /// What the unit's self-test found of an item, with the unit's own limits.
+    /// Result of an item in the unit's self-test, with the unit's own limits.
     SelfTest {
         /// Number of the item's bit.
         bit: u8,
@@ -259,7 +252,8 @@ impl What {
 }
 
 impl Measure {
-    /// Lowers the least and raises the greatest permitted value by so much; the other way round if negative.
+    /// Lowers the least and raises the greatest permitted value by this amount; the other way round if
+    /// negative.
     pub fn widen(&mut self, by: f64) {
         let shift = |limit: &mut Operand, by: f64| match limit {
             Operand::Literal(number) => *number += by,
@@ -288,7 +282,6 @@ impl Measure {
     }
 }
 
-/// A measurement of each item of the self-test.
 pub(super) fn of_self_test() -> impl Iterator<Item = Measure> {
     SelfTest::SPEC.entries.iter().map(|(bit, name, _)| Measure {
         name: format!("self_test.{}", name.to_lowercase()),
@@ -378,7 +371,7 @@ impl Procedure {
         self.steps.iter().flat_map(of_step).collect()
     }
 
-    /// It asks the operator something, on a bench or on a train.
+    /// The procedure asks the operator something, on a bench or on a train.
     pub fn asks(&self) -> bool {
         let steps = self.steps.iter().flat_map(|step| &step.actions);
         let mut actions = self.setup.iter().chain(&self.cleanup).chain(steps);

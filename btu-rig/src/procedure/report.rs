@@ -11,15 +11,15 @@ use super::plan::Action;
 pub struct Measurement {
     /// Name within its step.
     pub name: String,
-    /// The value, if there is one.
     pub value: Option<f64>,
-    /// Its unit; empty for counts and states.
+    /// Unit of the value; empty for counts and states.
     pub unit: &'static str,
     /// Least value allowed, in `unit`.
     pub low: Option<f64>,
     /// Greatest value allowed, in `unit`.
     pub high: Option<f64>,
-    /// How far the true value may be off, in `unit`; `None` = less than the steps in which it is given.
+    /// Uncertainty of the true value, in `unit`; `None` = less than the steps in which the value is
+    /// given.
     pub uncertainty: Option<f64>,
     /// Where its limits come from, [`Origin::text`](super::origin::Origin::text).
     pub limit_source: Option<String>,
@@ -27,7 +27,7 @@ pub struct Measurement {
     pub verdict: Verdict,
 }
 
-/// How a result counts: a step has one that counts, and may have others.
+/// How a result of a step counts: each step has one result that counts, and may have others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResultKind {
     /// The result that counts for the step.
@@ -45,22 +45,22 @@ pub struct StepResult {
     pub index: usize,
     /// Name that the script gives the step.
     pub name: String,
-    /// Which repetition, from 1.
+    /// Number of the repetition, from 1.
     pub turn: u32,
     /// Number of repetitions that were asked for.
     pub turns: u32,
     pub kind: ResultKind,
     /// Line of the `step()` call in the script, from 1.
     pub line: u32,
-    /// Over its expectations and measurements.
+    /// Verdict over the step's expectations and measurements.
     pub verdict: Verdict,
-    /// Why, when it did not pass; may also be a note.
+    /// Findings for which the step did not pass, or notes.
     pub findings: Findings,
     /// Part to suspect if it failed: one that an event of the unit or of TCMS named, else the script's.
     pub suspect: Option<LruId>,
     /// Bench time at which it began.
     pub started: Instant,
-    /// How long it took on the bench.
+    /// Time that the step took on the bench.
     pub bench_time: Duration,
     /// Where the numbers of its expectations come from, as [`Measurement::limit_source`].
     pub limit_source: Option<String>,
@@ -115,7 +115,7 @@ impl Outside {
         Self::ALL.into_iter().find(|place| place.name() == name)
     }
 
-    /// Its name, under which it is stored and shown where a step has the name of the script.
+    /// Name of the place, stored and shown where a step has the name of the script.
     pub const fn name(self) -> &'static str {
         match self {
             Self::BringUp => "bring-up",
@@ -133,7 +133,7 @@ impl Outside {
     }
 }
 
-/// What failed outside the steps of a procedure.
+/// Failure outside the steps of a procedure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutsideStep {
     pub place: Outside,
@@ -159,7 +159,7 @@ pub enum RunEvent {
         index: usize,
         /// Name that the script gives the step.
         name: String,
-        /// Which repetition, from 1.
+        /// Number of the repetition, from 1.
         turn: u32,
         /// Number of repetitions that were asked for.
         turns: u32,
@@ -183,7 +183,7 @@ pub enum RunEvent {
     /// The operator is asked; answer with [`super::Runner::answer`].
     Prompt {
         text: String,
-        /// How long it may take.
+        /// Time left for an answer.
         left: Duration,
     },
     Measured {
@@ -202,7 +202,7 @@ pub enum RunEvent {
     },
     /// The unit's clock goes wrong, as the bench's tells.
     UnitClockWrong {
-        /// By how much it is faster, thousandths.
+        /// Excess of the unit's clock, thousandths.
         by_permille: i32,
         /// Bench time.
         at: Instant,
@@ -211,9 +211,9 @@ pub enum RunEvent {
     OutsideStep(OutsideStep),
     /// The procedure is over and outputs are safe, or could not be made so, which is an error.
     ProcedureFinished {
-        /// Over its steps and what stands beside them.
+        /// Verdict over the procedure's steps and what stands beside them.
         verdict: Verdict,
-        /// What went wrong outside steps; empty if nothing did.
+        /// Findings outside steps; empty if there are none.
         findings: Findings,
         /// Bench time.
         at: Instant,

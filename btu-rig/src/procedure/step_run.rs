@@ -4,13 +4,16 @@ use protocol::event::Event;
 use protocol::message::SelfTest;
 use protocol::{CYCLE, Duration, Instant, LruId};
 
-use super::action_run::{ActionRun, Operator, Problem, Progress, Scan};
+use super::action_run::{ActionRun, Progress};
 use super::evidence::{Evidence, LogState};
 use super::expectation_run::ExpectationRun;
 use super::finding::{Finding, Findings, LoggedEvent, WaitedFor};
 use super::measure_run::MeasurementRun;
+use super::operator::Operator;
 use super::plan::{Action, Step, What};
+use super::problem::Problem;
 use super::report::{Measurement, RunEvent};
+use super::scan::Scan;
 use super::step_verdict::{findings, verdict};
 use super::{Driver, UnitEvent, Verdict};
 
@@ -34,7 +37,7 @@ pub(super) struct StepRun {
     measurements: Vec<MeasurementRun>,
     /// Each once, with how often it came.
     problems: Vec<(Problem, u32)>,
-    /// With their parameters.
+    /// Logged events with their parameters.
     logged: Vec<(Event, i32)>,
     /// Suspected part of the first event that no step provoked.
     named_part: Option<LruId>,

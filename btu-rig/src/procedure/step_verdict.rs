@@ -1,9 +1,9 @@
 //! Verdict and message of a step from the problems that were found in it.
 
 use super::Verdict;
-use super::action_run::Problem;
 use super::finding::{Finding, Findings, WhyNoValue};
 use super::plan::Step;
+use super::problem::Problem;
 
 /// A bench problem outranks all: then the step says nothing about the unit. A request that was refused is one, unless
 /// the unit has `restarted` by itself and no longer knows what was sent to it.

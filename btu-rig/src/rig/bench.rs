@@ -28,7 +28,7 @@ pub trait UnitLink {
         Duration::ZERO
     }
 
-    /// The bench's clock goes on from another time by the wall: so many µs later, or earlier.
+    /// Moves the bench's clock by `later_us` of the wall clock; negative = earlier.
     fn shift_clock(&mut self, _later_us: i64) {}
 }
 

@@ -22,7 +22,7 @@ impl Rig {
         })
     }
 
-    /// It is known what the unit tells of itself.
+    /// Whether it is known which signals the unit reports.
     pub fn knows_what_is_told(&self) -> bool {
         self.harness.found().is_some() && self.subscription.settled()
     }

@@ -77,7 +77,7 @@ pub struct Rig {
     tachos: [Tacho; 2],
     train: Train,
     train_data: TrainData,
-    /// Its cars from the head, length in m and share of the weight, at a load in kg.
+    /// Length of each car from the head, m, and its share of the weight at `cars_load_kg`.
     cars: Vec<(f64, f64)>,
     cars_load_kg: f64,
     train_state: TrainState,
@@ -91,7 +91,6 @@ pub struct Rig {
     /// What the wayside sends in a scan through the loop as waveform.
     in_loop: Vec<u8>,
     wayside: Wayside,
-    /// Number of the train.
     train_number: u16,
     tcms: Tcms,
     /// What TCMS last sent to the train.

@@ -38,7 +38,7 @@ pub(super) fn pair_cars(train: &TrainData) -> PairCars {
 }
 
 impl Rig {
-    /// What the train is given in this scan; TCMS is stepped when its cycle is due.
+    /// Orders to the train in this scan; TCMS is stepped when its cycle is due.
     pub(super) fn orders_of_tcms(&mut self) -> TrainInputs {
         if self.now.as_us().is_multiple_of(TCMS_CYCLE.as_us()) {
             self.train_orders = self.step_tcms();

@@ -1,4 +1,4 @@
-//! What is known of the unit, and how far it can be trusted.
+//! Data from the unit, and the evidence by which they can be trusted.
 
 use protocol::Instant;
 use protocol::link::Counters;
@@ -9,7 +9,7 @@ use super::{LinkTrouble, Rig};
 use crate::procedure::{Evidence, UnitEvent};
 
 impl Rig {
-    /// The present value of every signal. What the unit has not said for 500 ms is not known.
+    /// The present value of every signal; unknown where the unit has been silent for 500 ms.
     pub fn sample(&self) -> &Sample {
         &self.latest.sample
     }
@@ -39,12 +39,13 @@ impl Rig {
         self.tester.log().overwritten() + self.tcms_dropped + u64::from(self.tcms.events_lost())
     }
 
-    /// Who the unit is, once it has said so.
+    /// Identity of the unit, once the unit has told it.
     pub fn identity(&self) -> Option<&Identity> {
         self.tester.identity()
     }
 
-    /// When a frame of the unit came last, and what the unit's clock was when it was made, ms.
+    /// Time at which the last frame of the unit came, and the unit's clock when the frame was made,
+    /// ms.
     pub fn unit_stamp_ms(&self) -> Option<(Instant, u32)> {
         self.unit_stamp
     }
@@ -54,8 +55,8 @@ impl Rig {
         self.tester.restarts()
     }
 
-    /// Why nothing that is heard can be judged, after a time allowed for first contact: what is wrong with
-    /// the connection, with who answers, or with reading the unit's log.
+    /// Trouble because of which nothing can be judged, after a time allowed for first contact: of the
+    /// connection, of the unit that answers, or of reading the unit's log.
     pub fn link_error(&self) -> Option<LinkTrouble> {
         let line = self.line_watch.error(self.now);
         let silence = || {
@@ -68,7 +69,7 @@ impl Rig {
             .or_else(|| self.tester.missed())
     }
 
-    /// How far what is heard can be trusted.
+    /// Evidence by which data from the unit can be trusted.
     pub fn evidence(&self) -> Evidence {
         Evidence {
             log: self.tester.log_state(self.now),
@@ -80,23 +81,22 @@ impl Rig {
         }
     }
 
-    /// What the last self-test asked for found, item by item, as far as it came.
+    /// Results of the last requested self-test, item by item, as far as they came.
     pub fn self_test_items(&self) -> &[SelfTestItem] {
         self.tester.self_test_items()
     }
 
-    /// What it found of an item.
     pub fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {
         let items = self.self_test_items().iter();
         items.copied().find(|one| one.item == item)
     }
 
-    /// What is behind a signal that says only whether the unit is as it should be.
+    /// Detail behind a signal which says only whether the unit matches its record.
     pub fn said(&self, signal: Signal) -> Option<&str> {
         self.identity.said(signal)
     }
 
-    /// Why the unit turned this bench away, if it did: another has it.
+    /// Trouble with which the unit turned this bench away, if it did: another tester has the unit.
     pub fn turned_away(&self) -> Option<LinkTrouble> {
         self.watch.turned_away()
     }

@@ -18,7 +18,7 @@ pub enum TachoCondition {
     Scaled {
         factor: f64,
     },
-    /// It gives the wrong direction.
+    /// The tachometer gives the wrong direction.
     Reversed,
 }
 
@@ -57,7 +57,7 @@ pub enum DoorLine {
     LeftLocked,
     RightClosed,
     RightLocked,
-    /// That the train tells of doors by side.
+    /// Says that the train reports doors by side.
     BySide,
 }
 
@@ -158,17 +158,17 @@ impl TrainSwitch {
     }
 }
 
-/// What equipment of a car does wrong when a bench makes it.
+/// Failure of a car's equipment that a bench makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CarFailure {
-    /// Its inverter does nothing and does not answer.
+    /// The inverter does nothing and does not answer.
     InverterSilent,
-    /// Its brake control unit does nothing and does not answer.
+    /// The brake control unit does nothing and does not answer.
     BrakeUnitSilent,
-    /// Its brake cylinders get no pressure of the service brake.
+    /// The brake cylinders get no pressure of the service brake.
     CylinderEmpty,
-    /// Its brake cylinders keep the pressure they have.
+    /// The brake cylinders keep the pressure they have.
     BrakeStuck,
 }
 

@@ -12,11 +12,11 @@ use crate::stored::train_order;
 pub struct OrderData {
     /// Section that the length is of; 0 = none is given.
     pub section: u16,
-    /// Its length, 0.1 m.
+    /// Length of the section, 0.1 m.
     pub length_dm: u32,
     /// Station at which the train's run ends; 0 = none.
     pub destination: u16,
-    /// What the train is to do beside running.
+    /// Order to the train beside running.
     #[serde(with = "train_order")]
     pub order: TrainOrder,
     /// Train number; 0 = that of the train.

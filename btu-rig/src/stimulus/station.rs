@@ -10,13 +10,10 @@ use crate::stored::{door_side, running_mode};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub struct StationData {
-    /// Route number.
     pub route: u16,
-    /// Section number.
     pub section: u16,
     pub station: u16,
     pub next_station: u16,
-    /// Loop number.
     pub loop_id: u16,
     /// Fixed speed, km/h; `None` = no order.
     pub fixed_speed_kmh: Option<u8>,
@@ -24,14 +21,13 @@ pub struct StationData {
     pub running_mode: RunningMode,
     #[serde(with = "door_side")]
     pub door_side: DoorSide,
-    /// Departure given.
     pub departure: bool,
     /// Train number; 0 = that of the train.
     pub train_number: u16,
 }
 
 impl StationData {
-    /// What the loop of a section's departure station sends: no door side, departure held.
+    /// Station data of a section's departure loop: no door side, departure held.
     pub fn at_departure(section: &Section) -> Self {
         Self {
             route: section.route,
@@ -47,7 +43,7 @@ impl StationData {
         }
     }
 
-    /// What the loop of its arrival station sends; `next_station` is the one after it.
+    /// Station data of its arrival loop; `next_station` is the one after it.
     pub fn at_arrival(section: &Section, next_station: u16) -> Self {
         Self {
             station: section.to_station,

@@ -141,7 +141,6 @@ stimuli! {
     Tacho {
         /// 1 or 2.
         channel: u8,
-        /// Its condition.
         condition: TachoCondition,
     } [Harness] => format!("tachometer {channel} {}", tacho_text(condition));
     /// Tachometers and markers follow the train model, which obeys the unit through TCMS.
@@ -163,7 +162,7 @@ stimuli! {
     MarkerMoved {
         /// 1 to 4 = PSM1 to PSM4.
         psm: u8,
-        /// How far beyond its place, m; `None` = it is missing.
+        /// Distance beyond the marker's place, m; `None` = the marker is missing.
         by_m: Option<f64>,
     } [Harness] => match by_m {
         None => format!("PSM{psm} is missing"),
@@ -195,7 +194,6 @@ stimuli! {
     SideDoors {
         /// On the left, else on the right.
         left: bool,
-        /// What they are.
         state: DoorState,
     } [Cab] => format!("doors on the {} {}", side(left), state.label());
     /// The doors follow the unit's contacts, until a hand moves one.
@@ -212,7 +210,7 @@ stimuli! {
     } [Cab] => format!("obstacle in the doors on the {} for {times} closings", side(left));
     /// A door train line says this to the unit, whatever the doors are.
     DoorLine {
-        /// Which.
+        /// Door line.
         line: DoorLine,
         /// Energised; `None` = as the doors have it.
         on: Option<bool>,
@@ -228,7 +226,7 @@ stimuli! {
     } [Cab] => format!("cab active (HCR) {}", on_off(on));
     /// Maintenance key.
     MaintenanceKey {
-        /// On.
+        /// Position of the key.
         on: bool,
     } [Cab] => format!("maintenance key {}", on_off(on));
     /// Train number keyed in at the cab.
@@ -245,7 +243,6 @@ stimuli! {
     ModeSwitch(#[serde(with = "mode_switch")] mode: ModeSwitch) [Cab] => format!("mode switch to {}", mode.label());
     /// Master controller.
     Controller {
-        /// Its position.
         lever: Lever,
     } [Cab] => format!("master controller to {lever}");
     /// Voltage of the master controller's potentiometer, whatever its position.
@@ -268,14 +265,14 @@ stimuli! {
     };
     /// Switch of the train.
     Switch {
-        /// Which.
+        /// Switch that is set.
         switch: TrainSwitch,
-        /// On.
+        /// Position of the switch.
         on: bool,
     } [Cab] => format!("{} {}", switch.label(), on_off(on));
     /// Equipment of a car is cut out or in.
     CutOut {
-        /// What.
+        /// Equipment that is cut out.
         what: CutOut,
         /// Car, counted from 1 at the head.
         car: u8,
@@ -290,7 +287,7 @@ stimuli! {
     };
     /// Equipment of a car fails, or is in order again.
     Failure {
-        /// What.
+        /// Kind of failure.
         what: CarFailure,
         /// Car, counted from 1 at the head.
         car: u8,

@@ -17,7 +17,7 @@ use crate::train::{CarSet, MAX_CARS, PerCar};
 
 use super::consist::Consist;
 
-/// What the pairs' parts can give, N, at one load and with the same cars cut out.
+/// Greatest efforts of the pairs' parts, N, at one load and with the same cars cut out.
 #[derive(Clone, Debug)]
 pub struct Sharing {
     shares: Vec<PairShares>,
@@ -46,24 +46,24 @@ struct PairShares {
     electric_n: f64,
     trailer_air_n: f64,
     motor_air_n: f64,
-    /// What its air brakes give beyond that for cars without one.
+    /// Effort that the pair's air brakes add in place of cars without one, N.
     more_air_n: f64,
-    /// Its cars among the parts.
+    /// Places of the pair's cars among the parts.
     parts: Range<usize>,
 }
 
-/// What is asked for in one scan.
+/// Demand in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct BrakingInputs<'a> {
     /// Share of full service, 0..1 (BE_s), jerk limited.
     pub share: f64,
     /// Electric brake there is, share of its greatest (DBE_v).
     pub pattern: f64,
-    /// The same when air that is asked for now will be there. Air takes longer than an inverter, and
-    /// would come too late to a brake that fades.
+    /// Electric brake at the time at which air that is asked for now arrives, share of its greatest.
+    /// Air takes longer than an inverter, and would come too late to a brake that fades.
     pub pattern_ahead: f64,
-    /// What inverters should be giving by now and what their electric brakes give (EFM of S3); none
-    /// when they give what they are asked for.
+    /// Efforts that inverters should give by now, and that their electric brakes give (EFM of S3);
+    /// none where they give what they are asked for.
     pub inverters: Option<Inverters<'a>>,
 }
 
@@ -76,7 +76,7 @@ pub struct Inverters<'a> {
     pub electric_n: &'a PerCar,
 }
 
-/// What each car is asked for, N, sizes.
+/// Demand on each car, N, as sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrakeDemands {
     pub train_n: f64,
@@ -87,8 +87,8 @@ pub struct BrakeDemands {
 }
 
 impl Sharing {
-    /// For the consist's load, with cars whose inverter gives no electric brake, and cars that have no
-    /// air brake.
+    /// Shares for the consist's load, with cars whose inverter gives no electric brake, and cars that
+    /// have no air brake.
     pub fn new(consist: &Consist, no_electric: CarSet, no_air: CarSet) -> Self {
         let pair_n = consist.full_brake_n() / consist.pairs.len().max(1) as f64;
         let wanted_n: f64 = consist
@@ -185,8 +185,8 @@ impl Sharing {
     }
 }
 
-/// What a pair brakes more, or less, because cars have no brake, N: the share of each such car is
-/// spread over the pairs it does not belong to (S3: 11.2 % of T1, a third each).
+/// Effort by which a pair brakes more, or less, because cars have no brake, N: the share of each
+/// such car is spread over the pairs it does not belong to (S3: 11.2 % of T1, a third each).
 fn moved(consist: &Consist, pair: usize, train_n: f64, no_air: CarSet) -> f64 {
     let others = consist.pairs.len().saturating_sub(1);
     if no_air.is_empty() || others == 0 {

@@ -5,12 +5,12 @@ use protocol::{Duration, Instant};
 
 use super::data::TcmsData;
 
-/// What TCMS does to a head control relay.
+/// Act of TCMS on a head control relay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CabOrder {
-    /// That of the unit's cab drops.
+    /// The head control relay of the unit's cab drops.
     GiveUp,
-    /// That of the other cab picks up.
+    /// The head control relay of the other cab picks up.
     TakeUp,
 }
 

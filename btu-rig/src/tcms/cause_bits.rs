@@ -16,17 +16,17 @@ macro_rules! causes {
                 self.0 = if on { self.0 | one.0 } else { self.0 & !one.0 };
             }
 
-            /// Whether one is in it.
+            /// Whether the set has this cause.
             pub fn contains(self, one: Self) -> bool {
                 self.0 & one.0 == one.0
             }
 
-            /// None holds.
+            /// Whether no cause holds.
             pub fn is_empty(self) -> bool {
                 self.0 == 0
             }
 
-            /// As the signal has it.
+            /// Number of the set in the signal.
             pub fn bits(self) -> u16 {
                 self.0
             }
@@ -35,8 +35,8 @@ macro_rules! causes {
 }
 
 causes! {
-    /// Why powering is cut (S3, S4). Scripts can make every one on the bench but two: `not_released` takes an
-    /// injected fault of a brake, `atc_silent` a unit that falls silent.
+    /// Reasons for cutting powering (S3, S4). Scripts can make every one on the bench but two: `not_released`
+    /// takes an injected fault of a brake, `atc_silent` a unit that falls silent.
     PowerCuts {
         /// Doors not proved closed.
         DOORS = 0 "doors",
@@ -70,7 +70,7 @@ causes! {
 }
 
 causes! {
-    /// What opens the emergency brake train line (S4).
+    /// Causes that open the emergency brake train line (S4).
     EbSources {
         /// Master controller of the active cab.
         CONTROLLER = 0 "controller",

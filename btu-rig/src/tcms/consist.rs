@@ -16,7 +16,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Of these motor cars and trailers, not weighed.
+    /// Pair of these motor cars and trailers, not weighed.
     fn of((motors, trailers): (CarSet, CarSet)) -> Self {
         Self {
             motors,
@@ -131,8 +131,8 @@ impl Consist {
         self.power_mps2
     }
 
-    /// What each car's air brake gives beyond its greatest service brake, N: its emergency brake does, at the present
-    /// load.
+    /// Effort of each car's air brake beyond its greatest service brake, N: its emergency brake gives it, at the
+    /// present load.
     pub fn more_air_n(&self) -> PerCar {
         let emergency = self.data.emergency_brake.kmh_per_s / self.data.service_brake.kmh_per_s;
         std::array::from_fn(|car| (self.full_service_n[car] * emergency - self.air_n[car]).max(0.0))

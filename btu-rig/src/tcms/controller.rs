@@ -5,38 +5,35 @@ use crate::lever::Lever;
 
 use super::data::TcmsData;
 
-/// Full brake as a value.
 pub const FULL_BRAKE: i16 = -1024;
-/// Full power as a value.
 pub const FULL_POWER: i16 = 1023;
-/// How far inside the break points the end positions lie, V: outside of them the controller counts
+/// Distance of the end positions inside the break points, V: outside of them the controller counts
 /// as failed.
 const INSIDE_V: f64 = 0.001;
 
-/// What a master controller gives TCMS.
+/// Inputs of TCMS from a master controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControllerInputs {
     /// P contact.
     pub power: bool,
     /// B contact.
     pub brake: bool,
-    /// Neutral contact.
     pub neutral: bool,
     /// Potentiometer, V.
     pub volts: f64,
-    /// Its contact in the emergency brake train line is open.
+    /// The controller's contact in the emergency brake train line is open.
     pub emergency: bool,
 }
 
 impl ControllerInputs {
-    /// More than one of its contacts is closed.
+    /// Whether contacts of the controller contradict each other.
     pub fn contradicts(&self) -> bool {
         self.power && self.brake || self.neutral && (self.power || self.brake)
     }
 }
 
 impl TcmsData {
-    /// What the master controller gives at a position.
+    /// Inputs from the master controller at a position.
     pub fn at(&self, lever: Lever) -> ControllerInputs {
         let [a, b, c, d] = self.controller_v;
         let volts = match lever {

@@ -47,7 +47,7 @@ pub struct TcmsData {
     pub cab_change_s: f64,
 }
 
-/// That of `line6`, for files without it.
+/// Time of a change of cabs on `line6`, for files without it.
 const fn cab_change_s() -> f64 {
     1.0
 }

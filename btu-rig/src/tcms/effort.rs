@@ -12,7 +12,7 @@ const RELEASED_MPS2: f64 = 0.02;
 /// Time constants after which air that is no longer asked for has gone, to 1 part in 20 000.
 const SETTLED: f64 = 10.0;
 
-/// What effort is ordered in one scan.
+/// Ordered effort in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct Order {
     /// Share of full effort, −1 full service .. 1 full power.
@@ -49,13 +49,13 @@ pub struct Effort {
     pub consist: Consist,
     /// Effort asked for, as acceleration: jerk limited.
     effort_mps2: f64,
-    /// The same of the holding brake.
+    /// Effort of the holding brake, as acceleration: jerk limited.
     held_mps2: f64,
     /// The holding brake was on, and its air has not gone yet.
     departs: bool,
-    /// What inverters should be giving by now, powering above 0.
+    /// Efforts that inverters should give by now, powering above 0.
     motors_due: Actuators,
-    /// What cylinders should hold by now.
+    /// Pressure that cylinders should hold by now.
     air_due: Actuators,
     /// Time since air was last asked for, s.
     air_rests_s: f64,
@@ -65,7 +65,7 @@ pub struct Effort {
     shared_for: SharingInputs,
 }
 
-/// What the sharing was worked out for.
+/// Inputs for which the sharing was worked out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct SharingInputs {
     load_kg: f64,
@@ -131,7 +131,8 @@ impl Effort {
         demands
     }
 
-    /// What cylinders should hold: nothing to work out once they have long been empty.
+    /// Works out the pressure that cylinders should hold; there is nothing to work out once they
+    /// have long been empty.
     fn expect_air(&mut self, dt_s: f64, asked: bool, air_n: &PerCar) {
         let service = &self.consist.data.service_brake;
         let settled_s = service.dead_time_s + SETTLED * service.release_s;

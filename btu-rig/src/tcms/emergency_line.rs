@@ -2,7 +2,7 @@
 
 use super::cause_bits::EbSources;
 
-/// What the line runs through.
+/// Contacts in the emergency brake train line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineInputs {
     /// Exactly one head control relay is energised.
@@ -22,7 +22,7 @@ pub struct LineInputs {
 /// The line in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Line {
-    /// What opens it, whether it is cut out or not.
+    /// Causes that open the line, whether it is cut out or not.
     pub sources: EbSources,
     /// Emergency brake: the line is open and not cut out.
     pub applied: bool,

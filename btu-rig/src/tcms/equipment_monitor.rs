@@ -17,7 +17,7 @@ use super::timer::OnDelayCars;
 /// Less would hide cylinders that get only part of their pressure.
 const FULL_DEMAND: f64 = 0.9;
 
-/// What it looks at in one scan.
+/// Inputs of the monitor in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct MonitorInputs<'a> {
     pub equipment: &'a Equipment,
@@ -44,7 +44,8 @@ pub struct EquipmentFailures {
     pub cylinders: CarSet,
     /// Cars whose brake is not released.
     pub not_released: CarSet,
-    /// They bring the full service brake (BCXNRB): not while they are asked again.
+    /// Brakes that are not released bring the full service brake (BCXNRB): not while they are asked
+    /// again.
     pub not_released_brakes: bool,
 }
 
@@ -90,7 +91,7 @@ pub struct EquipmentMonitor {
 }
 
 impl EquipmentMonitor {
-    /// Nothing found yet. `full_service_n` is each car's share of full service, N.
+    /// A monitor that has found nothing. `full_service_n` is each car's share of full service, N.
     pub fn new(data: &TcmsData, full_service_n: PerCar) -> Self {
         let mut monitor = Self {
             silent_after: Duration::from_secs(data.silent_after_s),

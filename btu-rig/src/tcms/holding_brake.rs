@@ -5,7 +5,7 @@ use protocol::{Duration, Instant};
 use super::data::TcmsData;
 use super::timer::OnDelay;
 
-/// What the holding brake looks at in one scan.
+/// Inputs of the holding brake in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HoldingInputs {
     /// Automatic or driverless mode.

@@ -25,7 +25,7 @@ pub struct CabInputs {
     pub forced_release: bool,
 }
 
-/// What TCMS is given in one scan.
+/// Inputs of TCMS in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TcmsInputs<'a> {
     /// Both cabs; the unit is in the first.
@@ -49,7 +49,8 @@ pub struct TcmsInputs<'a> {
     pub contacts: Option<Outputs>,
     /// Passengers as the brake control units weigh them, kg.
     pub load_kg: f64,
-    /// What the equipment reports; `None` = generators turn the wheels, and it counts as sound.
+    /// State of the equipment; `None` = generators turn the wheels, and the equipment counts as
+    /// sound.
     pub equipment: Option<&'a Equipment>,
     /// Speed of the wheels while generators turn them, m/s, a size.
     pub speed_mps: f64,

@@ -5,7 +5,7 @@ use protocol::message::ModeSwitch;
 use super::atc_link::AtoOrder;
 use super::inputs::CabInputs;
 
-/// Who drives the train, by the mode bits of the paper's modules.
+/// Driver of the train, by the mode bits of the paper's modules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Driver {
     /// The driver: emergency, yard and manual mode.
@@ -29,7 +29,7 @@ impl Driver {
 /// Mode TCMS drives in (S4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TcmsMode {
-    /// None: no cab counts, or its mode switch is off.
+    /// No cab counts, or its mode switch is off.
     #[default]
     None,
     /// Mode switch at emergency: the driver has the train.

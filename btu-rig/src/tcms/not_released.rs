@@ -41,7 +41,7 @@ pub(super) struct NotReleased {
 }
 
 impl NotReleased {
-    /// None found; a brake may take `after` to release.
+    /// A detector that has found no brake; a brake may take `after` to release.
     pub fn new(after: Duration) -> Self {
         Self {
             after,

@@ -12,7 +12,7 @@ use super::inputs::TcmsInputs;
 use super::timer::BurstDetector;
 use super::view::{TcmsEvent, TcmsView};
 
-/// What it goes by in one scan.
+/// Inputs of the report in one scan.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scan<'a> {
     pub inputs: &'a TcmsInputs<'a>,
@@ -25,7 +25,7 @@ pub(super) struct Scan<'a> {
     pub dead_man: bool,
 }
 
-/// What has been logged already, and what waits to be taken.
+/// Events that were logged already, and events that wait to be taken.
 #[derive(Clone, Debug)]
 pub(super) struct Report {
     events: Vec<TcmsEvent>,
@@ -135,7 +135,7 @@ impl Report {
         self.line_takes_nothing = line;
     }
 
-    /// What is on or off.
+    /// Reports conditions that are on or off.
     fn conditions(&mut self, scan: &Scan<'_>) {
         let cabs = &scan.inputs.cabs;
         let contacts = scan

@@ -112,7 +112,8 @@ impl Tcms {
         self.unlatch();
     }
 
-    /// Nothing latched: the holding brake is on for as long as it is asked for, and no change of cabs goes on.
+    /// Clears what is latched: the holding brake is on for as long as it is asked for, and no change of cabs
+    /// goes on.
     pub fn unlatch(&mut self) {
         self.holding.reset();
         self.cab_change.leave();
@@ -123,7 +124,7 @@ impl Tcms {
         self.atc.receive(now, frame);
     }
 
-    /// What it did in the last scan.
+    /// Result of the last scan.
     pub fn view(&self) -> &TcmsView {
         &self.view
     }

@@ -62,7 +62,7 @@ impl OnDelayCars {
     }
 }
 
-/// Detects events that come often: at least so many within a time.
+/// Detects frequent events: at least a given number within a time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BurstDetector {
     at_least: u32,
@@ -154,7 +154,7 @@ mod tests {
         assert!(!begins(0, 1) && !begins(100, 2) && !begins(1200, 2));
         assert!(!begins(1300, 3) && !begins(1400, 4));
         assert!(begins(1500, 5));
-        // It goes on: nothing new.
+        // The burst goes on: nothing new.
         for i in 0..40 {
             assert!(!begins(1600 + i * 100, 6 + i as u32), "{i}");
         }

@@ -11,7 +11,7 @@ use super::equipment_monitor::EquipmentFailures;
 use super::full_service_brake::BrakeOutputs;
 use super::mode::TcmsMode;
 
-/// What TCMS did in one scan.
+/// Result of one scan of TCMS.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TcmsView {
     /// Mode TCMS drives in.
@@ -27,7 +27,6 @@ pub struct TcmsView {
     pub power_cuts: PowerCuts,
     /// Lamps that are lit.
     pub lamps: Lamps,
-    /// What is wrong with the equipment.
     pub found: EquipmentFailures,
     /// Voltage of the controller that counts, V.
     pub volts: f64,
@@ -39,7 +38,7 @@ pub struct TcmsView {
     pub given: i16,
     /// Powering drives the train backward: by the reverser that counts, or by ATO.
     pub backward: bool,
-    /// What becomes of a head control relay in this scan.
+    /// Order to a head control relay in this scan.
     pub cab_order: Option<CabOrder>,
 }
 

@@ -1,9 +1,10 @@
 //! Effort that follows its demand: dead time, then a first-order lag.
 
-use super::check::MAX_TIME_S;
 use super::{MAX_CARS, PerCar};
 use crate::conditions::MAX_DELAY_FACTOR;
 
+/// Longest dead time or time constant, s.
+pub(super) const MAX_TIME_S: f64 = 5.0;
 /// Longest dead time that a checked train on a checked day can have, s: bounds what is kept.
 const MAX_DEAD_S: f64 = MAX_TIME_S * MAX_DELAY_FACTOR;
 

@@ -9,14 +9,14 @@ pub struct CarSet(u16);
 impl CarSet {
     pub const NONE: Self = Self(0);
 
-    /// The car at a place; none for a place no train has.
+    /// The set of the car at this place; empty for a place that no train has.
     pub fn one(car: usize) -> Self {
         let mut set = Self::NONE;
         set.set(car, true);
         set
     }
 
-    /// Puts the car at a place in or takes it out. Places no train has are left out.
+    /// Adds the car at a place, or removes it. Places that no train has are left out.
     pub fn set(&mut self, car: usize, on: bool) {
         if car < MAX_CARS {
             let bit = 1 << car;
@@ -24,44 +24,42 @@ impl CarSet {
         }
     }
 
-    /// Whether a car is in it.
     pub fn contains(self, car: usize) -> bool {
         car < MAX_CARS && self.0 & (1 << car) != 0
     }
 
-    /// Nobody is.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// What its cars come to together.
+    /// Sum of a value over the cars of the set.
     pub fn sum(self, of: &PerCar) -> f64 {
         self.iter().map(|car| of[car]).sum()
     }
 
-    /// Cars of either.
+    /// Cars of this set or the other.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Cars of this and not of the other.
+    /// Cars of this set and not of the other.
     #[must_use]
     pub fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Bit 0 = the first car.
+    /// The set as bits; bit 0 = the first car.
     pub fn bits(self) -> u16 {
         self.0
     }
 
-    /// Its cars' places, from the head.
+    /// Places of the cars, from the head.
     pub fn iter(self) -> impl Iterator<Item = usize> {
         let mut left = self.0;
         std::iter::from_fn(move || {
             let car = left.trailing_zeros() as usize;
-            // Takes the first of them out; scans go through sets many times.
+            // Removes the first car; scans go through sets many times.
             left &= left.wrapping_sub(1);
             (car < MAX_CARS).then_some(car)
         })

@@ -1,16 +1,50 @@
-//! Ranges of a train's data, and what must fit together.
+//! Reads a train's file: ranges of its data, and what must fit together.
 
 use protocol::check_ranges;
 use protocol::config::{ConfigError, within};
+use serde::Deserialize;
 
 use super::MAX_CARS;
-use super::data::{CarData, CarsData, DoorData, IdealData, Role};
+use super::actuator::MAX_TIME_S;
+use super::data::{CarData, CarsData, DoorData, IdealData, Role, TrainData};
 
-/// Longest dead time or time constant, s.
-pub(super) const MAX_TIME_S: f64 = 5.0;
+/// The one key all models have.
+#[derive(Deserialize, schemars::JsonSchema)]
+struct Kind {
+    model: String,
+}
 
-/// What a unit is told of such a train has the ranges of `ato.train` in its configuration: the train's file is at fault.
-pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
+impl TrainData {
+    /// Reads and checks a train file.
+    ///
+    /// # Errors
+    /// The first thing wrong: syntax with line and column, or a train that cannot be.
+    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
+        let Kind { model } = parse(text)?;
+        let data = match model.as_str() {
+            "ideal" => Self::Ideal(parse(text)?),
+            "cars" => Self::Cars(parse(text)?),
+            _ => {
+                return Err(ConfigError::Conflict(format!(
+                    "model \"{model}\" must be ideal or cars"
+                )));
+            }
+        };
+        match &data {
+            Self::Ideal(ideal) => check_ideal(ideal)?,
+            Self::Cars(cars) => check_cars(cars)?,
+        }
+        Ok(data)
+    }
+}
+
+fn parse<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ConfigError> {
+    toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))
+}
+
+/// Checks values that the unit is told against the ranges of `ato.train` in its configuration, so that an error names the
+/// train's file.
+fn check_ideal(data: &IdealData) -> Result<(), ConfigError> {
     check_ranges! { data, "";
         mass_kg: 1e3, 1e7;
         full_load_kg: 0.0, 1e6;
@@ -28,7 +62,7 @@ pub(super) fn ideal(data: &IdealData) -> Result<(), ConfigError> {
     data.tcms.check()
 }
 
-pub(super) fn cars(data: &CarsData) -> Result<(), ConfigError> {
+fn check_cars(data: &CarsData) -> Result<(), ConfigError> {
     ranges(data)?;
     check_doors(&data.doors)?;
     let electric = &data.electric_brake;
@@ -62,7 +96,7 @@ pub(super) fn cars(data: &CarsData) -> Result<(), ConfigError> {
     data.tcms.check()
 }
 
-/// What other programs say in place of constants.
+/// Checks the efforts that other programs give in place of constants.
 fn check_efforts(data: &CarsData) -> Result<(), ConfigError> {
     let count = data.traction.efforts.as_ref().map_or(1, Vec::len);
     within("traction.efforts", count as f64, 1.0, 1_000.0)?;

@@ -5,7 +5,7 @@ use crate::stimulus::CarFailure;
 
 use super::{CarSet, PerCar};
 
-/// What the train's equipment reports to TCMS each scan. Efforts are sizes.
+/// Reports of the train's equipment to TCMS in each scan. Efforts are sizes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Equipment {
     /// Speed of the rims of each motor car, m/s, a size.
@@ -26,7 +26,7 @@ pub struct Equipment {
     pub other_brakes: bool,
 }
 
-/// What is wrong with the train's equipment.
+/// Faults of the train's equipment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EquipmentFaults {
     /// Inverters that do nothing and say nothing.
@@ -44,7 +44,7 @@ pub struct EquipmentFaults {
 }
 
 impl EquipmentFaults {
-    /// What is wrong when these and `other` come together.
+    /// Faults when these and `other` come together.
     #[must_use]
     pub fn with(&self, other: &Self) -> Self {
         let worse = |of: &PerCar, than: &PerCar| std::array::from_fn(|car| of[car].max(than[car]));

@@ -16,7 +16,7 @@ const BRAKING_MPS2: f64 = 0.02;
 /// Share of the emergency brake's pressure that is none.
 const EMPTY_SHARE: f64 = 1e-6;
 
-/// What is cut out, and other brakes, as the last step had it.
+/// Cut-outs, and other brakes, in the last step.
 #[derive(Clone, Copy, Debug, Default)]
 struct CutOut {
     regeneration: CarSet,
@@ -44,7 +44,7 @@ pub(super) struct Formation {
     sound: bool,
     /// Pressure in each car's cylinders as force, N.
     cylinders_n: PerCar,
-    /// What the inputs of the last step mean for reports.
+    /// Meaning of the last step's inputs for reports.
     cut_out: CutOut,
     efforts: Efforts,
     velocity_mps: f64,
@@ -314,7 +314,7 @@ impl Formation {
         (motor_n, air_n)
     }
 
-    /// What the emergency brake's valve adds, and what does not go out of stuck cylinders, N.
+    /// Adds the effort of the emergency brake's valve, and the effort that stuck cylinders keep, N.
     #[cold]
     fn fill_cylinders(&self, cylinders_n: &mut PerCar, emergency: f64, inputs: &TrainInputs) {
         for (i, cylinder_n) in cylinders_n.iter_mut().enumerate() {

@@ -44,7 +44,7 @@ pub type PerCar = [f64; MAX_CARS];
 /// One kilogram-force per tonne, N/kg; also what 1 ‰ of gradient takes.
 pub const KGF_PER_T: f64 = 9.80665e-3;
 
-/// What acts on the train.
+/// Everything that acts on the train in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrainInputs {
     /// Share of full effort, −1 full service brake .. 1 full power: what the point mass goes by.
@@ -86,12 +86,13 @@ impl TrainInputs {
     }
 }
 
-/// What the train did in one step.
+/// Motion of the train in one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrainState {
-    /// Its motion: moving, and standing for the rest if it came to a stop.
+    /// Motion of the train: moving, then standing for the rest if it came to a stop.
     pub pieces: [Piece; 2],
-    /// What the rim of the axle with the tachometers did; the same unless it slips or slides.
+    /// Motion at the rim of the axle with the tachometers; equal to the train's unless the wheel
+    /// slips or slides.
     pub axle: [Piece; 2],
     /// Traction on the rails, N, a size.
     pub traction_n: f64,
@@ -101,7 +102,7 @@ pub struct TrainState {
     pub air_brake_n: f64,
     /// Running, starting and curve resistance and the disturbance, N, against the motion.
     pub resistance_n: f64,
-    /// What the gradient takes, N, uphill positive.
+    /// Force of the gradient, N, uphill positive.
     pub gradient_n: f64,
     /// Traction power at the wheels, W.
     pub tractive_power_w: f64,
@@ -152,7 +153,7 @@ impl Train {
         }
     }
 
-    /// Its speed, m/s, forward positive.
+    /// Speed of the train, m/s, forward positive.
     pub fn velocity_mps(&self) -> f64 {
         match &self.model {
             Model::Ideal(train) => train.velocity_mps(),
@@ -172,7 +173,7 @@ impl Train {
         }
     }
 
-    /// What its equipment reports at the end of the last step. A point mass is one sound car.
+    /// Reports of the equipment at the end of the last step. A point mass is one sound car.
     pub fn equipment(&self) -> Equipment {
         match &self.model {
             Model::Ideal(train) => train.equipment(),
@@ -190,7 +191,7 @@ impl Train {
 }
 
 impl Disturbance {
-    /// Its coefficient at a time, N·s/m: the force is `−f_d·v`.
+    /// Coefficient of the disturbance at a time, N·s/m: the force is `−f_d·v`.
     fn at(&self, seconds: f64) -> f64 {
         match *self {
             Self::None => 0.0,

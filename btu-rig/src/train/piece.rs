@@ -3,7 +3,7 @@
 /// Constant acceleration for a part of a scan; the sign of speed never changes within it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Piece {
-    /// How long, s.
+    /// Duration, s.
     pub seconds: f64,
     /// Speed at its start, m/s, forward positive.
     pub speed_mps: f64,

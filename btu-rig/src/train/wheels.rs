@@ -26,7 +26,7 @@ pub(super) struct Efforts {
 pub(super) struct TrainMotion {
     /// Train's speed, m/s, forward positive.
     pub velocity_mps: f64,
-    /// Its acceleration in the step before, m/s².
+    /// Acceleration in the step before, m/s².
     pub accel_mps2: f64,
     /// Traction pulls forward 1 or backward −1.
     pub reverser: f64,
@@ -34,7 +34,7 @@ pub(super) struct TrainMotion {
     pub adhesion: f64,
 }
 
-/// What the rails carry in one step.
+/// Efforts that the rails carry in one step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rails {
     /// Traction, N, a size.
@@ -127,7 +127,7 @@ impl WheelSets {
             .sum()
     }
 
-    /// What the rails carry of the efforts.
+    /// The part of the efforts that the rails carry.
     pub fn grip(&mut self, efforts: &Efforts, rolling: TrainMotion) -> Rails {
         if self.disturbed || self.exceeds(efforts, rolling) {
             return self.grip_each(efforts, rolling);

@@ -1,5 +1,5 @@
-//! What disturbs the signals on their way into a coil: gain, noise, hum of the supply, lines of an inverter that sweep with
-//! its frequency, dropouts and clipping.
+//! Disturbances of the signals on their way into a coil: gain, noise, hum of the supply, lines of an inverter that
+//! sweep with its frequency, dropouts and clipping.
 
 use protocol::Random;
 use protocol::config::{ConfigError, within};
@@ -19,17 +19,16 @@ pub struct ChannelConfig {
     pub hum_mv: f64,
     /// Frequency of the supply, Hz.
     pub hum_hz: f64,
-    /// Lines of the hum.
     pub hum_lines: u32,
     /// A line of the traction inverter, mV rms.
     pub inverter_mv: f64,
-    /// It sweeps between these, Hz, up and down.
+    /// Limits of the line's sweep, Hz, up and down.
     pub inverter_hz: [f64; 2],
-    /// In this time, s.
+    /// Time of a sweep of that line, s.
     pub inverter_sweep_s: f64,
     /// Mean number of dropouts, 1/s.
     pub dropouts_per_s: f64,
-    /// How long each lasts, s.
+    /// Duration of a drop-out, s.
     pub dropout_s: f64,
     /// Greatest amplitude that passes, mV.
     pub clip_mv: f64,
@@ -57,7 +56,7 @@ impl ChannelConfig {
     /// Reads a channel.
     ///
     /// # Errors
-    /// It does not parse, or a value is out of its range; with the key.
+    /// The text does not parse, or a value is out of its range; the error names the key.
     pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
         let channel: Self =
             toml::from_str(text).map_err(|error| ConfigError::Syntax(error.to_string()))?;
@@ -113,7 +112,7 @@ impl Channel {
         }
     }
 
-    /// What arrives of these samples, mV.
+    /// Disturbs these samples, mV.
     pub fn disturb(&mut self, samples: &mut [f64]) {
         let clip = self.config.clip_mv;
         for sample in samples {

@@ -30,7 +30,7 @@ impl CodeWave {
         }
     }
 
-    /// The code shifts its carrier by so much up and down, with one phase; 0 keys it.
+    /// Deviation of the carrier by the code, up and down, with one phase; 0 keys the carrier.
     #[must_use]
     pub fn shifted(self, shift_hz: f64, sample_hz: f64) -> Self {
         Self {
@@ -39,8 +39,8 @@ impl CodeWave {
         }
     }
 
-    /// Another carrier, rate and level from now on, without a jump of either phase; a code that was not there begins with its
-    /// carrier on.
+    /// Sets another carrier, rate and level from now on, without a jump of either phase; a code that was not there
+    /// begins with its carrier on.
     pub fn set(&mut self, carrier_hz: f64, rate_hz: f64, level_mv: f64, sample_hz: f64) {
         if self.amplitude_mv == 0.0 {
             self.keying = Phase::default();
@@ -50,7 +50,7 @@ impl CodeWave {
         self.amplitude_mv = level_mv * std::f64::consts::SQRT_2;
     }
 
-    /// How much of the carrier is on: half of the time all, with edges of a raised cosine.
+    /// Share of the carrier that is on: half of the time all, with edges of a raised cosine.
     fn keyed(cycles: f64) -> f64 {
         let edge = |from: f64| 0.5 - 0.5 * cosine(0.5 * (from / EDGE).clamp(0.0, 1.0));
         match cycles {

@@ -1,4 +1,4 @@
-//! What is in the coils, as samples in mV: speed codes, TWC, markers, pulses of speed sensors, and what disturbs them.
+//! Waveforms in the coils, as samples in mV: speed codes, TWC, markers, pulses of speed sensors, and disturbances.
 //!
 //! Each source gives one sample after the other, without end or for its length, at a rate of its own. A phase is counted
 //! in cycles and kept below one, so that it stays exact over hours.
@@ -24,7 +24,7 @@ pub use toothed_wheel::{Teeth, ToothedWheel};
 struct Phase(f64);
 
 impl Phase {
-    /// Goes on by a part of a cycle; the phase before.
+    /// Moves the phase on by a part of a cycle; the phase before.
     fn step(&mut self, cycles: f64) -> f64 {
         let before = self.0;
         self.0 = (before + cycles).fract();

@@ -12,7 +12,8 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// So strong that a signal of `level_mv`, rms, is `snr_db` above what of it is within `band_hz`.
+    /// Noise with which a signal of `level_mv`, rms, has the ratio `snr_db` to the noise within
+    /// `band_hz`.
     pub fn new(level_mv: f64, snr_db: f64, band_hz: f64, sample_hz: f64, seed: u64) -> Self {
         let in_band = level_mv * level_mv / 10f64.powf(snr_db / 10.0);
         Self {

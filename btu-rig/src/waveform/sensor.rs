@@ -15,7 +15,7 @@ const AMPLITUDE_MV: f64 = 1_000.0;
 pub struct SensorWave {
     sample_hz: f64,
     lines: [Line; 2],
-    /// What the lines do next: at a sample from now on, line, high or low.
+    /// Coming changes of the lines: time in samples from now on, line, high or low.
     changes: VecDeque<(f64, usize, bool)>,
     /// Time since the last pulse, samples.
     since: f64,
@@ -37,7 +37,7 @@ impl Line {
 }
 
 impl SensorWave {
-    /// A wheel at rest, with so many samples a second for each line.
+    /// A wheel at rest, with this number of samples a second for each line.
     pub fn new(sample_hz: f64) -> Self {
         let low = Line {
             high: false,
@@ -51,7 +51,7 @@ impl SensorWave {
         }
     }
 
-    /// Makes so many pulses in the samples that come next, evenly, the last of them `last` samples from now.
+    /// Makes this number of pulses in the next samples, evenly, the last of them `last` samples from now.
     pub fn pulse(&mut self, count: u16, last: f64, backward: bool) {
         if count == 0 {
             return;

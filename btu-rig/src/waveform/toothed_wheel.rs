@@ -28,7 +28,7 @@ pub struct ToothedWheel {
 }
 
 impl ToothedWheel {
-    /// So many teeth a second; a line is this much above or below the middle, mV.
+    /// A wheel with `per_s` teeth a second; a line is `amplitude_mv` above or below the middle.
     pub fn new(teeth: Teeth, per_s: f64, amplitude_mv: f64, sample_hz: f64) -> Self {
         Self {
             teeth,

@@ -1,5 +1,3 @@
-//! What the crate promises.
-
 mod procedure_loader;
 mod procedure_runner;
 mod tcms_exhaustive;

@@ -103,8 +103,8 @@ fn full_service_brake_in_every_combination() {
     assert_eq!(by_cause, [8192, 8192, 8192, 8192, 7424, 8192, 8192, 7680]);
 }
 
-/// What the value is for P, B, neutral and a source's value, as S4 has it and the safe side beyond.
-/// One row for each case, the first that fits counts.
+/// Value for P, B, neutral and a source's value, by S4, and beyond S4 on the safe side. One row for
+/// each case, the first that fits counts.
 fn value(power: bool, brake: bool, neutral: bool, cut: bool, value: i16) -> i16 {
     let value = i32::from(value);
     let rows: [(bool, i32); 6] = [

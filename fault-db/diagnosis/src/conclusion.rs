@@ -49,6 +49,11 @@ pub enum Conclusion {
     BrokenOff,
     /// The run did not pass, and nothing that could be weighed was seen to be wrong.
     NotWeighed,
+    /// An instrument of the bench failed, and nothing was seen to be wrong with the unit.
+    BenchFailed {
+        /// The bench, as its file is called.
+        bench: String,
+    },
 }
 
 impl Conclusion {
@@ -59,7 +64,9 @@ impl Conclusion {
             Self::OneOf { .. } => Finding::OneOf,
             Self::NoFault { .. } => Finding::NoFault,
             Self::NothingSeen { .. } | Self::BrokenOff => Finding::NotEnough,
-            Self::CannotTell { .. } | Self::NotWeighed => Finding::CannotTell,
+            Self::CannotTell { .. } | Self::NotWeighed | Self::BenchFailed { .. } => {
+                Finding::CannotTell
+            }
         }
     }
 

@@ -41,7 +41,7 @@ impl Refusal {
         }))
     }
 
-    /// Which row, as "fault event 0197…".
+    /// Name of the row, as "fault event 0197…".
     pub fn row(&self) -> String {
         format!("{} {}", self.table.replace('_', " "), self.shown)
     }

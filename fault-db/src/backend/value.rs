@@ -35,7 +35,7 @@ impl Value<'_> {
         Id::from_field(self.field()).ok()
     }
 
-    /// The same as a field, for comparison with stored rows.
+    /// The value as a field, for comparison with stored rows.
     pub fn field(&self) -> Field<'_> {
         match self {
             Self::Null => Field::Null,
@@ -113,7 +113,7 @@ pub(crate) trait FromField<'a>: Sized {
 }
 
 impl Field<'_> {
-    /// The same value, owned.
+    /// The value, owned.
     pub fn to_value(self) -> Value<'static> {
         match self {
             Self::Null => Value::Null,

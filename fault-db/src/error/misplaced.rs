@@ -1,24 +1,24 @@
-//! What has happened to a database file that was opened.
+//! Changes of a database file that was opened.
 
-/// How a file is no longer the one that was opened, as what follows its name.
+/// Change of the opened file, as text behind its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Misplaced {
-    /// It has no name any more.
+    /// The file has no name any more.
     #[error("was removed")]
     Removed,
-    /// Its name leads to another file.
+    /// The name leads to another file.
     #[error("was replaced by another file")]
     Replaced,
     /// Two names lead to it.
     #[error("has a second name (a hard link); remove that name")]
     SecondName,
-    /// Its write-ahead log is another.
+    /// The write-ahead log beside the file was removed or replaced.
     #[error("lost its log: the file beside it that ends in -wal was removed or replaced")]
     NoLog,
     /// The run is not in it.
     #[error("was written over, and does not hold the run as it was recorded")]
     WrittenOver,
-    /// There was one when the program began.
+    /// The file was there when the program began.
     #[error("is gone")]
     Gone,
 }

@@ -1,5 +1,5 @@
-//! Errors of the store, each with the file or server it concerns and the next move. A message that ends with
-//! another file to choose does not say how: that is the caller's to add.
+//! Errors of the store, each with the file or server it concerns and the next move. A message that tells to
+//! choose another file does not say how: the caller adds that.
 
 mod misplaced;
 mod query_limit;
@@ -26,7 +26,7 @@ pub enum StoreError {
         /// The database file.
         path: PathBuf,
     },
-    /// Who asked for the work has stopped it: nothing of it is kept.
+    /// The caller has stopped the work: nothing of it is kept.
     #[error("stopped before its end")]
     Stopped,
     /// No room for the write; what was committed before remains.
@@ -52,7 +52,7 @@ pub enum StoreError {
     ForeignDatabase {
         /// The file.
         path: PathBuf,
-        /// The application id it carries.
+        /// Application id of the file.
         application_id: i32,
     },
     /// Written by a later version of this program.
@@ -60,9 +60,9 @@ pub enum StoreError {
     NewerSchema {
         /// The database file.
         path: PathBuf,
-        /// Its schema version.
+        /// Schema version of the file.
         found: i32,
-        /// The newest this crate knows.
+        /// The newest schema version that this crate knows.
         known: i32,
     },
     /// The file holds a table, index, view or trigger that this program did not make, or an altered one.
@@ -72,7 +72,7 @@ pub enum StoreError {
         path: PathBuf,
         /// The first finding.
         what: Box<Damage>,
-        /// How many more there are.
+        /// Number of further findings.
         more: usize,
     },
     /// The file is no longer the one that was opened, or another name leads to it, too.
@@ -80,7 +80,7 @@ pub enum StoreError {
     Misplaced {
         /// The database file.
         path: PathBuf,
-        /// What has happened to it.
+        /// Change of the file.
         what: Misplaced,
     },
     /// The file is an older copy: more of its chain of seals is known elsewhere.
@@ -88,12 +88,12 @@ pub enum StoreError {
     EarlierCopy {
         /// The database file.
         path: PathBuf,
-        /// Entries in it.
+        /// Entries in the file.
         here: i64,
         /// Entries known elsewhere.
         there: i64,
     },
-    /// The file and the copy known elsewhere have forked: each has entries the other has not.
+    /// The file and the copy known elsewhere have forked: each has entries that the other lacks.
     #[error("{} is a copy that went on by itself after entry {after} of its chain of seals: what is known there of it after that is not in it; bring what is new in it into the file itself with `db import`, or give it a name of its own with `db sync --as-copy`", .path.display())]
     ForkedCopy {
         /// The database file.
@@ -110,7 +110,7 @@ pub enum StoreError {
         after: i64,
         /// run, event or note.
         what: String,
-        /// Its id.
+        /// Id of that run, event or note.
         id: Id,
     },
     /// An earlier schema that a read-only opening may not migrate.
@@ -118,9 +118,9 @@ pub enum StoreError {
     OlderSchema {
         /// The database file.
         path: PathBuf,
-        /// Its schema version.
+        /// Schema version of the file.
         found: i32,
-        /// The one this crate reads.
+        /// The schema version that this crate reads.
         known: i32,
     },
     /// There is no such file; reading does not create one.
@@ -134,7 +134,7 @@ pub enum StoreError {
     CannotOpen {
         /// The file asked for.
         path: PathBuf,
-        /// What the system said.
+        /// Message of the system.
         reason: String,
     },
     /// The disk or the system failed a read or a write.
@@ -156,7 +156,7 @@ pub enum StoreError {
     Corrupt {
         /// The database file.
         path: PathBuf,
-        /// What is wrong, and where.
+        /// Damage, and its place.
         detail: String,
     },
     /// No row has the id or name.
@@ -164,7 +164,7 @@ pub enum StoreError {
     NotFound {
         /// run, fault, trace or measurement.
         what: &'static str,
-        /// What was asked.
+        /// The name that was asked for.
         asked: String,
     },
     /// A run names the trace, which is not here.
@@ -173,7 +173,7 @@ pub enum StoreError {
          not fit its seal; importing a whole copy of the file that recorded it brings it"
     )]
     TraceMissing {
-        /// What was asked.
+        /// The trace that was asked for.
         asked: String,
         /// The run.
         run: Id,
@@ -183,15 +183,15 @@ pub enum StoreError {
     Ambiguous {
         /// run, fault or trace.
         what: &'static str,
-        /// What was asked.
+        /// The name that was asked for.
         asked: String,
-        /// A few of those that fit.
+        /// A few rows that fit.
         matches: Vec<Id>,
     },
     /// A search text without any word.
     #[error("{asked:?} has no word to search for; give letters or digits")]
     NoWords {
-        /// What was asked.
+        /// The words that were asked for.
         asked: String,
     },
     /// Neither an id, nor a part of one, nor `latest`.
@@ -201,15 +201,15 @@ pub enum StoreError {
     BadId {
         /// run, fault or trace.
         what: &'static str,
-        /// What was asked.
+        /// The id that was asked for.
         asked: String,
     },
     /// A text exceeds its limit.
     #[error("{what} has {length} characters, and at most {most} are kept; shorten it")]
     TextTooLong {
-        /// Which text, as "the note".
+        /// Name of the text, as "the note".
         what: &'static str,
-        /// Its length in characters.
+        /// Length of the text, characters.
         length: usize,
         /// The limit.
         most: usize,
@@ -219,10 +219,10 @@ pub enum StoreError {
     Transition {
         /// The fault.
         fault: Id,
-        /// From where to where.
+        /// The states of the transition.
         source: TransitionError,
     },
-    /// What was written about the fault stays.
+    /// A withdrawal is refused.
     #[error("fault {0}: {1}")]
     Withdrawal(Id, #[source] WithdrawalError),
     /// Steps of a run must have rising indexes.
@@ -252,7 +252,7 @@ pub enum StoreError {
     Trace {
         /// The trace.
         trace: Id,
-        /// What is wrong with it.
+        /// Error of the trace.
         source: TraceError,
     },
     /// A backup or export never overwrites.
@@ -266,10 +266,10 @@ pub enum StoreError {
     CannotWrite {
         /// The target asked for.
         path: PathBuf,
-        /// What is missing, or what the system said.
+        /// Missing thing, or message of the system.
         reason: String,
     },
-    /// The same file is both source and target.
+    /// One file is both source and target.
     #[error("{} cannot be merged into itself; name another file", .path.display())]
     SameFile {
         /// The file.
@@ -278,19 +278,19 @@ pub enum StoreError {
     /// The statement does more than read.
     #[error("only one reading statement is allowed here ({reason}); write a single SELECT")]
     QueryRefused {
-        /// What was refused.
+        /// Why the statement was refused.
         reason: String,
     },
     /// SQLite rejected the statement.
     #[error("the query failed: {reason}")]
     QueryFailed {
-        /// What SQLite said.
+        /// Message of SQLite.
         reason: String,
     },
     /// The result exceeds a limit.
     #[error("the query was given up: {limit}")]
     QueryExceeds {
-        /// Which limit.
+        /// Limit that was exceeded.
         limit: QueryLimit,
     },
     /// The operation needs a file, and this is a server.
@@ -305,10 +305,10 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
-    /// Not the address of a server.
+    /// The text is no address of a server.
     #[error("bad server address: {reason}; write postgres://USER@HOST/DATABASE")]
     BadAddress {
-        /// What is wrong with it; never its password.
+        /// Fault of the address; never its password.
         reason: String,
     },
     /// The server does not answer, or no longer.
@@ -316,9 +316,9 @@ pub enum StoreError {
     ServerUnreachable {
         /// The server.
         path: PathBuf,
-        /// What was being done.
+        /// Work during which the error came.
         doing: &'static str,
-        /// What went wrong.
+        /// Reason of the error.
         reason: ServerReason,
     },
     /// The server refuses the connection or the right.
@@ -334,7 +334,7 @@ pub enum StoreError {
     ServerNotTrusted {
         /// The server.
         path: PathBuf,
-        /// What is missing, and what to do.
+        /// Missing thing, and the remedy.
         reason: ServerReason,
     },
     /// Other sessions keep the server busy for too long.
@@ -342,7 +342,7 @@ pub enum StoreError {
     ServerBusy {
         /// The server.
         path: PathBuf,
-        /// What was being done.
+        /// Work during which the error came.
         doing: &'static str,
         /// The server's message.
         reason: String,
@@ -358,7 +358,7 @@ pub enum StoreError {
     ServerSetup {
         /// The server.
         path: PathBuf,
-        /// What is missing, and what to do.
+        /// Missing thing, and the remedy.
         reason: String,
     },
     /// The database on the server holds something else.
@@ -372,9 +372,9 @@ pub enum StoreError {
     ServerOlderSchema {
         /// The server.
         path: PathBuf,
-        /// Its schema version.
+        /// Schema version of the server.
         found: i32,
-        /// The one this crate knows.
+        /// The schema version that this crate knows.
         known: i32,
     },
     /// The server's tables are of a later version.
@@ -382,7 +382,7 @@ pub enum StoreError {
     ServerNewerSchema {
         /// The server.
         path: PathBuf,
-        /// Its schema version.
+        /// Schema version of the server.
         found: i32,
         /// The one this crate knows.
         known: i32,
@@ -392,7 +392,7 @@ pub enum StoreError {
     Server {
         /// The server.
         path: PathBuf,
-        /// What was being done.
+        /// Work during which the error came.
         doing: &'static str,
         /// The server's error.
         source: postgres::Error,
@@ -402,7 +402,7 @@ pub enum StoreError {
     Sqlite {
         /// The database file.
         path: PathBuf,
-        /// What was being done.
+        /// Work during which the error came.
         doing: &'static str,
         /// SQLite's error.
         source: rusqlite::Error,
@@ -410,7 +410,7 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// There is no row of this id.
+    /// Error for an id without a row.
     pub(crate) fn not_found(what: &'static str, id: Id) -> Self {
         Self::NotFound {
             what,

@@ -8,25 +8,25 @@ use rustls::CertificateError;
 
 use super::StoreError;
 
-/// Why there is no connection with a server, and what to do about it.
+/// Reason for which there is no connection with a server, and the remedy.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ServerReason {
     /// No program at that address.
     #[error("nothing listens there")]
     NothingListens,
-    /// It is silent.
+    /// The server is silent.
     #[error("no answer in time")]
     NoAnswer,
     /// The file of the socket is not there.
     #[error("there is no such socket")]
     NoSocket,
-    /// It broke off.
+    /// The connection broke off.
     #[error("the connection is lost")]
     Lost,
-    /// None was given.
+    /// The address has no password.
     #[error("it wants a password")]
     NoPassword,
-    /// It offers none, and the address demands it.
+    /// The server offers no TLS, and the address demands TLS.
     #[error("it has no TLS; on a network you trust add sslmode=disable")]
     NoTls,
     /// The certificate's issuer is not trusted.
@@ -156,7 +156,7 @@ fn without_message(
     }
 }
 
-/// Why a certificate was not trusted.
+/// Reason for which a certificate was not trusted.
 fn distrust(error: &rustls::Error) -> ServerReason {
     use CertificateError as C;
     match error {

@@ -30,7 +30,7 @@ const MOST_NAMED: usize = 100;
 /// Rows outside their columns' domain. They were left where they are; all others were processed.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Refusals {
-    /// How many there were.
+    /// Number of refusals.
     pub count: u64,
     /// The first hundred.
     pub named: Vec<Refused>,
@@ -39,9 +39,9 @@ pub struct Refusals {
 /// A row that was refused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
-    /// Which row, as "run 0197…".
+    /// Name of the row, as "run 0197…".
     pub what: String,
-    /// Why.
+    /// Reason of the refusal.
     pub reason: String,
 }
 
@@ -64,7 +64,7 @@ impl Refusals {
         }
     }
 
-    /// Whether there were none.
+    /// Whether nothing was refused.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }

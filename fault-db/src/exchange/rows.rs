@@ -11,7 +11,7 @@ use crate::exchange::domain::{PACKED_BYTES, check, shown_id};
 pub(super) struct Rows {
     pub table: &'static Table,
     for_server: bool,
-    /// Reads rows from a file by the table's column for that.
+    /// Query that reads rows of a file, selected by the column `by` of the table.
     pub sql: Rc<str>,
     values: Vec<Value<'static>>,
     width: usize,
@@ -23,7 +23,7 @@ pub(super) struct Rows {
 pub(super) type Mark = (usize, usize);
 
 impl Rows {
-    /// No rows yet; those for a server have the derived columns, too.
+    /// An empty list; rows for a server have the derived columns, too.
     pub fn of(table: &'static Table, for_server: bool) -> Self {
         Self {
             table,
@@ -52,7 +52,7 @@ impl Rows {
         (self.values.len(), self.bytes)
     }
 
-    /// Removes the rows added since.
+    /// Removes the rows added since the mark.
     pub fn back_to(&mut self, (values, bytes): Mark) {
         self.values.truncate(values);
         self.bytes = bytes;
@@ -61,7 +61,7 @@ impl Rows {
     /// Adds a row that has the columns in this order.
     ///
     /// # Errors
-    /// [`SqlError::Refused`]: it is outside its domain, and not added.
+    /// [`SqlError::Refused`]: a value is outside its column's domain; the row is not added.
     pub fn take(&mut self, row: Row<'_>) -> SqlResult<()> {
         let mark = self.mark();
         let taken = self.take_fields(row)?;
@@ -117,7 +117,7 @@ fn check_field(column: &Column, field: Field<'_>) -> Result<(), String> {
     check(column.name, field)
 }
 
-/// How a row is named to a person.
+/// Name of a row, for people.
 fn shown(name: SqlResult<Field<'_>>) -> String {
     match name {
         Ok(Field::Bytes(id)) => shown_id(id),

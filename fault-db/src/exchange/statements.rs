@@ -114,8 +114,8 @@ impl Table {
     }
 }
 
-/// A column's value in a file. Of a text or blob that is too large only the length is read, which its type
-/// then refuses.
+/// A column's value in a file. A text or blob that is too large is read as its length, which the column's
+/// type then refuses.
 fn read_value(column: &Column) -> String {
     let name = column.name;
     match (column.kind.parent(), column.kind) {

@@ -23,16 +23,16 @@ pub(super) struct Table {
     pub is_refused_alone: bool,
     /// Checks a row's content beyond the domain of each column.
     pub check: fn(&[Value<'_>]) -> Result<(), String>,
-    /// Whether rows are inserted; the rows of others only say what to change.
+    /// Whether rows are inserted; rows of the other tables only say what to change.
     pub is_inserted: bool,
-    /// In a file, more columns and their values. `{column}` stands for the row's value.
+    /// Further columns in a file, with their values. `{column}` stands for the row's value.
     pub file_more: &'static [(&'static str, &'static str)],
     /// Rows for which this holds are not inserted into a file.
     pub file_unless: &'static str,
     /// Completes a row of a file that is known.
     pub file_complete: &'static str,
-    /// On a server, more columns and their values. `{rows}` stands for the rows sent, `x`; `{laptop}` for the
-    /// laptop.
+    /// Further columns on a server, with their values. `{rows}` stands for the rows sent, `x`; `{laptop}` for
+    /// the laptop.
     pub server_more: &'static [(&'static str, &'static str)],
     /// Rows for which this holds are not inserted on a server.
     pub server_unless: &'static str,
@@ -44,7 +44,7 @@ pub(super) struct Table {
 pub(super) struct Column {
     pub name: &'static str,
     pub kind: Kind,
-    /// Of a derived column: the value in SQL, of the row `t`.
+    /// Value of a derived column in SQL, from the row `t`.
     pub value: &'static str,
 }
 
@@ -159,7 +159,7 @@ pub(super) static TABLES: [Table; COUNT] = [
             sw_versions Text, continues Bytes, connection Text, symptom Text,
             evidence Text,
         ],
-        // It was copied earlier, while it was still running.
+        // The run was copied earlier, while it was still running.
         file_complete: "UPDATE run SET finished_at_us = {finished_at_us}, verdict = {verdict},
                 bench_time_us = {bench_time_us}, wall_time_us = {wall_time_us}
             WHERE id = {id} AND verdict IS NULL AND {verdict} IS NOT NULL",
@@ -348,7 +348,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         ],
         is_refused_alone: true,
         check: |row| checksum(&row[10], &row[11]),
-        // It was copied earlier, while its procedure was still running.
+        // The trace was copied earlier, while its procedure was still running.
         file_complete: "UPDATE trace SET recording = {recording} WHERE id = {id} AND recording IS NULL",
         ..TABLE
     },

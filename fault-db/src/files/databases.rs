@@ -1,4 +1,4 @@
-//! Which files are databases or belong to one, so that nothing is ever written over them.
+//! Files that are databases or belong to one, so that nothing is ever written over them.
 
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -7,9 +7,9 @@ use std::sync::{Mutex, PoisonError};
 use crate::files::platform::Identity;
 use crate::files::regular_file::open_regular_file;
 
-/// What SQLite keeps beside a database, by the ends of the names.
+/// Files that SQLite keeps beside a database, by the ends of their names.
 const BESIDE: [&str; 3] = ["-wal", "-shm", "-journal"];
-/// How an SQLite database begins.
+/// First bytes of an SQLite database.
 const MAGIC: &[u8] = b"SQLite format 3\0";
 
 /// Databases that this program opened.

@@ -20,10 +20,10 @@ pub(crate) struct HeldFile {
 }
 
 impl HeldFile {
-    /// Makes it.
+    /// Makes and locks the file.
     ///
     /// # Errors
-    /// It exists, or cannot be made.
+    /// The file exists, or cannot be made.
     pub(crate) fn make(path: &Path) -> Result<Self> {
         Ok(Self {
             file: make_locked(path, false)?,
@@ -35,7 +35,7 @@ impl HeldFile {
 /// Makes a file and locks it, perhaps for its owner only; SQLite and the umask would let others read it.
 ///
 /// # Errors
-/// It exists, or cannot be made.
+/// The file exists, or cannot be made.
 pub(crate) fn make_locked(path: &Path, is_private: bool) -> Result<File> {
     let mut options = OpenOptions::new();
     options.read(true).write(true).create_new(true);

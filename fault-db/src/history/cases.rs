@@ -19,11 +19,11 @@ use crate::values::record::{CAUSE, CauseRecord, DIAGNOSED, part_name};
 pub struct ChangedFault {
     /// The fault.
     pub id: Id,
-    /// Its name.
+    /// Name of the fault's code.
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
-    /// Its state now.
+    /// Present state of the fault.
     pub state: FaultState,
 }
 
@@ -41,7 +41,7 @@ pub(crate) const REST_OF_CASE: &str =
     "fault f JOIN fault c ON c.unit = f.unit AND c.cause = f.cause
      WHERE f.seq = ?1 AND c.seq <> f.seq AND f.state <> 'closed' AND c.state <> 'closed'";
 
-/// What [`case_fault`] reads, of `c`.
+/// Columns of `c` that [`case_fault`] reads.
 pub(crate) const CASE_FAULT: &str = "c.seq, c.id, c.code_name, c.lru, c.state";
 
 impl Store {

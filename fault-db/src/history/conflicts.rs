@@ -18,7 +18,7 @@ pub struct StateConflict {
     pub unit: String,
     /// Stable number of the fault.
     pub code: i64,
-    /// Its name.
+    /// Name of the fault's code.
     pub code_name: String,
     /// Replaceable part it points at.
     pub lru: String,
@@ -33,11 +33,11 @@ pub struct StateConflict {
 pub struct ConflictingEvent {
     /// The event.
     pub id: Id,
-    /// Its kind.
+    /// Kind of the event.
     pub kind: String,
     /// When, by the clock of the laptop.
     pub at_us: i64,
-    /// Who did it.
+    /// Name of the person who did it.
     pub who: String,
     /// A note, or JSON for a repair.
     pub body: String,

@@ -14,7 +14,7 @@ pub struct DictionaryRecord {
     pub made_at_us: i64,
     /// Version of the program that made it.
     pub app_version: String,
-    /// Its provenance: SHA-256 over everything that it was made of, in hex.
+    /// Provenance of the dictionary: SHA-256 over everything that it was made of, in hex.
     pub basis_sha256: String,
     /// Number of fault modes in it.
     pub modes: usize,
@@ -26,7 +26,7 @@ impl Store {
     /// Stores a dictionary.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The database cannot be written.
     pub fn put_dictionary(&self, record: &DictionaryRecord) -> Result<Id, StoreError> {
         const DOING: &str = "storing a fault dictionary";
         let id = self.mint()?;

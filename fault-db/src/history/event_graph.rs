@@ -14,7 +14,8 @@ pub(crate) fn recompute_fault(backend: &Backend, fault: i64) -> SqlResult<()> {
     recompute_faults(backend, &[fault])
 }
 
-/// The same for many faults; on a server in one round trip, by a function of the owner of the tables.
+/// Recomputes the rows of many faults; on a server in one round trip, by a function of the owner of
+/// the tables.
 fn recompute_faults(backend: &Backend, faults: &[i64]) -> SqlResult<()> {
     if let Backend::Server(server) = backend {
         server.execute_columns("SELECT settle_faults($1)", &[&faults])?;

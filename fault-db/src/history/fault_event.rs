@@ -18,10 +18,11 @@ pub(crate) struct NewEvent<'a> {
     pub state: Option<FaultState>,
 }
 
-/// What the author of an event knew of its fault. The columns are named `follows`, `turn` and `seen`.
+/// Knowledge of an event's author about its fault. The columns are named `follows`, `turn` and
+/// `seen`.
 pub(crate) struct EventContext {
-    /// Ids of its parents in the event graph, concatenated; empty for an event that leaves the state. Of a withdrawal the
-    /// event that it takes back.
+    /// Ids of its parents in the event graph, concatenated; empty for an event that leaves the state. A withdrawal
+    /// has the event that it takes back.
     pub parents: Vec<u8>,
     /// Lamport number: one more than the greatest of the events known.
     pub lamport: i64,

@@ -16,7 +16,7 @@
 //! The columns keep their old names: `follows` holds the parents, `turn` the Lamport number, `seen` the
 //! occurrences known, `disputed` whether the fault is in conflict.
 
-/// What a person has withdrawn counts for nothing: a condition on the event of this alias, to follow others.
+/// Condition on the event of this alias, to follow others: the event was not withdrawn.
 macro_rules! standing {
     ($event:literal) => {
         concat!(

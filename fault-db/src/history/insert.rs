@@ -16,13 +16,13 @@ use crate::values::record::{FaultRecord, MeasurementRecord, RunRecord, StepRecor
 /// The result of storing a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaultStored {
-    /// The fault it belongs to.
+    /// The fault of the occurrence.
     pub fault: Id,
-    /// This occurrence of it.
+    /// The stored occurrence.
     pub occurrence: Id,
-    /// Whether it is the first of its fault.
+    /// Whether the occurrence is the first of its fault.
     pub is_new: bool,
-    /// Whether it reopened a fault that counted as repaired.
+    /// Whether the occurrence reopened a fault that counted as repaired.
     pub reopened: bool,
 }
 
@@ -256,8 +256,8 @@ pub(crate) fn insert_fault(
     Ok((stored, digest))
 }
 
-/// Whether an event changed the fault's state after this time. Events known when a run began precede all it
-/// sees, whatever the time stamps of other laptops say.
+/// Whether an event changed the fault's state after this time. Events known when a run began precede all
+/// that the run sees, whatever the time stamps of other laptops say.
 fn acted_since(
     backend: &Backend,
     fault: i64,

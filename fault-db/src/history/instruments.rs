@@ -18,14 +18,14 @@ const INSTRUMENT: &str = "instrument";
 /// An instrument as it was registered, or calibrated last.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Instrument {
-    /// What it is: `bench`, `sound card`, `coil`, in the caller's words.
+    /// Kind of instrument: `bench`, `sound card`, `coil`, in the caller's words.
     pub kind: String,
-    /// Its serial number, by which it is named.
+    /// Serial number, by which the instrument is named.
     pub serial_no: String,
     /// The day of its calibration; none: never calibrated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibrated: Option<String>,
-    /// Who calibrated it, and under which number.
+    /// Laboratory that calibrated the instrument, and number of the certificate.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub by: String,
     /// The first day on which its calibration holds no more; none: it does not end.
@@ -34,18 +34,18 @@ pub struct Instrument {
     /// Expanded uncertainty (k = 2) of what it measures, by unit of measurement.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertainty: BTreeMap<String, f64>,
-    /// It was taken off the bench.
+    /// The instrument was taken off the bench.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub retired: bool,
     /// When this was registered.
     pub at_us: i64,
-    /// Who registered it.
+    /// Name of the person who registered the instrument.
     #[serde(default)]
     pub who: String,
 }
 
 impl Instrument {
-    /// Its calibration holds on a day where the bench stands (2026-11-26).
+    /// Whether the calibration is valid on a day where the bench stands (2026-11-26).
     pub fn is_calibrated_on(&self, day: &str) -> bool {
         self.calibrated.as_deref().is_some_and(|from| from <= day)
             && self.due.as_deref().is_none_or(|due| day < due)
@@ -76,11 +76,11 @@ impl Store {
         })
     }
 
-    /// The instruments of this file's own bench, by serial number, as they were stated last; those of other files that
-    /// were brought in are not among them.
+    /// The instruments of this file's own bench, by serial number, as they were stated last, without those of merged
+    /// files.
     ///
     /// # Errors
-    /// They cannot be read.
+    /// The database cannot be read.
     pub fn instruments(&self) -> Result<Vec<Instrument>, StoreError> {
         let read = self.statements();
         let all = read.map_err(|error| self.failed("reading the instruments", error))?;

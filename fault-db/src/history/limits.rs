@@ -18,7 +18,7 @@ pub const MOST_LIST: usize = 16_000;
 /// Refuses a name longer than [`MOST_NAME`]; `what` is, for instance, "the operator's name".
 ///
 /// # Errors
-/// It is longer.
+/// The name is longer.
 pub fn name(what: &'static str, text: &str) -> Result<(), StoreError> {
     most(what, text, MOST_NAME)
 }
@@ -26,7 +26,7 @@ pub fn name(what: &'static str, text: &str) -> Result<(), StoreError> {
 /// Refuses a note longer than [`MOST_TEXT`]; `what` is, for instance, "the note".
 ///
 /// # Errors
-/// It is longer.
+/// The note is longer.
 pub fn note(what: &'static str, text: &str) -> Result<(), StoreError> {
     most(what, text, MOST_TEXT)
 }
@@ -34,7 +34,7 @@ pub fn note(what: &'static str, text: &str) -> Result<(), StoreError> {
 /// Refuses a list, such as paths or a query, longer than [`MOST_LIST`].
 ///
 /// # Errors
-/// It is longer.
+/// The list is longer.
 pub fn list(what: &'static str, text: &str) -> Result<(), StoreError> {
     most(what, text, MOST_LIST)
 }

@@ -79,8 +79,9 @@ impl HighWaterMark {
     }
 }
 
-/// Adds `recurred` events to these faults; which of them were reopened. Of a server only where either side is
-/// newer than the mark. Runs in the caller's transaction, which has to recompute the faults afterwards.
+/// Adds `recurred` events to these faults; returns those that were reopened. On a server it looks only at
+/// faults of which either side is newer than the mark. Runs in the caller's transaction, which has to
+/// recompute the faults afterwards.
 pub(crate) fn reopen_recurred(
     backend: &Backend,
     faults: &[i64],

@@ -19,13 +19,14 @@ pub struct RunNote {
     pub id: Id,
     /// When it was written.
     pub at_us: i64,
-    /// Who wrote it.
+    /// Author of the note.
     pub who: String,
     /// The place in a trace of the run that it is about.
     pub place: Option<TracePlace>,
-    /// What it says.
+    /// Text of the note.
     pub text: String,
-    /// Who signed it, where the signature holds; looked at only where a whole run is read.
+    /// Name in the signature of the note, where the signature holds; looked at only where a whole
+    /// run is read.
     pub signed_by: Option<String>,
 }
 
@@ -103,10 +104,10 @@ impl Store {
         })
     }
 
-    /// Notes that nobody has signed, or whose signature does not hold, and in whose name they are.
+    /// Notes without a signature that holds, each with the name of its author.
     ///
     /// # Errors
-    /// They cannot be read.
+    /// The database cannot be read.
     pub fn unsigned_notes(&self) -> Result<Vec<(Id, String)>, StoreError> {
         const DOING: &str = "looking for notes that are not signed";
         let sql = "SELECT r.id, n.id, n.who FROM run_note n JOIN run r ON r.seq = n.run ORDER BY n.run, n.seq";

@@ -216,8 +216,9 @@ impl<'a> RunWriter<'a> {
         self.fault_as(occurrence, record)
     }
 
-    /// The same for an entry of a unit's own log, under an id that follows from the entry: other stores that import
-    /// it make the same, and where their histories meet it is one occurrence. It must not be known here.
+    /// Adds a fault from an entry of a unit's own log, under an id that follows from the entry: other stores that
+    /// import the entry make the same id, and where their histories meet there is one occurrence. The store must
+    /// not have the entry yet.
     pub fn logged_fault(
         &mut self,
         occurrence: Id,

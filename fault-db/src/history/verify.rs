@@ -1,10 +1,10 @@
 //! Proves repairs by passing runs.
 //!
-//! A run that passed, began when a repair was known here, and passed the step that saw the fault last is noted at the
-//! repaired fault, and at the repaired consequences in its case. Whether that proves the repair depends on how often the fault
-//! showed while it was there: an intermittent one hides. Who knows the rate decides ([`Store::repairs_to_prove`],
-//! [`Store::confirm_repairs`]); until then the repair is a claim, as is a state that a person sets. A fault that no step saw,
-//! for instance one read from a unit's log, is verified by a person.
+//! A run that passed, began when a repair was known here, and passed the step that saw the fault last is noted at
+//! the repaired fault, and at the repaired consequences in its case. Whether that proves the repair depends on how
+//! often the fault showed while it was there: an intermittent one hides. The caller, who knows the rate, decides
+//! ([`Store::repairs_to_prove`], [`Store::confirm_repairs`]); until then the repair is a claim, as is a state that a
+//! person sets. A fault that no step saw, for instance one read from a unit's log, is verified by a person.
 
 use std::collections::BTreeMap;
 
@@ -27,9 +27,9 @@ use crate::values::record::{RepairRecord, RunEnd, Verdict};
 const PASSED: &str = "passed";
 /// Kind of the event by which a run has proved a repair; by hand it is `verified`.
 const CONFIRMED: &str = "confirmed";
-/// What the note of such an event begins with, before the run's id.
+/// Beginning of such an event's note, before the run's id.
 const IN_RUN: &str = "in run ";
-/// As many runs with the fault are evidence of its rate, the last ones.
+/// Number of runs with the fault, the last ones, that are evidence of its rate.
 const MOST_RUNS: i64 = 8;
 
 /// Runs `r` with their seals `s`; a copy of a file seals a run again.
@@ -77,7 +77,7 @@ const WITH_IT: &str = concat!(
     ORDER BY c.seq"
 );
 
-/// Of those, the ones that a run has noted as passed, if no other fault naming the cause is left that is not
+/// The consequences in that case which a run has noted as passed, if every other fault naming the cause is
 /// verified.
 const PROVEN_WITH_IT: &str = "
     AND f.cause = lower(f.lru) AND c.cause <> lower(c.lru) AND c.state = 'repaired'
@@ -140,7 +140,7 @@ const THERE: &str = concat!(
 pub struct RepairToProve {
     /// The repaired fault.
     pub fault: Id,
-    /// Its name.
+    /// Name of the fault's code.
     pub code_name: String,
     /// Runs of the unit in which the fault was there, oldest first: the last ones, from the one that saw it first.
     pub there: Vec<Id>,
@@ -309,9 +309,9 @@ fn noted_run(note: &str) -> Option<Id> {
 pub struct SettledFault {
     /// The fault.
     pub id: Id,
-    /// Its number.
+    /// Code of the fault.
     pub code: i64,
-    /// Its name.
+    /// Name of the fault's code.
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
@@ -346,7 +346,7 @@ pub(crate) const SETTLED: &str = concat!(
     WHERE r.id = ?1 ORDER BY f.seq"
 );
 
-/// What the events that a run has made begin with, as a pattern.
+/// Pattern for the beginning of the events that a run has made.
 pub(crate) fn made_by(run: Id) -> String {
     format!("{IN_RUN}{run}%")
 }

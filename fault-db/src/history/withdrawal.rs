@@ -17,23 +17,23 @@ use crate::values::withdrawal_error::WithdrawalError;
 /// Kind of the event that takes back the one it follows.
 pub(crate) const WITHDRAWN: &str = "withdrawn";
 
-/// What a withdrawal takes back.
+/// Extent of a withdrawal.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ToWithdraw {
     /// Only what was written at this time, µs since 1970; `None`: what a person wrote last, whenever that was.
     pub written_at_us: Option<i64>,
-    /// Of this fault alone, although the same was written about the others of its case.
+    /// Take back for this fault alone, although the same was written about the others of its case.
     pub only: bool,
 }
 
-/// What was taken back.
+/// An entry that was taken back.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Withdrawn {
     /// Kind of the event.
     pub kind: String,
     /// When it was written, µs since 1970.
     pub at_us: i64,
-    /// Who wrote it.
+    /// Author of what was withdrawn.
     pub who: String,
     /// The fault that was named, then the others about which the same was written, each as it stands now.
     pub faults: Vec<ChangedFault>,
@@ -50,7 +50,7 @@ struct Written {
     lamport: i64,
 }
 
-/// What a person wrote last about fault `?1`.
+/// Last event that a person wrote about fault `?1`.
 const LAST_WRITTEN: &str = concat!(
     "SELECT e.seq, e.id, e.kind, e.at_us, e.who, CASE WHEN e.state IS NULL THEN 0 ELSE 1 END, e.turn
      FROM fault_event e WHERE e.fault = ?1 AND e.kind IN
@@ -59,7 +59,8 @@ const LAST_WRITTEN: &str = concat!(
     " ORDER BY e.turn DESC, e.id DESC LIMIT 1"
 );
 
-/// What stands after event `?2` of fault `?1`, of Lamport number `?3`, and was decided or found in knowledge of it.
+/// Events that stand after event `?2` of fault `?1`, of Lamport number `?3`, and were decided or found in knowledge
+/// of it.
 const RESTS_ON_IT: &str = concat!(
     "SELECT e.kind FROM fault_event e WHERE e.fault = ?1 AND e.turn > ?3 AND e.id <> ?2
         AND (e.state IS NOT NULL OR e.kind = 'passed')",
@@ -141,7 +142,8 @@ impl Store {
         })
     }
 
-    /// What a person wrote last about the fault, which has to be of this time if one is given.
+    /// Last event that a person wrote about the fault, which has to be of this time if one is
+    /// given.
     fn last_written(&self, fault: &CaseFault, at_us: Option<i64>) -> Result<Written, StoreError> {
         let row = |row: Row<'_>| {
             Ok(Written {

@@ -13,7 +13,7 @@ use crate::id::Id;
 use crate::store::Store;
 use crate::values::record::{CauseRecord, part_name};
 
-/// Of which units repairs are asked for.
+/// Which confirmed repairs count.
 #[derive(Clone, Copy, Debug)]
 pub struct RepairsOf<'a> {
     /// Confirmed before this time, µs since 1970.
@@ -32,9 +32,9 @@ macro_rules! practised {
     };
 }
 
-/// Confirmed repairs `r`, each with the event `c` that a run has confirmed it by, for [`RepairsOf`]: the text from `FROM` on.
-/// Of an opening of a fault that is the last repair, and none where parts of several names were changed at once: which of
-/// them helped is not known.
+/// Confirmed repairs `r`, each with the event `c` that a run has confirmed it by, for [`RepairsOf`]: the text from
+/// `FROM` on. Each opening of a fault gives its last repair, and none where parts of several names were changed at
+/// once: which of them helped is not known.
 macro_rules! confirmed {
     () => {
         concat!(
@@ -54,11 +54,11 @@ macro_rules! confirmed {
 /// and however often it was written down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ConfirmedRepairs {
-    /// Of this part.
+    /// Repairs of this part.
     pub repairs: u32,
-    /// Of any part, where a diagnosis had attributed the fault to this one.
+    /// Repairs of any part, where a diagnosis had attributed the fault to this one.
     pub named: u32,
-    /// Of these, of the part itself.
+    /// Repairs counted in `named` that were of the part itself.
     pub right: u32,
     /// Repairs of this part after which the fault came back, each unit's once.
     pub in_vain: u32,
@@ -76,7 +76,7 @@ pub struct ConfirmedCase {
 }
 
 impl RunSummary {
-    /// Whether it was practice.
+    /// Whether the run was practice.
     pub fn is_practice(&self) -> bool {
         is_practice(&self.source, self.injected.as_deref())
     }

@@ -101,8 +101,8 @@ impl FaultFilter {
 }
 
 impl Resolved<'_> {
-    /// For a short list: finds out whether the search words are frequent. A server's planner knows that by
-    /// itself.
+    /// Finds out whether the search words are frequent, for a short list in a file. A server's planner
+    /// knows that by itself.
     pub fn estimate_frequency(&mut self, store: &Store) -> Result<(), StoreError> {
         let is_few = self.filter.limit.is_some_and(|most| most <= FEW);
         let (Backend::File(_), Some(search), true) = (store.backend(), &self.search, is_few) else {

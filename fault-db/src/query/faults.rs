@@ -21,9 +21,9 @@ pub struct FaultSummary {
     pub id: Id,
     /// Serial number of its unit.
     pub unit_serial: String,
-    /// Its number.
+    /// Code of the fault.
     pub code: i64,
-    /// Its name.
+    /// Name of the code.
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
@@ -31,7 +31,7 @@ pub struct FaultSummary {
     pub cause: Option<String>,
     /// Severity.
     pub severity: String,
-    /// Its state.
+    /// State of the fault.
     pub state: FaultState,
     /// First seen.
     pub first_at_us: i64,
@@ -39,11 +39,11 @@ pub struct FaultSummary {
     pub last_at_us: i64,
     /// Number of occurrences.
     pub occurrences: u32,
-    /// Its latest trace.
+    /// Latest trace of the fault.
     pub trace_id: Option<Id>,
-    /// What was seen last, in English.
+    /// Last finding, in English.
     pub message: String,
-    /// What `message` says as data: JSON of the program.
+    /// The findings behind `message` as data: JSON of the program.
     pub findings: Option<String>,
 }
 
@@ -61,11 +61,11 @@ pub struct FaultDetail {
     pub fault: FaultSummary,
     /// The other faults of its case: of its unit, not closed, and from the same part.
     pub case: Vec<FaultSummary>,
-    /// Its occurrences, newest first, at most [`FaultDetail::MAX_OCCURRENCES`].
+    /// Occurrences of the fault, newest first, at most [`FaultDetail::MAX_OCCURRENCES`].
     pub occurrences: Vec<Occurrence>,
-    /// Its events that stand, oldest first.
+    /// Events that stand, oldest first.
     pub events: Vec<FaultEvent>,
-    /// Its events that were withdrawn, oldest first; they count for nothing.
+    /// Withdrawn events, oldest first; they count for nothing.
     pub withdrawn: Vec<FaultEvent>,
 }
 
@@ -96,9 +96,9 @@ pub struct Occurrence {
     pub bench_us: i64,
     /// Description, in English.
     pub message: String,
-    /// What `message` says as data: JSON of the program.
+    /// The findings behind `message` as data: JSON of the program.
     pub findings: Option<String>,
-    /// Its trace, if one was kept.
+    /// Trace of the occurrence, if one was kept.
     pub trace_id: Option<Id>,
     /// Freeze frame: all signals at that moment.
     pub freeze: Vec<FreezeSample>,
@@ -174,7 +174,8 @@ impl Store {
         )
     }
 
-    /// Of an event that several stores have withdrawn, the correction made first.
+    /// Events of a fault. An event that several stores have withdrawn has the correction made
+    /// first.
     fn events(&self, fault: i64) -> SqlResult<Vec<FaultEvent>> {
         let mut events = self.backend().select(
             "SELECT e.id, e.kind, e.at_us, e.who, e.body, e.state, w.at_us, w.who, w.body

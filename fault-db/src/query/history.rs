@@ -22,7 +22,7 @@ pub const SAME_ENTRY_US: i64 = 5_000_000;
 pub struct PartHistory {
     /// Runs in which a fault pointed at it since its last repair.
     pub runs: u32,
-    /// Its last repair.
+    /// Last repair of the part.
     pub repair: Option<PartRepair>,
 }
 

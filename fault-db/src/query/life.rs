@@ -23,7 +23,7 @@ use crate::values::record::{
 use crate::values::text_enum::text_enum;
 
 text_enum! {
-    /// What has the serial number.
+    /// Kind of thing that has the serial number.
     LifeOf {
         /// A unit.
         Unit = "unit",
@@ -37,13 +37,13 @@ text_enum! {
 /// The life of what has a serial number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Life {
-    /// What it is.
+    /// Kind of the thing.
     pub of: LifeOf,
     /// The serial number.
     pub serial: String,
-    /// Of a unit the trains it was in, of a train its units, of a part the units it was in; oldest first.
+    /// Stays, oldest first: trains of a unit, units of a train, units of a part.
     pub stays: Vec<Stay>,
-    /// What is stored about it, oldest first.
+    /// Stored events, oldest first.
     pub events: Vec<LifeEvent>,
 }
 
@@ -56,7 +56,7 @@ pub struct Stay {
     pub place: String,
     /// Since when; `None`: it was there before anything was stored.
     pub from_us: Option<i64>,
-    /// Until when; `None`: it is still there.
+    /// End of the stay; `None`: it lasts.
     pub until_us: Option<i64>,
     /// Runs of the unit in this time.
     pub runs: u32,
@@ -80,7 +80,7 @@ pub struct LifeEvent {
 pub enum LifeWhat {
     /// A run, an imported log or a pulled record.
     Run(LifeRun),
-    /// What happened to a fault, or to several of one case at once.
+    /// An event of a fault, or of several of one case at once.
     Fault(Box<LifeFault>),
 }
 
@@ -89,7 +89,7 @@ pub enum LifeWhat {
 pub struct LifeRun {
     /// The run.
     pub id: Id,
-    /// Its verdict; `None` of one that is not over.
+    /// Verdict; `None` if the run is not over.
     pub verdict: Option<Verdict>,
     /// Name of the tester.
     pub operator: String,
@@ -101,16 +101,16 @@ pub struct LifeRun {
     pub faults: u32,
 }
 
-/// What happened to faults.
+/// An event of a fault.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LifeFault {
     /// The kind of the event, as in [`FaultEvent`](crate::FaultEvent).
     pub kind: String,
-    /// Who; empty for the program itself.
+    /// Name of the person; empty for the program itself.
     pub who: String,
     /// The text; empty for a repair and for a cause.
     pub note: String,
-    /// The same as data, if it is what was seen.
+    /// Findings behind the text as data, for an occurrence.
     pub findings: Option<String>,
     /// The repair, if it is one.
     pub repair: Option<RepairRecord>,
@@ -125,9 +125,9 @@ pub struct LifeFault {
 pub struct NamedFault {
     /// The fault.
     pub id: Id,
-    /// Its number.
+    /// Code of the fault.
     pub code: i64,
-    /// Its name.
+    /// Name of the code.
     pub code_name: String,
     /// The part it comes from, or points at.
     pub part: String,

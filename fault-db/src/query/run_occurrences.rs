@@ -12,7 +12,7 @@ pub struct RunOccurrence {
     pub fault: Id,
     /// Number of the fault.
     pub code: i64,
-    /// Its name.
+    /// Name of the fault's code.
     pub code_name: String,
     /// Part it points at.
     pub lru: String,
@@ -22,9 +22,9 @@ pub struct RunOccurrence {
     pub bench_us: i64,
     /// Trace that shows it.
     pub trace_id: Option<Id>,
-    /// What was seen, in English.
+    /// Finding in English.
     pub message: String,
-    /// What `message` says as data: JSON of the program.
+    /// The findings behind `message` as data: JSON of the program.
     pub findings: Option<String>,
 }
 

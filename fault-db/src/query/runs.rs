@@ -26,11 +26,11 @@ use crate::values::text_enum::text_enum;
 text_enum! {
     /// Whether a run is finished.
     RunState {
-        /// Its writer is alive.
+        /// The writer of the run is alive.
         Running = "running",
-        /// Its writer died before the verdict.
+        /// The writer of the run died before the verdict.
         Interrupted = "interrupted",
-        /// It has a verdict.
+        /// The run has a verdict.
         Finished = "finished",
     }
 }
@@ -79,9 +79,9 @@ pub struct RunSummary {
     pub started_at_us: i64,
     /// When it ended.
     pub finished_at_us: Option<i64>,
-    /// Its verdict; `None` before its end.
+    /// Verdict; `None` before the end of the run.
     pub verdict: Option<Verdict>,
-    /// Whether it is finished.
+    /// Whether the run is finished.
     pub state: RunState,
     /// Duration on the bench's clock.
     pub bench_time_us: Option<i64>,
@@ -97,11 +97,12 @@ pub struct RunSummary {
     pub injected: Option<String>,
     /// The earlier run whose open procedures it ran.
     pub continues: Option<Id>,
-    /// How the unit was reached: `harness`, or `ptu` for its maintenance port alone; none where no tester led it.
+    /// Connection to the unit: `harness`, or `ptu` for the maintenance port alone; none where no tester led the
+    /// run.
     pub connection: Option<String>,
-    /// What was wrong with the unit, as reported: a name of `symptoms.toml`.
+    /// Symptom reported with the unit: a name of `symptoms.toml`.
     pub symptom: Option<String>,
-    /// What the bench was made of, its clock and its instruments: JSON of the caller's own.
+    /// Content of the bench, its clock and its instruments: JSON of the caller's own.
     pub evidence: Option<String>,
     /// Counts of the steps that the run has a result of; how many were due, the evidence of the run may say.
     pub recorded: StepCounts,
@@ -116,7 +117,7 @@ pub struct RunDetail {
     pub run: RunSummary,
     /// The procedure files it used.
     pub scripts: Vec<ScriptRecord>,
-    /// Its steps in order.
+    /// Steps in order.
     pub steps: Vec<StepRecord>,
     /// The faults seen in it, in order of their first occurrence.
     pub faults: Vec<RunFault>,
@@ -124,9 +125,9 @@ pub struct RunDetail {
     pub settled: Vec<SettledFault>,
     /// Notes on it, oldest first.
     pub notes: Vec<RunNote>,
-    /// Its seal; `None` before its end.
+    /// Seal of the run; `None` before its end.
     pub seal: Option<RunSealed>,
-    /// Who signed it, where the signature holds; whether the key is one to be trusted is not looked at.
+    /// Signature of the run, where it holds; whether the key is to be trusted is not looked at.
     pub signature: Option<Statement>,
 }
 
@@ -135,9 +136,9 @@ pub struct RunDetail {
 pub struct RunFault {
     /// The fault.
     pub id: Id,
-    /// Its number.
+    /// Code of the fault.
     pub code: i64,
-    /// Its name.
+    /// Name of the code.
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
@@ -145,7 +146,7 @@ pub struct RunFault {
     pub cause: Option<String>,
     /// Severity.
     pub severity: String,
-    /// Its state now.
+    /// Present state of the fault.
     pub state: FaultState,
     /// First seen in this run.
     pub first_at_us: i64,
@@ -334,7 +335,7 @@ impl Store {
             });
         }
         let lock = self.lock_of(run);
-        // It holds nothing, and who shares the history is to see that it is locked.
+        // The lock file holds nothing; every user of the history has to see that it is locked.
         let made = HeldFile::make(&lock).and_then(|held| for_all(&held.file).map(|()| held));
         made.map_err(|error| StoreError::CannotWrite {
             path: lock.clone(),
@@ -347,7 +348,7 @@ impl Store {
         with_end(&self.locks(), &format!("{}.lock", run.short()))
     }
 
-    /// What the files of [`Self::hold_run`] begin with, beside the database.
+    /// Beginning of the paths of [`Self::hold_run`], beside the database.
     fn locks(&self) -> PathBuf {
         let real = std::fs::canonicalize(self.path());
         with_end(real.as_deref().unwrap_or(self.path()), ".run-")

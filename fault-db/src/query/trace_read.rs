@@ -39,11 +39,11 @@ pub struct TraceHead {
     pub rows: usize,
     /// The row at which it was triggered.
     pub trigger_row: Option<u32>,
-    /// It ends before its window did: the link dropped or the program was closed.
+    /// The trace ends before its window did: the link dropped or the program was closed.
     pub partial: bool,
     /// Some samples are missing.
     pub gaps: bool,
-    /// Its channels, all of them.
+    /// All channels of the trace.
     pub channels: Vec<Channel>,
 }
 

@@ -15,7 +15,7 @@ const BY_DAY: &str = "reading a measurement by day";
 /// Selects values of a measurement; `None` does not restrict.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TrendQuery {
-    /// Its name.
+    /// Name of the measurement.
     pub measurement: String,
     /// Serial number of the unit.
     pub unit: Option<String>,
@@ -27,9 +27,9 @@ pub struct TrendQuery {
     pub procedure: Option<String>,
     /// The step that measured it: each may have its own limits, too.
     pub step: Option<String>,
-    /// In a run that started at this time or later.
+    /// Runs that started at this time or later, µs since 1970.
     pub since_us: Option<i64>,
-    /// In a run that started before this time.
+    /// Runs that started before this time, µs since 1970.
     pub until_us: Option<i64>,
 }
 
@@ -50,7 +50,7 @@ pub struct TrendPoint {
     pub low: Option<f64>,
     /// Highest allowed value.
     pub high: Option<f64>,
-    /// Its verdict.
+    /// Verdict of the measurement.
     pub verdict: Verdict,
 }
 
@@ -182,7 +182,7 @@ impl Store {
         Ok(days)
     }
 
-    /// By day, from single values.
+    /// Days of the trend, from single values.
     fn days(&self, query: &TrendQuery) -> Result<Vec<TrendDay>, StoreError> {
         let mut conditions = self.measured(query)?;
         conditions.require("m.value IS NOT NULL");
@@ -273,7 +273,7 @@ impl Store {
         })
     }
 
-    /// The steps that measured it in the latest runs, with their limits.
+    /// The steps that made the measurement in the latest runs, with their limits.
     ///
     /// # Errors
     /// As [`trend`](Self::trend).
@@ -300,7 +300,7 @@ impl Store {
     /// The names of all measurements.
     ///
     /// # Errors
-    /// Of the file or server.
+    /// The file or server cannot be read.
     pub fn measurement_names(&self) -> Result<Vec<String>, StoreError> {
         // Goes from one name to the next by index, without reading all values.
         let sql = "WITH RECURSIVE c(name) AS (
@@ -311,10 +311,10 @@ impl Store {
         self.select("listing measurements", sql, &[], |row| row.get(0))
     }
 
-    /// The procedures that measured it.
+    /// The procedures that made the measurement.
     ///
     /// # Errors
-    /// Of the file or server.
+    /// The file or server cannot be read.
     pub fn measuring_procedures(&self, measurement: &str) -> Result<Vec<String>, StoreError> {
         let sql = match self.backend() {
             Backend::File(_) => {

@@ -59,7 +59,7 @@ impl Search {
         (!words.is_empty()).then_some(Self(vec![words]))
     }
 
-    /// Whether a text matches: it has every phrase, with the last word of each as a prefix.
+    /// Whether a text matches: the text has every phrase, with the last word of each as a prefix.
     pub fn is_in(&self, text: &str) -> bool {
         let said = words(text);
         let stands_at = |phrase: &[String], place: &[String]| {
@@ -75,7 +75,7 @@ impl Search {
         self.0.iter().all(is_said)
     }
 
-    /// For SQLite's FTS5.
+    /// The search as a query of SQLite's FTS5.
     pub fn for_file(&self) -> String {
         let phrase = |words: &Vec<String>| {
             let more = if goes_on(words) { " *" } else { "" };
@@ -84,7 +84,7 @@ impl Search {
         self.0.iter().map(phrase).collect::<Vec<_>>().join(" AND ")
     }
 
-    /// For PostgreSQL's `tsquery`.
+    /// The search as a `tsquery` of PostgreSQL.
     pub fn for_server(&self) -> String {
         let phrase = |words: &Vec<String>| {
             let quoted: Vec<_> = words.iter().map(|word| format!("'{word}'")).collect();

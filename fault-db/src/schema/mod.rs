@@ -71,7 +71,7 @@ mod tests {
          CREATE INDEX run_by_depot ON run(depot);",
     ];
 
-    /// What makes so many runs of a unit.
+    /// Statements that make `count` runs of a unit.
     fn runs(count: u32) -> String {
         format!(
             "INSERT INTO unit VALUES (1, 'ATC-1', 'atc', 'sg100', '{{}}');

@@ -64,7 +64,8 @@ impl Aggregate<Values, Option<f64>> for Percentile {
     }
 }
 
-/// Of a sample: over one less than the number of values. By Welford's sums, which lose no digits.
+/// Standard deviation of a sample: over one less than the number of values. By Welford's sums,
+/// which lose no digits.
 struct StandardDeviation;
 
 #[derive(Default)]

@@ -15,7 +15,7 @@ impl CanonicalHash {
         Self(Sha256::new())
     }
 
-    /// With a prefix: the kind of entry and the digest version.
+    /// Hash of an entry, with a prefix: the kind of entry and the digest version.
     pub fn of(what: &str) -> Self {
         let mut canon = Self::new();
         canon.text(what);

@@ -16,7 +16,7 @@ pub(crate) struct EventPayload {
     /// Occurrences known then. The key is part of what is hashed.
     #[serde(rename = "seen")]
     pub occurrences_known: i64,
-    /// How it came, if it came without a seal.
+    /// Way by which the event came, if it came without a seal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found: Option<String>,
 }

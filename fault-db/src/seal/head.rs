@@ -22,13 +22,13 @@ pub struct SealHead {
 pub struct RunSealed {
     /// The file that sealed it.
     pub file: Id,
-    /// Its position in that file's chain.
+    /// Position of the seal in that file's chain.
     pub entry: i64,
     /// The hash of the entry, in hex; it covers the run and all entries before it.
     pub seal: String,
     /// SHA-256 of the run's content, in hex.
     pub digest: String,
-    /// How the run came, if it came without a seal and was sealed as found.
+    /// Way by which the run came, if it came without a seal and was sealed as found.
     pub found: Option<String>,
 }
 

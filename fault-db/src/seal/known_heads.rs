@@ -26,7 +26,7 @@ pub(crate) fn keep(file: &Backend, head: &KnownHead) -> SqlResult<()> {
     Ok(())
 }
 
-/// Those that a file has seen.
+/// Ends of chains that a file has seen.
 pub(crate) fn of_file(file: &Backend) -> SqlResult<Vec<KnownHead>> {
     let sql = "SELECT origin, ordinal, hash, seen_at_us FROM chain_head ORDER BY origin";
     file.select(sql, &[], |row| {
@@ -39,7 +39,7 @@ pub(crate) fn of_file(file: &Backend) -> SqlResult<Vec<KnownHead>> {
     })
 }
 
-/// Those that a file has seen, and the ends of the chains that it holds of others by import: the time of these is 0.
+/// Ends of chains that a file has seen, and of the chains that it holds of others by import: the time of these is 0.
 pub(crate) fn seen_by(file: &Backend) -> SqlResult<Vec<KnownHead>> {
     let sql = "SELECT origin, max(ordinal), hash FROM seal
         WHERE origin IS NOT (SELECT value FROM about WHERE key = 'file_id') GROUP BY origin";
@@ -62,7 +62,7 @@ pub(crate) fn seen_by(file: &Backend) -> SqlResult<Vec<KnownHead>> {
     Ok(seen)
 }
 
-/// Those of all laptops on a server.
+/// Ends of the chains of all laptops on a server.
 pub(crate) fn of_server(server: &Backend, seen_at_us: i64) -> SqlResult<Vec<KnownHead>> {
     let sql =
         "SELECT l.file_id, s.ordinal, s.hash FROM laptop l JOIN seal s ON s.origin = l.file_id

@@ -25,7 +25,7 @@ use crate::backend::{Backend, SqlError, SqlResult, values};
 use crate::id::Id;
 use crate::schema::SCHEMA_VERSION;
 
-/// How a run, event or note came that was sealed as found.
+/// Way by which a run, event or note came that was sealed as found.
 pub(crate) const BY_IMPORT: &str = "import";
 pub(crate) const BY_SYNC: &str = "sync";
 
@@ -150,7 +150,7 @@ pub(crate) fn begin(backend: &Backend, origin: Id) -> SqlResult<Id> {
     Ok(origin)
 }
 
-/// As lower-case hex digits.
+/// Bytes as lower-case hex digits.
 pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
@@ -158,7 +158,7 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
 /// The kind of an entry for a recount.
 pub(crate) const RECOUNTED: &str = "recounted";
 
-/// What differed before a recount: this may be the only trace of a row that was changed by hand.
+/// Rows that differed before a recount: perhaps the only trace of a row that was changed by hand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RecountedPayload {
     pub at_us: i64,
@@ -166,7 +166,7 @@ pub(crate) struct RecountedPayload {
 }
 
 impl RecountedPayload {
-    /// As a sentence.
+    /// The recount as a sentence.
     pub fn text(&self) -> String {
         let at = chrono::DateTime::from_timestamp_micros(self.at_us).unwrap_or_default();
         format!(
@@ -189,7 +189,7 @@ pub(crate) struct CopiedPayload {
 }
 
 impl CopiedPayload {
-    /// For a file that is a copy from this entry on.
+    /// Entry of a file that is a copy from entry `after` on.
     pub fn of(backend: &Backend, origin: Id, after: i64, at_us: i64) -> SqlResult<Self> {
         let sql = "SELECT hash FROM seal WHERE origin = ?1 AND ordinal = ?2";
         let hash: Option<Vec<u8>> =

@@ -22,11 +22,11 @@ pub(crate) struct RunPayload {
     pub traces: Vec<TracePayload>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<RecordingPayload>,
-    /// Of an imported log: its entries that are faults. Where two laptops imported the same, the one that a store
-    /// knew first stays with its run.
+    /// Entries of an imported log that are faults. Where two laptops imported the same entry, the one that a
+    /// store knew first stays with its run.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub entries: Vec<EntryPayload>,
-    /// How the run came, if it came without a seal and was sealed as found.
+    /// Way by which the run came, if it came without a seal and was sealed as found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found: Option<String>,
 }
@@ -76,7 +76,7 @@ pub(crate) struct RunDigest {
 }
 
 impl RunDigest {
-    /// For a run at its beginning.
+    /// Digest of a run at its beginning.
     pub fn begin(id: Id, record: &RunRecord, sw_versions: &str) -> Self {
         let RunRecord { unit, .. } = record;
         let mut run = CanonicalHash::of("run");

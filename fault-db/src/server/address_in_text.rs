@@ -45,7 +45,7 @@ fn after_schemes(text: &str) -> impl Iterator<Item = &str> {
     marked.chain(short)
 }
 
-/// Whether it begins with `user:password@`.
+/// Whether the text begins with `user:password@`.
 fn is_login(rest: &str) -> bool {
     let end = rest.find(char::is_whitespace).unwrap_or(rest.len());
     let rest = &rest[..end];

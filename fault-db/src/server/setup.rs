@@ -20,7 +20,7 @@ const GRANTS: &str = include_str!("grants.sql");
 /// A server that is ready for laptops.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ServerSetup {
-    /// Its address, without a password.
+    /// Address of the server, without a password.
     pub server: String,
     /// The database.
     pub database: String,

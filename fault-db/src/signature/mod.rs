@@ -36,10 +36,11 @@ impl std::fmt::Debug for Signer {
 }
 
 impl Signer {
-    /// From the private key's 32 bytes; `kind` says whose it is, in the caller's words.
+    /// A signer with the 32 bytes of a private key; `kind` = kind of its owner, in the caller's
+    /// words.
     ///
     /// # Errors
-    /// They are no key.
+    /// The bytes are no key.
     pub fn new(who: &str, kind: &str, seed: &[u8]) -> Result<Self, SignatureError> {
         let pair = Ed25519KeyPair::from_seed_unchecked(seed);
         Ok(Self {
@@ -54,7 +55,7 @@ impl Signer {
         &self.who
     }
 
-    /// Whose it is.
+    /// Kind of the owner.
     pub fn kind(&self) -> &str {
         &self.kind
     }

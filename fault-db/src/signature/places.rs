@@ -13,12 +13,12 @@ use crate::seal::run::{OCCURRENCES, PARTS, RUN};
 /// Digits of a mark.
 const DIGITS: usize = 8;
 
-/// For each row its mark, in the order of the digest of the run, by the kind of row.
+/// Marks of the rows in the order of the run's digest, by the kind of row.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Places(BTreeMap<String, String>);
 
 /// A row or field now: its mark, and what it is called.
-struct Place {
+struct RowMark {
     mark: String,
     name: String,
 }
@@ -40,7 +40,7 @@ impl Places {
     }
 }
 
-/// What of a run is not as it was signed.
+/// Parts of a run that differ from the signed ones.
 pub(crate) fn changed_places(
     backend: &Backend,
     run: i64,
@@ -57,8 +57,8 @@ pub(crate) fn changed_places(
     Ok(changed)
 }
 
-fn compare(kind: &str, signed: &[&str], found: &[Place], changed: &mut Vec<String>) {
-    let same = |(signed, found): &(&&str, &Place)| **signed == found.mark;
+fn compare(kind: &str, signed: &[&str], found: &[RowMark], changed: &mut Vec<String>) {
+    let same = |(signed, found): &(&&str, &RowMark)| **signed == found.mark;
     let start = signed.iter().zip(found).take_while(same).count();
     let (signed, found) = (&signed[start..], &found[start..]);
     let end = (signed.iter().rev().zip(found.iter().rev()))
@@ -87,7 +87,7 @@ fn compare(kind: &str, signed: &[&str], found: &[Place], changed: &mut Vec<Strin
     );
 }
 
-fn rows(backend: &Backend, run: i64, kind: &str) -> SqlResult<Vec<Place>> {
+fn rows(backend: &Backend, run: i64, kind: &str) -> SqlResult<Vec<RowMark>> {
     let sql = match kind {
         "fields" => return fields(backend, run),
         "scripts" => PARTS[0],
@@ -121,7 +121,7 @@ fn rows(backend: &Backend, run: i64, kind: &str) -> SqlResult<Vec<Place>> {
             }
             _ => format!("occurrence {}", row.get::<crate::id::Id>(0)?),
         };
-        Ok(Place {
+        Ok(RowMark {
             mark: mark(hash),
             name,
         })
@@ -129,7 +129,7 @@ fn rows(backend: &Backend, run: i64, kind: &str) -> SqlResult<Vec<Place>> {
 }
 
 /// The run's own row, field by field.
-fn fields(backend: &Backend, run: i64) -> SqlResult<Vec<Place>> {
+fn fields(backend: &Backend, run: i64) -> SqlResult<Vec<RowMark>> {
     let list = RUN.split("FROM").next().unwrap_or_default();
     let names = list.trim_start_matches("SELECT").split(',');
     let names: Vec<&str> = names.map(|name| name.trim()).collect();
@@ -142,7 +142,7 @@ fn fields(backend: &Backend, run: i64) -> SqlResult<Vec<Place>> {
                 "u.serial" => "serial number of the unit",
                 name => name.trim_start_matches("r."),
             };
-            fields.push(Place {
+            fields.push(RowMark {
                 mark: mark(hash),
                 name: format!("its {}", name.replace('_', " ")),
             });
@@ -161,8 +161,8 @@ mod tests {
     use super::*;
 
     fn said(signed: &[&str], found: &[&str]) -> Vec<String> {
-        let found: Vec<Place> = (found.iter().enumerate())
-            .map(|(n, mark)| Place {
+        let found: Vec<RowMark> = (found.iter().enumerate())
+            .map(|(n, mark)| RowMark {
                 mark: (*mark).to_owned(),
                 name: format!("step {n}"),
             })

@@ -1,4 +1,4 @@
-//! A JSON document with its signature: what a seal, a certificate file and a test sheet hold.
+//! A JSON document with its signature, as a seal, a certificate file and a test sheet hold it.
 
 use ring::signature::{ED25519, UnparsedPublicKey};
 use serde::{Deserialize, Serialize};
@@ -6,18 +6,18 @@ use serde_json::Value;
 
 use super::Signer;
 
-/// What is signed is this, then the document: a signature made for another purpose never fits.
+/// Signed bytes before the document: a signature made for another purpose never fits.
 const PURPOSE: &[u8] = b"ptu signature 1\n";
 /// The longest text that is read as a signed document.
 const LONGEST: usize = 16 << 20;
 
-/// Why a signature does not hold.
+/// Reason for which a signature does not hold.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SignatureError {
-    /// It cannot be read.
+    /// The document cannot be read.
     #[error("it is no signed document: {0}")]
     Unreadable(String),
-    /// It is written in another way than it was signed.
+    /// The document is not in the form in which it was signed.
     #[error("it is not in the one form in which it was signed: it was changed")]
     Form,
     /// The document or the signature was changed.
@@ -39,7 +39,7 @@ pub struct Signed {
 impl Signed {
     /// Signs an object; fields that name the signer are added.
     pub fn new(signer: &Signer, statement: &impl Serialize) -> Self {
-        // Structures of text and numbers: this cannot fail.
+        // The conversion of text and numbers cannot fail.
         let mut statement = serde_json::to_value(statement).unwrap_or_default();
         if let Some(object) = statement.as_object_mut() {
             object.insert("key".into(), signer.public_key().into());
@@ -55,7 +55,7 @@ impl Signed {
     /// Reads a signed document in its one form, byte for byte, and checks its signature.
     ///
     /// # Errors
-    /// It is none, or the signature does not fit.
+    /// The text is no signed document, or the signature does not fit.
     pub fn read(text: &str) -> Result<Self, SignatureError> {
         if text.len() > LONGEST {
             let reason = format!("{} bytes are more than {LONGEST}", text.len());
@@ -63,7 +63,7 @@ impl Signed {
         }
         let signed: Self = serde_json::from_str(text)
             .map_err(|error| SignatureError::Unreadable(error.to_string()))?;
-        // What one reader skips, another one shows: an order, a space, a key said twice.
+        // Readers differ in what they skip: an order, a space, a key that stands twice.
         if signed.text() != text {
             return Err(SignatureError::Form);
         }
@@ -74,7 +74,7 @@ impl Signed {
     /// Checks the signature.
     ///
     /// # Errors
-    /// It does not fit.
+    /// The signature does not fit.
     pub fn check(&self) -> Result<(), SignatureError> {
         let key = from_hex(self.key()).filter(|key| key.len() == 32);
         let signature = from_hex(&self.signature);
@@ -96,12 +96,12 @@ impl Signed {
         &self.statement
     }
 
-    /// The public key, in hex, that it claims to be signed with.
+    /// The public key, in hex, that the document names as its signer's.
     pub fn key(&self) -> &str {
         self.statement["key"].as_str().unwrap_or_default()
     }
 
-    /// Who signed, as the signed object says.
+    /// Name of the person who signed, as the signed object says.
     pub fn who(&self) -> &str {
         self.statement["who"].as_str().unwrap_or_default()
     }
@@ -111,8 +111,8 @@ fn message(statement: &Value) -> Vec<u8> {
     [PURPOSE, canonical_json(statement).as_bytes()].concat()
 }
 
-/// JSON in one form: no spaces, keys sorted. For text and whole numbers, which is all that is signed, this is the form of
-/// RFC 8785.
+/// JSON in one form: no spaces, keys sorted. For text and whole numbers, and nothing else is signed, this is the
+/// form of RFC 8785.
 pub fn canonical_json(value: &Value) -> String {
     let mut value = value.clone();
     value.sort_all_objects();

@@ -1,4 +1,4 @@
-//! What is signed of a run, event, note or instrument: its seal, and for a run in short what it says.
+//! Signed statement about a run, event, note or instrument: its seal, and for a run a summary.
 
 use serde::{Deserialize, Serialize};
 
@@ -34,16 +34,16 @@ pub struct Statement {
     pub seal: String,
     /// When it was made: the end of a run, the time of an event or note.
     pub at_us: i64,
-    /// Who signed.
+    /// Name of the person who signed.
     #[serde(default)]
     pub who: String,
-    /// Whose key it is: of a technician or a bench.
+    /// Kind of the key's owner: technician or bench.
     #[serde(default)]
     pub kind: String,
     /// The public key.
     #[serde(default)]
     pub key: String,
-    /// What a run says, in short.
+    /// Summary of a run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub about: Option<About>,
     /// Beginnings of digests of each row of a run, by which a change is located.
@@ -51,14 +51,14 @@ pub struct Statement {
     pub places: Option<Places>,
 }
 
-/// What a run says, in short: a certificate tells it without the database.
+/// Summary of a run, by which a certificate speaks without the database.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct About {
     /// Serial number of the unit.
     pub unit: String,
     /// The verdict.
     pub verdict: String,
-    /// Who tested.
+    /// Name of the tester.
     pub operator: String,
     /// Where the unit was: `sim`, `serial:…`.
     pub source: String,
@@ -162,7 +162,8 @@ pub(crate) fn read_signature(
     Ok(wrong.map_or(Ok(statement), Err))
 }
 
-/// How what a signature names is not what it hangs on: a run or instrument on itself, a note on its run, an event on its fault.
+/// Error of a signature that is stored with another thing than it names: a run or instrument has its own, a note its
+/// run's, an event its fault's.
 fn wrong_subject(
     backend: &Backend,
     group: Id,
@@ -187,12 +188,12 @@ fn wrong_subject(
         )?,
         _ => return Ok(Some(WrongSignature::NotThere(what.clone()))),
     };
-    // That a note or event was taken out is told by its seal.
+    // A removed note or event is reported by its seal.
     let is_own = owners.is_empty() || owners.contains(&group);
     Ok((!is_own).then(|| WrongSignature::Other(what.clone(), id)))
 }
 
-/// How the seal that a signature names differs from it.
+/// Difference between a signature and the seal that it names.
 fn seal_mismatch(backend: &Backend, statement: &Statement) -> SqlResult<Option<WrongSignature>> {
     let (Ok(id), Ok(file)) = (statement.id.parse::<Id>(), statement.file.parse::<Id>()) else {
         return Ok(Some(WrongSignature::NoSeal));

@@ -32,7 +32,7 @@ impl AtomicFile {
     /// are removed.
     ///
     /// # Errors
-    /// Of the file system: none can be made in that folder.
+    /// The file system allows no file in that folder.
     pub fn begin(to: &Path) -> std::io::Result<Self> {
         Self::make(to, false)
     }
@@ -42,11 +42,11 @@ impl AtomicFile {
         self.beside.as_file()
     }
 
-    /// Renames it to its name, replacing an existing file; readers see either the old or the new one,
-    /// complete. What was written must be on the disk already ([`std::fs::File::sync_all`]).
+    /// Gives the file its name, replacing an existing file; readers see either the old or the new
+    /// one, complete. What was written must be on the disk already ([`std::fs::File::sync_all`]).
     ///
     /// # Errors
-    /// Of the file system; the old file is still there then.
+    /// The file system refuses; the old file is still there.
     pub fn replace(self) -> std::io::Result<()> {
         self.beside
             .persist(&self.to)

@@ -163,7 +163,7 @@ pub(crate) fn keep_copy(conn: &Connection, path: &Path, version: i32) -> Result<
         return Ok(());
     }
     match part.publish() {
-        // It was not there a moment ago: another program made the same copy.
+        // Another program made the same copy a moment ago.
         Err(StoreError::TargetExists { .. }) => Ok(()),
         done => done,
     }

@@ -21,7 +21,7 @@ struct NamedTable {
     /// Aliases of its rows: a table expression with `id` and `named`, the row's own id.
     aliases: Option<&'static str>,
     newest_first: &'static str,
-    /// Which rows may be the latest.
+    /// Rows among which the latest is looked for.
     among: &'static str,
 }
 

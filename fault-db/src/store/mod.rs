@@ -45,9 +45,9 @@ pub struct Store {
     codec: RefCell<TraceCodec>,
     pub(crate) channel_sets: RefCell<BTreeMap<i64, Arc<[Channel]>>>,
     signer: RefCell<Option<Arc<Signer>>>,
-    /// Which file it was when it was opened.
+    /// Identity of the file when it was opened.
     identity: Option<Identity>,
-    /// Which file its write-ahead log was then; none of a store that only reads.
+    /// Identity of its write-ahead log at that time; none for a store that only reads.
     log: Option<Identity>,
 }
 
@@ -165,7 +165,7 @@ impl Store {
     /// way in the background may wait longer rather than lose what it has.
     ///
     /// # Errors
-    /// Of a server, which has none.
+    /// The store is on a server, which has no such time-out.
     pub fn set_busy_timeout_ms(&self, busy_timeout_ms: u32) -> Result<(), StoreError> {
         let timeout = std::time::Duration::from_millis(busy_timeout_ms.into());
         let set = self.file()?.busy_timeout(timeout);
@@ -178,7 +178,7 @@ impl Store {
         *self.signer.borrow_mut() = signer;
     }
 
-    /// Whose signature is put under what is recorded.
+    /// Signer whose signature is put under what is recorded.
     pub fn signer(&self) -> Option<Arc<Signer>> {
         self.signer.borrow().clone()
     }

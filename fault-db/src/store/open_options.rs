@@ -11,7 +11,7 @@ pub enum Synchronous {
     Normal,
 }
 
-/// How to open a file for writing.
+/// Options of opening a file for writing.
 #[derive(Debug)]
 pub struct OpenOptions {
     pub(crate) ids: IdSource,
@@ -31,13 +31,13 @@ impl OpenOptions {
         }
     }
 
-    /// How long to wait for another writer before the file counts as locked.
+    /// Time to wait for another writer before the file counts as locked.
     pub fn busy_timeout_ms(mut self, busy_timeout_ms: u32) -> Self {
         self.busy_timeout_ms = busy_timeout_ms;
         self
     }
 
-    /// How far a commit goes.
+    /// How far a commit reaches.
     pub fn synchronous(mut self, synchronous: Synchronous) -> Self {
         self.synchronous = synchronous;
         self

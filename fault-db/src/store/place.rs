@@ -1,4 +1,4 @@
-//! Whether the file that a store has open is the one that others find at its name, with what was recorded in it.
+//! Checks that other programs find the store's open file at its name, with all that was recorded in it.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -17,10 +17,10 @@ use crate::store::atomic_file::AtomicFile;
 const LOOK: Duration = Duration::from_millis(200);
 
 impl Store {
-    /// Holds the file and its log to be those that have this store's name still, and the file to have no other name.
+    /// Checks that the names of file and log still lead to the opened ones, and that the file has no other name.
     ///
     /// # Errors
-    /// [`StoreError::Misplaced`], and what has happened to the file or its log.
+    /// [`StoreError::Misplaced`] with what has happened to the file or its log.
     pub fn check_place(&self) -> Result<(), StoreError> {
         let Some(opened) = self.identity else {
             return Ok(());
@@ -55,8 +55,8 @@ impl Store {
         }
     }
 
-    /// Holds a run that has ended to be in the file that has this store's name, with all its steps, as another program finds it, and
-    /// with it the chain of seals up to where it was when the run began.
+    /// Checks that another program finds an ended run in the file of this store's name, with all its steps and with
+    /// the chain of seals up to its end at the run's beginning.
     ///
     /// # Errors
     /// The run, its steps or that chain are not there, and why. From then on nothing of the log is written back to the file when it is closed.
@@ -69,8 +69,8 @@ impl Store {
         self.or_keep_log_back(self.holds(run, began, steps))
     }
 
-    /// After an error nothing of the log is written back any more when the file is closed: a log that was removed would go over
-    /// what others have written since.
+    /// After an error nothing of the log is written back any more when the file is closed: a removed log would
+    /// overwrite what others have written since.
     pub(super) fn or_keep_log_back(&self, held: Result<(), StoreError>) -> Result<(), StoreError> {
         if held.is_err() {
             let no_checkpoint = DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE;

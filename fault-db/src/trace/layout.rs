@@ -25,14 +25,14 @@ pub const ENCODING: i64 = 1;
 const BLOCK_ROWS: usize = 4096;
 const CRC_BYTES: usize = 4;
 
-/// What the row of a trace says about its blob.
+/// Description of a trace's blob by its row.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<'a> {
     /// Number of the encoding.
     pub encoding: i64,
     /// Rows of the trace.
     pub rows: usize,
-    /// Its channels, all of them.
+    /// All channels of the trace.
     pub channels: &'a [Channel],
 }
 

@@ -21,7 +21,7 @@ pub use layout::{ENCODING, Shape};
 /// One channel of a trace.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Channel {
-    /// Its name, unique in the trace.
+    /// Name of the channel, unique in the trace.
     pub name: String,
     /// Unit of its samples; empty for an enum or a bit.
     pub unit: String,
@@ -68,7 +68,7 @@ pub struct TraceData {
     pub period_us: i64,
     /// The row at which it was triggered.
     pub trigger_row: Option<u32>,
-    /// It ends before its window did: the link dropped or the program was closed.
+    /// The trace ends before its window did: the link dropped or the program was closed.
     pub partial: bool,
     /// Some samples are missing.
     pub gaps: bool,
@@ -174,7 +174,7 @@ pub enum TraceError {
     Lsb {
         /// The channel.
         channel: String,
-        /// Its resolution.
+        /// Resolution of the channel.
         lsb: f64,
     },
     /// The time from row to row is not positive.
@@ -191,7 +191,7 @@ pub enum TraceError {
         /// Rows there are.
         rows: usize,
     },
-    /// More than [`MAX_ROWS`] or [`MAX_SAMPLES`].
+    /// The trace has more than [`MAX_ROWS`] or [`MAX_SAMPLES`].
     #[error(
         "{rows} rows of {columns} channels are too many (at most {MAX_ROWS} rows and {MAX_SAMPLES} samples)"
     )]
@@ -229,7 +229,7 @@ pub enum TraceError {
     Blob {
         /// The part of the blob.
         offset: usize,
-        /// What is wrong.
+        /// Defect of the blob.
         what: &'static str,
     },
     /// A column cannot be decoded.
@@ -237,13 +237,13 @@ pub enum TraceError {
     Column {
         /// The channel.
         channel: String,
-        /// What is wrong.
+        /// Defect of the column.
         what: &'static str,
     },
     /// The compressor failed.
     #[error("compression failed: {detail}")]
     Compression {
-        /// Its message.
+        /// Message of the compressor.
         detail: String,
     },
 }

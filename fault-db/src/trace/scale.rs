@@ -65,7 +65,7 @@ pub(super) fn per_unit(lsb: f64) -> f64 {
     (1.0 / lsb).round()
 }
 
-/// How often a sample is another than the one before.
+/// Number of samples that differ from the one before.
 pub(super) fn changes(integers: &[i64]) -> usize {
     let next = integers.get(1..).unwrap_or_default();
     let pairs = integers.iter().zip(next);

@@ -16,7 +16,7 @@ pub struct FaultEvent {
     pub kind: String,
     /// When.
     pub at_us: i64,
-    /// Who; empty for the program itself.
+    /// Name of the person; empty for the program itself.
     pub who: String,
     /// The text; empty for a repair and for a cause.
     pub note: String,
@@ -26,18 +26,18 @@ pub struct FaultEvent {
     pub repair: Option<RepairRecord>,
     /// The part it comes from, if it says that.
     pub cause: Option<CauseRecord>,
-    /// Who has withdrawn it.
+    /// The correction that withdraws the event.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub correction: Option<Correction>,
 }
 
-/// Who took an event back, when and why.
+/// Withdrawal of an event: by whom, when and why.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Correction {
     /// When, µs since 1970.
     pub at_us: i64,
-    /// Who.
+    /// Name of the person who withdrew.
     pub who: String,
-    /// Why.
+    /// Reason of the withdrawal.
     pub note: String,
 }

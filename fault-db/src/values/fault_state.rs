@@ -21,10 +21,10 @@ text_enum! {
     }
 }
 
-/// What can happen to a fault.
+/// Changes of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultAction {
-    /// It occurred again.
+    /// The fault occurred again.
     Occur,
     /// Somebody begins to work on it.
     Acknowledge,
@@ -32,14 +32,14 @@ pub enum FaultAction {
     Repair,
     /// A run after the repair passed.
     Verify,
-    /// It is closed.
+    /// The fault is closed.
     Close,
     /// The repair did not hold, or was a mistake.
     Reopen,
 }
 
 impl FaultAction {
-    /// What a person can do with a fault, in the order in which it is offered.
+    /// Changes that a person can make to a fault, in the order in which they are offered.
     pub const BY_A_PERSON: [Self; 5] = [
         Self::Acknowledge,
         Self::Repair,
@@ -59,7 +59,7 @@ impl FaultAction {
         }
     }
 
-    /// Its kind in the event log.
+    /// Kind of the action in the event log.
     pub fn event_kind(self) -> &'static str {
         match self {
             Self::Occur => "recurred",

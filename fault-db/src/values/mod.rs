@@ -1,4 +1,4 @@
-//! What is recorded, and the words for it.
+//! Recorded values, and their words.
 
 pub(crate) mod event;
 pub(crate) mod fault_state;

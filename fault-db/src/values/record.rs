@@ -18,11 +18,12 @@ text_enum! {
         Passed = "passed",
         /// An expectation did not hold.
         Failed = "failed",
-        /// It could not be tested.
+        /// The unit could not be tested.
         Error = "error",
         /// Not run, by choice or condition.
         Skipped = "skipped",
-        /// Of a search for a fault that found none: all that was run passed, and that was not enough to accept the unit.
+        /// Verdict of a search that found no fault: all that was run passed, and that was not enough to accept the
+        /// unit.
         Inconclusive = "inconclusive",
         /// Stopped by the operator.
         Aborted = "aborted",
@@ -30,7 +31,7 @@ text_enum! {
 }
 
 text_enum! {
-    /// What a record among the steps of a run is.
+    /// Kind of a record among the steps of a run.
     StepKind {
         /// The result of a step, or of one repetition of it.
         Step = "step",
@@ -38,7 +39,7 @@ text_enum! {
         Attempt = "attempt",
         /// A step that was run again only for the state that it leaves, and showed something else.
         Again = "again",
-        /// What failed outside steps; its name says where.
+        /// Failure outside steps; the name says where.
         Outside = "outside",
     }
 }
@@ -80,11 +81,12 @@ pub struct RunRecord {
     pub operator: String,
     /// Where the unit is: `sim`, `serial:…`, `tcp:…`.
     pub source: String,
-    /// How the unit was reached: `harness`, or `ptu` for its maintenance port alone; none where no tester led it.
+    /// Connection to the unit: `harness`, or `ptu` for the maintenance port alone; none where no tester led the
+    /// run.
     pub connection: Option<String>,
-    /// What was wrong with the unit, as reported: a name of `symptoms.toml`.
+    /// Symptom reported with the unit: a name of `symptoms.toml`.
     pub symptom: Option<String>,
-    /// What the bench was made of, its clock and its instruments: JSON of the caller's own.
+    /// Content of the bench, its clock and its instruments: JSON of the caller's own.
     pub evidence: Option<String>,
     /// When it began.
     pub started_at_us: i64,
@@ -124,13 +126,13 @@ pub struct StepRecord {
     pub index: u32,
     /// The procedure it belongs to.
     pub procedure: String,
-    /// What it is.
+    /// Kind of the step.
     pub kind: StepKind,
     /// Place of the step in its procedure, from 0; none outside steps.
     pub place: Option<u32>,
     /// Name that the procedure gives the step, or the place outside steps.
     pub name: String,
-    /// Which repetition, from 1.
+    /// Number of the repetition, from 1.
     pub turn: u32,
     /// Number of repetitions that were asked for.
     pub turns: u32,
@@ -142,13 +144,13 @@ pub struct StepRecord {
     pub bench_time_us: i64,
     /// The reason of the verdict, in English; empty if there is nothing to say.
     pub message: String,
-    /// The same as data: JSON of the caller's own, from which other languages are made.
+    /// The reason as data: JSON of the caller's own, from which other languages are made.
     pub findings: Option<String>,
     /// Line of the script it comes from.
     pub script_line: Option<u32>,
     /// Where the numbers of what it expected come from, in the caller's words.
     pub limit_source: Option<String>,
-    /// What it measured.
+    /// Measurements of the step.
     pub measurements: Vec<MeasurementRecord>,
 }
 
@@ -190,7 +192,7 @@ pub struct MeasurementRecord {
     pub high: Option<f64>,
     /// Where its limits come from, in the caller's words.
     pub limit_source: Option<String>,
-    /// Its verdict.
+    /// Verdict of the measurement.
     pub verdict: Verdict,
 }
 
@@ -207,13 +209,13 @@ pub struct FaultRecord {
     pub severity: String,
     /// Time of the occurrence.
     pub at_us: i64,
-    /// The same on the bench's clock.
+    /// Time of the occurrence on the bench's clock.
     pub bench_us: i64,
     /// Step under way, if any; it need not be recorded yet.
     pub step_index: Option<u32>,
     /// Description, in English.
     pub message: String,
-    /// The same as data: JSON of the caller's own.
+    /// The description as data: JSON of the caller's own.
     pub findings: Option<String>,
     /// All signals at that moment.
     pub freeze: Vec<FreezeSample>,
@@ -224,9 +226,9 @@ pub struct FaultRecord {
 pub struct FreezeSample {
     /// Name of the signal.
     pub name: String,
-    /// Its value; `None` if there was none.
+    /// Value of the signal; `None` if there was none.
     pub value: Option<f64>,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: String,
     /// The word for the value, for an enum or a bit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -254,10 +256,10 @@ pub struct CauseRecord {
     /// The run whose diagnosis found it, by its id; `None` of a person's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub run: Option<String>,
-    /// Its probability there.
+    /// Probability of the cause in that diagnosis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub probability: Option<f64>,
-    /// Why.
+    /// Reason of the attribution.
     pub note: String,
 }
 
@@ -270,6 +272,6 @@ pub struct RepairRecord {
     pub serial_old: Option<String>,
     /// Serial number of the part put in.
     pub serial_new: Option<String>,
-    /// What was done.
+    /// Work that was done.
     pub note: String,
 }

@@ -20,7 +20,7 @@ pub struct StepCounts {
     pub error: u32,
     /// Results of steps that were run, each repetition by itself.
     pub attempts: u32,
-    /// What did not pass outside steps, which is none of them.
+    /// Number of failures outside steps.
     pub outside: u32,
 }
 
@@ -56,7 +56,7 @@ impl StepCounts {
 /// Counts results as they come; `K` tells steps apart.
 #[derive(Clone, Debug)]
 pub struct StepCounter<K> {
-    /// What each step came to: 0 not run, 1 passed, 2 an error, 3 failed, as in [`SELECT_COUNTS`].
+    /// Outcome of each step: 0 not run, 1 passed, 2 an error, 3 failed, as in [`SELECT_COUNTS`].
     steps: BTreeMap<K, u8>,
     attempts: u32,
     outside: u32,
@@ -86,7 +86,7 @@ impl<K: Ord> StepCounter<K> {
         self.outside += u32::from(rank(verdict) > 1);
     }
 
-    /// So far, of so many steps that are due, or more if there are.
+    /// Counts so far, of `planned` steps that are due, or more if more ran.
     pub fn counts(&self, planned: usize) -> StepCounts {
         let of = |rank| self.steps.values().filter(|worst| **worst == rank).count() as u32;
         StepCounts {
@@ -100,7 +100,7 @@ impl<K: Ord> StepCounter<K> {
     }
 }
 
-/// How much a result says of its step: of several the greatest stands.
+/// Rank of a result for its step: of several results the greatest stands.
 pub fn rank(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Skipped => 0,
@@ -123,7 +123,7 @@ pub(crate) const COUNTS_OF_RUN: &str = "
             FROM step WHERE run = r.seq AND kind <> 'outside') AS turn
         GROUP BY procedure, place) AS step";
 
-/// What [`COUNTS_OF_RUN`] gave.
+/// Counts from the text of [`COUNTS_OF_RUN`].
 pub(crate) fn counts_of_text(text: &str) -> StepCounts {
     let mut numbers = text.split(' ').filter_map(|number| number.parse().ok());
     let mut next = || numbers.next().unwrap_or_default();

@@ -1,9 +1,9 @@
-//! Why what a person wrote cannot be withdrawn.
+//! Reasons for which an event of a person cannot be withdrawn.
 
-/// Why nothing is taken back.
+/// Reason for which nothing is taken back.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WithdrawalError {
-    /// There is no event of a person, or all are withdrawn.
+    /// The fault has no event of a person, or all are withdrawn.
     #[error("nobody has written anything about it that could be withdrawn")]
     NothingWritten,
     /// Something else was written last.
@@ -11,10 +11,10 @@ pub enum WithdrawalError {
     OtherWritten {
         /// Kind of what was written last.
         kind: String,
-        /// Who wrote it.
+        /// Author of the other entry.
         who: String,
     },
-    /// What was written cannot be taken back without what came after it.
+    /// A later event rests on the one to be taken back.
     #[error(
         "it was {after} after it was {kind}, and that rests on it; say by another state or a note what is so"
     )]
@@ -24,7 +24,7 @@ pub enum WithdrawalError {
         /// Kind of the event after it.
         after: String,
     },
-    /// It was closed, and the same fault was opened again.
+    /// The fault was closed, and the same fault was opened again.
     #[error("it was seen again after it was closed, and is a fault of its own since")]
     SeenSince,
 }

@@ -166,8 +166,8 @@ fn a_consequence_is_proven_only_with_all_faults_that_name_its_cause() {
     assert_eq!(states(&store, &other), ["repaired"], "its step was not run");
 }
 
-/// What people and diagnoses on two laptops say of one fault, in the order in which it is said on each, and what holds
-/// where they meet, in either order.
+/// Statements of people and diagnoses on two laptops about one fault, in the order in which it is said on each, and
+/// what holds where they meet, in either order.
 #[test]
 fn a_person_s_word_stands_before_any_diagnosis_wherever_files_meet() {
     for [here, there, holds] in rows(include_str!("cases/who_says.txt")) {
@@ -231,7 +231,7 @@ fn a_diagnosis_attributes_only_what_it_changes() {
     );
 }
 
-/// What is closed is settled: it is shown in no case, and none is shown with it. The same part of another unit is
+/// A closed fault is settled: no case shows it, and no fault is shown with it. The same part of another unit is
 /// another case.
 #[test]
 fn a_closed_fault_and_one_of_another_unit_are_in_no_case() {

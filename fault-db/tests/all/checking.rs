@@ -1,5 +1,4 @@
-//! What was changed by hand is found and named, whatever was changed; and what only follows from other rows
-//! is made anew.
+//! Changes by hand are found and named, whatever was changed; derived rows are made anew.
 
 use std::path::Path;
 
@@ -117,7 +116,7 @@ fn at_most_a_hundred_findings_of_a_kind_are_listed() {
     assert_eq!(found[100].detail.to_string(), "and 20 more of this kind");
 }
 
-/// What a file with a little of everything says, and its path.
+/// A file with a little of everything, with its path.
 fn a_little_of_everything(dir: &Path) -> (std::path::PathBuf, Store, Vec<Id>) {
     let path = dir.join("a.db");
     let store = open(&path);

@@ -181,7 +181,7 @@ fn of_occurrences() -> Vec<Case> {
     ]
 }
 
-/// What is counted of one key.
+/// Counts of one key.
 #[derive(Debug, Default, PartialEq)]
 struct Sum {
     /// Opened, not closed, closed, of these without repair; repairs, too young, back.

@@ -77,7 +77,7 @@ impl History {
         counted.get(RELAY).copied().unwrap_or_default()
     }
 
-    /// What is known of a part before the run of that day, of the 90 days before.
+    /// History of a part before the run of that day, over the 90 days before.
     fn part(&self, part: &str, day: i64) -> PartHistory {
         let before_us = T0_US + day * DAY_US;
         let span = (before_us - 90 * DAY_US, before_us);

@@ -1,4 +1,4 @@
-//! What the crate promises, without a server.
+//! Promises of the crate, without a server.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -25,7 +25,7 @@ fn laptop(dir: &TempDir, name: &str, seed: u64) -> Store {
     opened(&dir.path().join(name), seed)
 }
 
-/// What a file says, without what differs between files: row numbers, and which of its ids a fault goes by.
+/// Content of a file, without row numbers and the id by which a fault goes, which differ between files.
 fn said(store: &Store) -> Vec<String> {
     let conn = Connection::open(store.path()).expect("opens");
     let questions = [
@@ -414,7 +414,7 @@ fn a_merged_fault_is_found_by_either_id() {
         assert_eq!(a.resolve_fault(&asked).ok(), Some(ours), "{asked}");
     }
     a.put_note(theirs, "kim", "by its other name", T0_US + 20);
-    // That file does not know of the merge, and the fault is closed there.
+    // The other file does not know of the merge; the fault is closed there.
     b.put_state(theirs, FaultState::Closed, "lee", "", T0_US + 30);
     a.merge_from(&b).expect("merged");
     assert_eq!(faults(&a), [ours]);

@@ -127,7 +127,7 @@ fn the_oldest_go_until_the_file_fits() {
 }
 
 /// Goal: a trace that waits for a server stays, whatever its age, unless told otherwise; without a server
-/// nothing waits. Those of faults that are not closed stay in any case.
+/// nothing waits. Traces of faults that are not closed stay in any case.
 #[test]
 fn traces_not_sent_yet_are_not_pruned() {
     let dir = tempdir().expect("a directory");

@@ -1,4 +1,4 @@
-//! What a run records is in the file, also when the program dies, the disk fills or another run
+//! Records of a run are in the file, also when the program dies, the disk fills or another run
 //! writes at the same time.
 
 use crate::checking::three_runs;
@@ -13,7 +13,7 @@ use fault_db::{
 };
 use tempfile::tempdir;
 
-/// With other writers: a busy machine may hold one up in the middle of a commit.
+/// Time a store waits for other writers: a busy machine may hold one up in the middle of a commit.
 const PATIENCE_MS: u32 = 30_000;
 
 #[test]

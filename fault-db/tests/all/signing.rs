@@ -63,7 +63,7 @@ fn signed_run(store: &Store) -> Id {
     id
 }
 
-/// The same in a file `a.db` that is closed.
+/// A signed run in a file `a.db` that is closed.
 fn signed_file() -> (TempDir, PathBuf, Id) {
     let dir = tempdir().expect("a directory");
     let path = dir.path().join("a.db");

@@ -1,4 +1,4 @@
-//! What a person wrote about a fault is withdrawn: everything but the correction is as it was before.
+//! An event of a person is withdrawn: everything but the correction is as it was before.
 
 use std::collections::BTreeSet;
 use std::path::Path;

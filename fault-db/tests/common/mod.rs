@@ -38,7 +38,7 @@ impl Random {
         self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
     }
 
-    /// In -1 … 1, most often near 0.
+    /// A number in -1 … 1, most often near 0.
     pub fn noise(&mut self) -> f64 {
         let uniform = |bits: u64| (bits >> 11) as f64 / (1u64 << 53) as f64;
         uniform(self.next()) + uniform(self.next()) - 1.0
@@ -66,7 +66,7 @@ pub fn open(path: &Path) -> Store {
     Store::open(path, OpenOptions::new(ids(1))).expect("a new or known file opens")
 }
 
-/// What people do in a test, which they may.
+/// Permitted acts of people in a test.
 pub trait Deeds: Borrow<Store> {
     #[track_caller]
     fn put_state(&self, fault: Id, to: FaultState, who: &str, note: &str, at_us: i64) {
@@ -85,7 +85,7 @@ pub trait Deeds: Borrow<Store> {
         done.expect("a repair");
     }
 
-    /// Of all faults of the case: the one that was named, and the rest.
+    /// Stores a repair of all faults of the case: the named fault and the rest.
     #[track_caller]
     fn put_case_repair(
         &self,

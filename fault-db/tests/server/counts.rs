@@ -1,4 +1,4 @@
-//! How many rows there are, and of what content, in a file and on a server.
+//! Numbers and contents of rows in a file and on a server.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -83,7 +83,7 @@ impl Case<'_> {
         address.replace(&self.cluster.port().to_string(), &wire.port.to_string())
     }
 
-    /// What there is on the server after the trouble, and after the next sync.
+    /// Rows on the server after the trouble, and after the next sync.
     fn check(&self, name: &str, address: &str, file: &Path) {
         let rows = |counts: &Counts| {
             [
@@ -153,7 +153,7 @@ impl Case<'_> {
     }
 }
 
-/// How many commits a whole sync is.
+/// Number of commits in a whole sync.
 fn commits(history: &Laptop) -> (u32, Counts) {
     let cluster = shared();
     let address = cluster.database();

@@ -15,9 +15,9 @@ pub struct Laptop {
     pub name: &'static str,
     folder: TempDir,
     seed: std::cell::Cell<u64>,
-    /// By how much its clock is ahead of the true time, µs.
+    /// Time by which the laptop's clock is ahead of the true time, µs.
     pub clock_ahead_us: std::cell::Cell<i64>,
-    /// Its next syncs give its file a name of its own, if that is a copy.
+    /// Further syncs give the file a name of its own, if the file is a copy.
     pub as_copy: std::cell::Cell<bool>,
 }
 

@@ -29,7 +29,7 @@ const ADDRESS: &str = "PTU_TEST_LAPTOP_ADDRESS";
 const NAME: &str = "PTU_TEST_LAPTOP_NAME";
 /// Before each line in which a process says how far its sync is.
 const SYNC: &str = "sync: ";
-/// How the line of a failure begins if the server took no more connections, or kept the laptop waiting for too long.
+/// Beginning of a failure's line if the server took no more connections, or kept the laptop waiting for too long.
 const BUSY: &str = "busy";
 
 /// Laptops in the check.
@@ -44,15 +44,15 @@ const ONE_KILLED_IN: usize = 10;
 const STAGES: u64 = 3;
 /// A process is killed so long after such a line, at most, ms.
 const LATEST_KILL_MS: u64 = 60;
-/// So often the server is killed and started again.
+/// Number of times the server is killed and started again.
 const RESTARTS: usize = 2;
-/// It is away at least so long.
+/// Shortest time for which a laptop is away.
 const AWAY: Duration = Duration::from_secs(1);
 /// A technician tries again after so long, at least, and at most twice as long, ms: when the server was away,
 const MOMENT_MS: u64 = 1_000;
 /// and when it was busy. All laptops share one machine with the server here, and each try costs time of it.
 const LATER_MS: u64 = 8_000;
-/// For the whole campaign, which would not end if the server did not come back.
+/// Limit of the whole campaign, which would not end if the server did not come back.
 const PATIENCE: Duration = Duration::from_secs(900);
 /// 99 of 100 completed syncs take no longer than this.
 const P99_GOAL: f64 = 10.0;
@@ -96,7 +96,7 @@ fn sync(file: &Path, address: &str, laptop: &str) -> Result<(), StoreError> {
     store.close()
 }
 
-/// What was being done, and what the server or the network said.
+/// Work during which the error came, and the message of server or network.
 fn in_short(error: &StoreError) -> String {
     match error {
         StoreError::ServerUnreachable { doing, reason, .. } => format!("away, {doing}: {reason}"),
@@ -105,7 +105,7 @@ fn in_short(error: &StoreError) -> String {
     }
 }
 
-/// What happened in the evening.
+/// Counts of the evening.
 #[derive(Default)]
 struct Tally {
     begun: u32,
@@ -114,7 +114,7 @@ struct Tally {
     /// Seconds of each completed sync, its process included.
     completed: Vec<f64>,
     killed: u32,
-    /// By what the laptop was told.
+    /// Numbers of failures by the message that the laptop got.
     failed: BTreeMap<String, u32>,
 }
 
@@ -124,7 +124,7 @@ impl Tally {
     }
 }
 
-/// How the process of a sync ended.
+/// End of a sync's process.
 enum End {
     Completed,
     Killed,

@@ -18,7 +18,7 @@ use tempfile::TempDir;
 /// The account of the laptops.
 pub const LAPTOPS: &str = "laptop";
 
-/// For a server to start, on a busy machine.
+/// Time in which a server starts on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Between two looks whether it has.
@@ -32,7 +32,8 @@ pub struct Cluster {
     folder: TempDir,
     port: u16,
     server: std::sync::Mutex<Child>,
-    /// Its input is closed when this program ends; it then stops the server.
+    /// Process that stops the server once its input is closed, which happens when this program
+    /// ends.
     _watchdog: Child,
 }
 
@@ -131,7 +132,7 @@ impl Cluster {
         self.client_as("ptu", database)
     }
 
-    /// The same with another account.
+    /// A client of this account.
     pub fn client_as(&self, user: &str, database: &str) -> Client {
         let address = format!(
             "host=127.0.0.1 port={} user={user} dbname={database}",

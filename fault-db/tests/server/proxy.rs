@@ -11,7 +11,7 @@ pub enum When {
     BeforeCommit(u32),
     /// The server has done the `n`th commit, the laptop has not heard of it.
     AfterCommit(u32),
-    /// So many bytes have gone to the server.
+    /// After this number of bytes to the server.
     AfterBytes(u64),
     Never,
 }
@@ -81,7 +81,7 @@ fn serve(laptop: &TcpStream, server: &TcpStream, when: When, act: impl FnOnce())
     commits
 }
 
-/// What comes from the server.
+/// Answers from the server.
 struct Answers {
     held: std::sync::Arc<std::sync::atomic::AtomicBool>,
     came: std::sync::mpsc::Receiver<()>,

@@ -1,4 +1,4 @@
-//! What the laptops' account may do, and who makes a server ready for it.
+//! Rights of the laptops' account, and the set-up of a server for it.
 
 use fault_db::{Address, SERVER_SCHEMA_VERSION, StoreError};
 
@@ -6,7 +6,7 @@ use crate::common;
 use crate::laptop::{Laptop, connect, day, read_only};
 use crate::private::{LAPTOPS, name_of, shared};
 
-/// What a laptop's account tries on a server that has everything.
+/// Statements that a laptop's account tries on a server that has everything.
 const REFUSED: &[&str] = &[
     "DROP TABLE seal",
     "DROP TRIGGER only_added ON run",

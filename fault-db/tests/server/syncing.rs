@@ -1,4 +1,4 @@
-//! What a sync brings to the server, and what it leaves where it is.
+//! Rows that a sync brings to the server, and rows that it leaves.
 
 use fault_db::{FaultFilter, RunFilter, RunWriter, StoreError};
 
@@ -83,7 +83,7 @@ fn an_interrupted_run_is_sent_as_it_is() {
     );
     assert_eq!(laptop.sync(&address).runs, 0);
 
-    // It was not dead after all.
+    // The writer was not dead after all.
     drop(under_way);
     let run = runs[0].id;
     let file = rusqlite::Connection::open(laptop.path()).expect("its file");

@@ -175,7 +175,7 @@ fn a_read_only_store_answers_queries_and_refuses_writes() {
     );
 }
 
-/// What a server says when it lets somebody in.
+/// Bytes with which a server lets a client in.
 const LET_IN: &[u8] = b"R\0\0\0\x08\0\0\0\0Z\0\0\0\x05I";
 
 /// Goal: a server that hangs once it has let somebody in is given up in the time that the address allows.
@@ -184,7 +184,7 @@ fn a_server_that_hangs_after_the_login_is_given_up_in_time() {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let at = listener.local_addr().expect("its number");
     let (given_up, waiting) = std::sync::mpsc::channel::<()>();
-    // It holds the connection until the laptop has gone.
+    // The server holds the connection until the laptop has gone.
     let server = std::thread::spawn(move || {
         let (mut laptop, _) = listener.accept().expect("a laptop");
         laptop.write_all(LET_IN).expect("answered");

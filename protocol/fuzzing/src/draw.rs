@@ -1,4 +1,4 @@
-//! What the check runs a part of, other parts with each commit; the long suite runs all of it.
+//! Draws the part that the check runs, another part with each commit; the long suite runs all.
 
 use std::path::Path;
 use std::process::Command;
@@ -8,13 +8,13 @@ use crate::mutate::Dice;
 
 /// Names the seed of a draw, or [`ALL`].
 const SEED: &str = "CHECK_SEED";
-/// Of the last commit; asked for once.
+/// Seed made of the last commit, read once.
 static OF_THE_LAST_COMMIT: LazyLock<String> = LazyLock::new(of_the_last_commit);
-/// As a seed: everything is drawn.
+/// Seed with which everything is drawn.
 const ALL: &str = "all";
 
-/// One in so many of what there is, one at least. Prints the seed by which the same are drawn again: a test that fails shows
-/// what was printed.
+/// Draws one in `one_in` of all, at least one. Prints the seed by which the same are drawn again: a test that fails
+/// shows what was printed.
 pub fn drawn<T>(all: impl IntoIterator<Item = T>, one_in: usize) -> Vec<T> {
     let mut waiting: Vec<T> = all.into_iter().collect();
     let seed = seed();
@@ -33,7 +33,7 @@ pub fn draws_all() -> bool {
     asked().is_some_and(|seed| seed == ALL)
 }
 
-/// What `CHECK_SEED` says.
+/// Value of `CHECK_SEED`.
 ///
 /// # Panics
 /// If the variable is neither a number nor [`ALL`].
@@ -44,7 +44,7 @@ fn asked() -> Option<String> {
     Some(asked)
 }
 
-/// What was asked for, or a number that follows from the last commit; without Git 0.
+/// Seed that was asked for, or a number that follows from the last commit; without Git 0.
 fn seed() -> String {
     asked().unwrap_or_else(|| OF_THE_LAST_COMMIT.clone())
 }

@@ -28,14 +28,14 @@ use mutate::Dice;
 const HANG: Duration = Duration::from_secs(10);
 /// From one look at the clock to the next.
 const LOOK: Duration = Duration::from_millis(500);
-/// More memory than this no reader may hold at a time, bytes.
+/// Memory that a reader may hold at a time, bytes.
 const MOST_MEMORY: u64 = 512 << 20;
-/// A check feeds one in so many of the damaged inputs.
+/// A check feeds one damaged input of this many.
 const PART_OF_A_CHECK: u64 = 4;
 /// Bytes of an input that are printed.
 const SHOWN: usize = 200;
 
-/// How much a campaign does: the amount of the check, times the number in `CAMPAIGN`.
+/// Size of a campaign: the amount of the check, times the number in `CAMPAIGN`.
 pub fn amount(of_the_check: u64) -> u64 {
     of_the_check * set("CAMPAIGN").unwrap_or(1)
 }
@@ -106,7 +106,7 @@ impl Fuzz {
             }
             watch.begins(&input);
             let mut fed = Ok(());
-            // Of this thread alone: other tests of the program take memory, too.
+            // Memory taken by this thread alone: other tests of the program take memory, too.
             let taken = allocation_counter::measure(|| {
                 fed = catch_unwind(AssertUnwindSafe(|| read(&input)));
             });
@@ -155,7 +155,7 @@ fn keep(name: &str, input: &[u8]) -> String {
     )
 }
 
-/// What the system says of a process's memory, kB, as `VmRSS` of `self` or of a number; 0 where it does not tell.
+/// Memory of a process by the system, kB, as `VmRSS` of `self` or of a number; 0 where the system does not tell.
 pub fn memory_kb(process: &str, key: &str) -> u64 {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let line = status

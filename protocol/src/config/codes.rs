@@ -5,23 +5,23 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-/// What a code is for.
+/// Use of a code.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema,
 )]
 #[serde(rename_all = "snake_case")]
 pub enum CodeMeaning {
-    /// Its limit holds under cab signal.
+    /// The limit holds under cab signal.
     #[default]
     Line,
-    /// Its limit holds in yard mode; under cab signal it permits nothing.
+    /// The limit holds in yard mode; under cab signal the code permits nothing.
     Yard,
     /// Ends the limit of yard mode.
     YardCancel,
 }
 
 impl CodeMeaning {
-    /// Its name in files.
+    /// Name of the meaning in files.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Line => "line",
@@ -43,7 +43,7 @@ pub struct SpeedCode {
     pub carrier_hz: f64,
     /// Modulation, Hz.
     pub rate_hz: f64,
-    /// What it is for.
+    /// Use of the code.
     #[serde(default)]
     pub meaning: CodeMeaning,
     /// Codes of other tables, by name, for which this one is sent: lines and scripts name them.

@@ -14,7 +14,7 @@ pub struct DriverlessConfig {
     pub close_ms: u32,
     /// How long doors that did not close are ordered to open, ms.
     pub reopen_ms: u32,
-    /// How often closing is tried.
+    /// Number of attempts to close.
     pub close_tries: u8,
 }
 

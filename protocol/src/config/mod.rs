@@ -81,11 +81,11 @@ pub struct ReceiverConfig {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StopAndProceedConfig {
-    /// Its limit, km/h.
+    /// Limit after the acknowledged stop, km/h.
     pub limit_kmh: f64,
     /// Time from one warning to the next, ms.
     pub warning_ms: u32,
-    /// How long each sounds, ms.
+    /// Duration of each sound, ms.
     pub sounds_ms: u32,
 }
 
@@ -125,12 +125,12 @@ pub struct OverspeedConfig {
     pub jog_kmh: f64,
 }
 
-/// That of `sg100`, for configurations without it.
+/// Value of `sg100`, for configurations without the key.
 const fn apart_db() -> f64 {
     4.0
 }
 
-/// That of `sg100`, for configurations without it.
+/// Value of `sg100`, for configurations without the key.
 const fn jog_kmh() -> f64 {
     5.0
 }
@@ -148,7 +148,7 @@ pub struct DoorConfig {
     pub lines_ms: u32,
 }
 
-/// That of `sg100`, for configurations without it.
+/// Value of `sg100`, for configurations without the key.
 const fn lines_ms() -> u32 {
     500
 }

@@ -10,10 +10,10 @@ pub struct TachoConfig {
     pub pulses_per_turn: u32,
     /// Wheel diameter, mm.
     pub wheel_diameter_mm: f64,
-    /// A diameter keyed in may be smaller than that by so much, mm: a wheel worn to its limit.
+    /// Amount by which a diameter keyed in may be smaller than the configured one, mm: a wheel worn to its limit.
     #[serde(default = "TachoConfig::default_worn_mm")]
     pub worn_mm: f64,
-    /// And greater by so much, mm: as wheels are measured.
+    /// Amount by which a diameter keyed in may be greater, mm: as wheels are measured.
     #[serde(default = "TachoConfig::default_over_mm")]
     pub over_mm: f64,
     /// Averaging time of the speed measurement, ms.
@@ -66,7 +66,7 @@ pub struct TachoConfig {
 }
 
 impl TachoConfig {
-    /// Those of `sg100`, for configurations without the keys.
+    /// Values of `sg100`, for configurations without the keys.
     const fn default_creep_m() -> f64 {
         0.5
     }
@@ -122,7 +122,8 @@ impl TachoConfig {
 pub struct MarkerConfig {
     /// Distance from its place at which a marker is believed right after another one, m.
     pub window_m: f64,
-    /// The same right after the section's start, where trains do not stand to the metre, m.
+    /// Distance from its place at which a marker is believed right after the section's start, where
+    /// trains do not stand to the metre, m.
     pub start_window_m: f64,
     /// What is added per way run since the last marker or the start: wheels and sliding, share.
     pub window_share: f64,
@@ -149,7 +150,7 @@ pub struct MarkerConfig {
     pub reach_m: f64,
 }
 
-/// Those of `sg100`, for configurations without the keys.
+/// Values of `sg100`, for configurations without the keys.
 impl MarkerConfig {
     const fn default_tones_hz() -> [f64; 4] {
         [16_000.0, 17_000.0, 18_000.0, 19_000.0]

@@ -21,7 +21,7 @@ pub struct Lru {
     pub name: String,
     /// Name people use, Korean.
     pub name_ko: String,
-    /// It belongs to the bench, not to the unit or its train: it is examined, not replaced.
+    /// The part belongs to the bench, not to the unit or its train: it is examined, not replaced.
     #[serde(default, skip_serializing_if = "core::ops::Not::not")]
     pub of_bench: bool,
 }

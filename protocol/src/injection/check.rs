@@ -40,7 +40,7 @@ const BIT_ERRORS: Allowed = ("bit_errors", 0.0, 1.0);
 const NOISE: Allowed = ("noise", 0.0, 100.0);
 const DELAY: Allowed = ("delay", 0.0, LONGEST_DELAY_MS);
 
-/// What can happen at a place.
+/// Effects that a place can have.
 fn allowed(place: Place) -> &'static [Allowed] {
     match place {
         Place::AtpAntenna => &[DEAD, ("gain", 0.0, 10.0)],

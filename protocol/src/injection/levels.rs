@@ -18,14 +18,14 @@ const HALF: f64 = 0.5;
 pub enum FaultKind {
     /// Something does not work, all the time.
     Permanent,
-    /// It comes and goes, by time, speed or warmth.
+    /// The fault comes and goes, by time, speed or warmth.
     Intermittent,
     /// Something works, but not as well as it should.
     Degraded,
 }
 
 impl FaultKind {
-    /// As catalogues and reports write it.
+    /// Word in catalogues and reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Permanent => "permanent",
@@ -78,7 +78,7 @@ impl Effect {
         })
     }
 
-    /// The same effect with another number; one that has none stays as it is.
+    /// This effect with another number; an effect without a number stays as it is.
     fn with_number(self, number: f64) -> Self {
         match self {
             Self::Dead | Self::StuckOn | Self::StuckOff | Self::Deaf { .. } => self,

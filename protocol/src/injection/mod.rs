@@ -200,7 +200,7 @@ pub enum Place {
     DoorContactRight,
     /// Head control relay of the cab.
     HeadControlRelay,
-    /// What TCMS sends on RS-485.
+    /// Frames of TCMS on RS-485.
     Tcms,
     /// Change of cabs by TCMS.
     TcmsCabs,
@@ -233,7 +233,7 @@ pub enum Place {
 }
 
 impl Place {
-    /// On the train around the unit.
+    /// Whether the place is on the train around the unit.
     pub const fn on_train(self) -> bool {
         matches!(
             self,
@@ -252,7 +252,7 @@ impl Place {
         )
     }
 
-    /// In the bench or its wires to the unit: the unit is not at fault.
+    /// Whether the place is in the bench or its wires to the unit: the unit is not at fault.
     pub const fn on_bench(self) -> bool {
         matches!(
             self,
@@ -271,7 +271,8 @@ impl Place {
         )
     }
 
-    /// In the unit, which applies the fault mode itself; the bench applies all others.
+    /// Whether the place is in the unit, which applies the fault mode itself; the bench applies all
+    /// others.
     pub const fn in_unit(self) -> bool {
         !self.on_train() && !self.on_bench()
     }
@@ -281,7 +282,7 @@ impl Place {
         matches!(self, Self::TrackDatabase | Self::WheelParameter)
     }
 
-    /// On one of the train's cars, which the mode must name.
+    /// Whether the place is on one of the train's cars, which the mode must name.
     pub const fn on_car(self) -> bool {
         matches!(
             self,
@@ -290,7 +291,7 @@ impl Place {
     }
 }
 
-/// What happens at a place.
+/// Effect of a fault at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case", tag = "kind", deny_unknown_fields)]
 pub enum Effect {
@@ -374,18 +375,18 @@ pub struct FaultMode {
     pub id: String,
     /// Part to replace.
     pub lru: LruId,
-    /// What is wrong, for people.
+    /// Name of the mode, for people.
     pub mode: String,
     /// Label of a [`Severity`](crate::event::Severity) of faults.
     pub severity: String,
     /// Relative prior weight, a bench default.
     pub weight: f64,
-    /// It can leave the train less protected.
+    /// The fault can leave the train less protected.
     #[serde(rename = "unsafe")]
     pub unsafe_: bool,
     /// Where it sits.
     pub place: Place,
-    /// What it does.
+    /// Effect of the fault.
     pub effect: Effect,
     /// What is lacking to find it with a laptop alone; `None` = such a laptop should find it.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -9,7 +9,7 @@ use thiserror::Error;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::rules::Place;
+use super::rules::LineEntry;
 use super::{Broken, Line, Section};
 use crate::config;
 
@@ -24,12 +24,12 @@ pub enum LineError {
     Data {
         /// Line of the file, from 1.
         line: usize,
-        /// What is wrong there.
+        /// Defect of the data.
         reason: String,
     },
 }
 
-/// What a line file holds.
+/// Content of a line file.
 #[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -98,7 +98,7 @@ fn located(text: &str, broken: Broken) -> LineError {
 }
 
 /// Where a place begins in the text; an entry that is left out is at its section.
-fn start_of(text: &str, place: Place) -> Option<usize> {
+fn start_of(text: &str, place: LineEntry) -> Option<usize> {
     let file = DeTable::parse(text).ok()?;
     let section = file
         .get_ref()

@@ -20,7 +20,7 @@ pub use rules::Broken;
 pub struct Gradient {
     /// Where it begins, m from the section's start.
     pub at_m: f64,
-    /// Its value, ‰, uphill positive.
+    /// Gradient, ‰, uphill positive.
     pub permille: f64,
 }
 
@@ -30,7 +30,7 @@ pub struct Gradient {
 pub struct Curve {
     /// Where it begins, m from the section's start.
     pub at_m: f64,
-    /// Its radius, m; 0 = straight from here on.
+    /// Radius, m; 0 = straight from here on.
     pub radius_m: f64,
     /// Limit in it, km/h, beside `limits` of the section.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -43,7 +43,7 @@ pub struct Curve {
 pub struct LimitFrom {
     /// Where it begins, m from the section's start.
     pub at_m: f64,
-    /// Its value, km/h.
+    /// Limit, km/h.
     pub kmh: f64,
 }
 
@@ -80,11 +80,11 @@ pub struct Section {
     pub length_m: f64,
     /// Departure station number.
     pub from_station: u16,
-    /// Its TWC loop number.
+    /// TWC loop number of the departure station.
     pub from_loop: u16,
     /// Arrival station number.
     pub to_station: u16,
-    /// Its TWC loop number.
+    /// TWC loop number of the arrival station.
     pub to_loop: u16,
     /// Start position, m.
     pub start_m: f64,

@@ -20,14 +20,14 @@ const TIGHTEST_M: f64 = 80.0;
 #[error("{reason}")]
 pub struct Broken {
     /// Where; `None` = the whole file.
-    pub(super) place: Option<Place>,
+    pub(super) place: Option<LineEntry>,
     pub(super) reason: String,
 }
 
 /// A place in a line file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
-    /// Which section, from 0.
+pub(super) struct LineEntry {
+    /// Place of the section, from 0.
     pub section: usize,
     /// Entry of it.
     pub key: &'static str,
@@ -69,7 +69,7 @@ struct Rules<'a> {
 impl Rules<'_> {
     fn broken(&self, key: &'static str, item: Option<usize>, reason: &str) -> Result<(), Broken> {
         Err(Broken {
-            place: Some(Place {
+            place: Some(LineEntry {
                 section: self.at,
                 key,
                 item,
@@ -246,7 +246,7 @@ impl Rules<'_> {
 
     fn twice(&self) -> Result<(), Broken> {
         Err(Broken {
-            place: Some(Place {
+            place: Some(LineEntry {
                 section: self.at,
                 key: "section",
                 item: None,

@@ -1,15 +1,15 @@
-//! What one end of the wire has accepted and rejected, by channel and by reason.
+//! Counts of frames that one end of the wire has accepted and rejected, by channel and by reason.
 
 use crate::frame::{Reject, Rejected};
 use crate::message::Channel;
 
-/// What one end has taken and rejected since it was made.
+/// Counts of frames that one end has accepted and rejected since it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     pub(super) accepted: [u64; CHANNELS],
     pub(super) gaps: [u64; CHANNELS],
     pub(super) out_of_place: [u64; CHANNELS],
-    /// By reason, then by channel; the last place is for frames of no channel of this end.
+    /// Counts by reason, then by channel; the last place is for frames of no channel of this end.
     pub(super) rejected: [[u64; CHANNELS + 1]; Reject::ALL.len()],
     pub(super) garbage: u64,
 }

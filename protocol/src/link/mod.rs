@@ -18,7 +18,7 @@ pub use receiver::{MAX_AHEAD, MAX_DELAY, RELAX, RESYNC};
 use counters::CHANNELS;
 use receiver::Receiver;
 
-/// Which end of the wire this is.
+/// The end of the wire at which a link is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// The unit under test: receives from its partner on each channel.
@@ -174,7 +174,7 @@ impl Link {
         self.receivers[channel as usize].map(|receiver| receiver.heard_at)
     }
 
-    /// What was accepted and rejected so far.
+    /// Counts of accepted and rejected frames so far.
     pub const fn counters(&self) -> &Counters {
         &self.counters
     }

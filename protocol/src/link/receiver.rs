@@ -3,9 +3,9 @@
 use crate::frame::{Header, Reject};
 use crate::{Duration, Instant};
 
-/// How far ahead of the last accepted sequence number the next may be.
+/// Greatest distance of the next sequence number ahead of the last accepted one.
 pub const MAX_AHEAD: u16 = 1000;
-/// How much longer than the fastest frame so far a frame may take.
+/// Time by which a frame may take longer than the fastest one so far.
 pub const MAX_DELAY: Duration = Duration::from_ms(500);
 /// A sender's clock that has fallen behind by this much since its last accepted frame stood still: the sender was
 /// started again, and the frames refused since then began with it.
@@ -32,7 +32,7 @@ pub(super) struct Receiver {
     pub(super) out_of_place: u32,
 }
 
-/// What accepting a frame changes: the new state, the sequence numbers it skipped, and the frames rejected
+/// Changes by an accepted frame: the new state, the sequence numbers it skipped, and the frames rejected
 /// since the last accepted one.
 pub(super) struct Acceptance {
     pub(super) receiver: Receiver,

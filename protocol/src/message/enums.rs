@@ -35,15 +35,15 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// Why ATO failed: the parameter of event `ato_failed`.
+    /// Failure of ATO: the parameter of event `ato_failed`.
     AtoFailure {
-        /// It has not.
+        /// ATO has not failed.
         None = 0 "none",
-        /// Its processor does not work.
+        /// ATO's processor does not work.
         Processor = 1 "processor",
         /// The start-up self-test failed an item that ATO needs.
         SelfTest = 2 "self_test",
-        /// Its configuration or the track database does not pass its checks.
+        /// ATO's configuration or the track database does not pass its checks.
         StoredData = 3 "stored_data",
         /// TRA failed its test while the train stood; on the way the run is brought to its end.
         Tra = 4 "tra",
@@ -59,7 +59,7 @@ wire_enum! {
 }
 
 wire_bits! {
-    /// What ATO cannot believe: the parameter of event `ato_input_absurd`.
+    /// Inputs that ATO cannot believe: the parameter of event `ato_input_absurd`.
     AbsurdInputs {
         /// Speed that is no number, negative or beyond any train's.
         SPEED = 0,
@@ -129,9 +129,9 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What the wayside orders a train to do beside running [S0, S4].
+    /// Orders of the wayside to a train beside running [S0, S4].
     TrainOrder {
-        /// Nothing.
+        /// No order.
         None = 0 "none",
         /// Turn back: hand the train over to the other cab.
         TurnBack = 1 "turn_back",
@@ -143,9 +143,9 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// How far a train has carried out its last order.
+    /// State of a train's last order.
     OrderState {
-        /// None is under way.
+        /// No order is under way.
         Idle = 0 "idle",
         /// TCMS is asked for the change of cabs, the train is held.
         TurningBack = 1 "turning_back",
@@ -159,7 +159,7 @@ wire_enum! {
         Waking = 5 "waking",
         /// Ready for a departure.
         Ready = 6 "ready",
-        /// Not carried out; the train stays held.
+        /// The order was not carried out; the train stays held.
         Failed = 7 "failed",
     }
 }
@@ -177,7 +177,7 @@ wire_enum! {
 }
 
 wire_bits! {
-    /// Why an order is not carried out: the parameter of event `order_refused`.
+    /// Reasons for which an order is not carried out: the parameter of event `order_refused`.
     OrderLacks {
         /// The train moves.
         STANDSTILL = 0,
@@ -215,9 +215,9 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// Why the unit holds the emergency brake.
+    /// Cause for which the unit holds the emergency brake.
     EbCause {
-        /// It does not.
+        /// The unit does not hold the emergency brake.
         None = 0 "none",
         /// Start-up or no cab active: the brake has not been released yet.
         NotReleased = 1 "not_released",
@@ -247,9 +247,9 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// Why the unit asks for the full service brake.
+    /// Cause for which the unit asks for the full service brake.
     FsbCause {
-        /// It does not.
+        /// The unit does not ask for the full service brake.
         None = 0 "none",
         /// Speed above the limit and its margin.
         Overspeed = 1 "overspeed",
@@ -261,7 +261,7 @@ wire_enum! {
         TcmsLost = 4 "tcms_lost",
         /// ATO failed in automatic run.
         AtoFailed = 5 "ato_failed",
-        /// In automatic run TCMS took its permission back, or said that the train cannot run.
+        /// TCMS took its permission back in automatic run, or said that the train cannot run.
         NotPermitted = 6 "not_permitted",
         /// Armed for maintenance.
         TestMode = 7 "test_mode",
@@ -291,7 +291,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What the unit stores over power-ups.
+    /// Stores of the unit that outlast a power-up.
     StoreKind {
         /// The event log.
         Events = 0 "events",
@@ -301,9 +301,9 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// Why arming was refused or lapsed.
+    /// Reason for which arming was refused or lapsed.
     ArmRefusal {
-        /// Not refused.
+        /// The request is not refused.
         None = 0 "none",
         /// The maintenance key is off.
         KeyOff = 1 "key_off",
@@ -333,7 +333,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What a value of the self-test is measured in.
+    /// Unit of a value of the self-test.
     MeasureUnit {
         /// Milliseconds.
         Milliseconds = 0 "ms",

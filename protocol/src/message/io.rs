@@ -74,7 +74,7 @@ wire_bits! {
 }
 
 layout! {
-    /// Inputs of the unit at the frame's time stamp, I/O rack → unit.
+    /// Inputs of the unit at the frame's time stamp.
     IoInput, Io, 0x01 {
         /// Carrier in the ATP antenna, Hz; 0 = none.
         carrier_hz: u16,
@@ -108,7 +108,7 @@ layout! {
 }
 
 layout! {
-    /// What the driver keys in at the cab, I/O rack → unit; sent while it is keyed in.
+    /// Train number that is keyed in at the cab; sent while it is keyed in.
     CabEntries, Io, 0x02 {
         /// Train number; 0 = that of the unit configuration.
         train_number: u16,
@@ -116,7 +116,7 @@ layout! {
 }
 
 layout! {
-    /// Wheel diameter that is keyed in at the cab, I/O rack → unit; sent while it is keyed in.
+    /// Wheel diameter that is keyed in at the cab; sent while it is keyed in.
     WheelEntry, Io, 0x04 {
         /// Diameter, 0.1 mm; 0 = that of the unit configuration.
         diameter_01mm: u16,
@@ -124,13 +124,13 @@ layout! {
 }
 
 layout! {
-    /// A second code in the ATP antenna, of a neighbouring track circuit, I/O rack → unit; sent while it is there.
+    /// A second code in the ATP antenna, of a neighbouring track circuit; sent while it is there.
     Crosstalk, Io, 0x03 {
-        /// Its carrier, Hz.
+        /// Carrier, Hz.
         carrier_hz: u16,
-        /// Its code rate, 0.01 Hz; 0 = unmodulated.
+        /// Code rate, 0.01 Hz; 0 = unmodulated.
         code_rate_chz: u16,
-        /// Its level, mV; 0 = there is none any more.
+        /// Level, mV; 0 = the second code has gone.
         level_mv: u16,
     }
 }
@@ -143,7 +143,7 @@ pub const COIL_PARTS: usize = 5;
 pub const COIL_SAMPLES: usize = COIL_PART * COIL_PARTS;
 /// Samples of a coil in a second.
 pub const COIL_SAMPLE_HZ: u32 = 48_000;
-/// What one step of a sample stands for, mV: a coil takes up to 3.2 V.
+/// Voltage of one step of a sample, mV: a coil takes up to 3.2 V.
 pub const COIL_STEP_MV: f32 = 0.1;
 
 /// The samples of a [`CoilSamples`].
@@ -184,8 +184,8 @@ impl Field for Samples {
 }
 
 layout! {
-    /// What is in one coil as samples, I/O rack → unit; sent before the `IoInput` of the same scan, whose code, tachometers
-    /// and marker count no more then. A coil of which nothing is sent is silent.
+    /// Samples of one coil; sent before the `IoInput` of the same scan, whose code, tachometers and marker
+    /// count no more then. A coil without samples is silent.
     CoilSamples, Io, 0x05 {
         /// Coil.
         coil: Coil,
@@ -197,7 +197,7 @@ layout! {
 }
 
 layout! {
-    /// Outputs of the unit after a scan, unit → I/O rack.
+    /// Outputs of the unit after a scan.
     IoOutput, Io, 0x81 {
         /// Output contacts.
         outputs: Outputs,

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-/// What is wrong with a payload, said so that a person with a hex dump finds the place.
+/// Error in a payload, with its place for a person with a hex dump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{message}: {kind} at offset {offset} (field {field})")]
 pub struct DecodeError {
@@ -16,7 +16,7 @@ pub struct DecodeError {
     pub field: &'static str,
     /// Byte offset into the payload.
     pub offset: usize,
-    /// What went wrong there.
+    /// Kind of error.
     pub kind: DecodeErrorKind,
 }
 
@@ -43,11 +43,11 @@ pub struct FieldSpec {
     pub ty: &'static str,
     /// Bytes it takes.
     pub size: usize,
-    /// What it means.
+    /// Meaning of the field.
     pub doc: &'static str,
 }
 
-/// What `WIRE.md` says about a message.
+/// Description of a message, as in `WIRE.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MessageSpec {
     /// Name.
@@ -56,7 +56,7 @@ pub struct MessageSpec {
     pub channel: super::Channel,
     /// First payload byte; from 0x80 on the unit is the sender, below it the receiver.
     pub code: u8,
-    /// What it is for.
+    /// Purpose of the message.
     pub doc: &'static str,
     /// Fields after the code, in order.
     pub fields: &'static [FieldSpec],
@@ -65,7 +65,7 @@ pub struct MessageSpec {
 impl MessageSpec {
     /// Bytes of the payload, code included.
     pub const fn payload_len(&self) -> usize {
-        // `const`, so that it is settled at compile time that every message fits a frame.
+        // `const`, so that the compiler checks that every message fits a frame.
         let (mut len, mut i) = (1, 0);
         while i < self.fields.len() {
             len += self.fields[i].size;
@@ -74,21 +74,21 @@ impl MessageSpec {
         len
     }
 
-    /// Whether the unit sends it.
+    /// Whether the unit sends the message.
     pub const fn sent_by_unit(&self) -> bool {
         self.code >= 0x80
     }
 }
 
-/// What `WIRE.md` says about an enumeration: code, label and meaning of each value; or about a
+/// Description of an enumeration, as in `WIRE.md`: code, label and meaning of each value; or of a
 /// set of bits: number, name and meaning of each bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordSpec {
     /// Name of the type.
     pub name: &'static str,
-    /// What it says.
+    /// Meaning of the type.
     pub doc: &'static str,
-    /// Its values or bits.
+    /// Values or bits of the type.
     pub entries: &'static [(u8, &'static str, &'static str)],
 }
 
@@ -104,7 +104,7 @@ pub trait Layout: Sized {
     fn show(&self) -> Vec<String>;
 }
 
-/// A reader over a payload that knows where it is.
+/// A reader of a payload, with its position.
 pub struct Cursor<'a> {
     pub(super) payload: &'a [u8],
     pub(super) offset: usize,
@@ -270,7 +270,7 @@ macro_rules! wire_enum {
             }
             /// Whether this version knows the value.
             pub const fn is_known(self) -> bool { !matches!(self, Self::Unknown(_)) }
-            /// The word for it.
+            /// Label of the value.
             pub fn label(self) -> &'static str {
                 match self { $( Self::$variant => $label, )* Self::Unknown(_) => "unknown" }
             }

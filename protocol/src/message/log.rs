@@ -4,28 +4,28 @@ use super::enums::{AtoState, EbCause, Mode};
 use super::layout::layout;
 
 layout! {
-    /// Asks for the event log from an index on; answered by entries, then `LogEnd`. Tester → unit.
+    /// Asks for the event log from an index on; answered by entries, then `LogEnd`.
     ReadLog, Ptu, 0x20 {
         /// First entry wanted.
         from_index: u32,
     }
 }
 layout! {
-    /// Asks for the record of automatic runs from an index on; answered by rows, then `RunEnd`. Tester → unit.
+    /// Asks for the record of automatic runs from an index on; answered by rows, then `RunEnd`.
     ReadRun, Ptu, 0x22 {
         /// First row wanted.
         from_index: u32,
     }
 }
 layout! {
-    /// Clears the event log. Tester → unit, answered.
+    /// Clears the event log; answered.
     ClearLog, Ptu, 0x21 {
         /// Session number.
         session: u32,
     }
 }
 layout! {
-    /// One entry of the event log. Unit → tester.
+    /// One entry of the event log.
     LogEntry, Ptu, 0xA0 {
         /// Index since power-up, from 0; never reused.
         index: u32,
@@ -48,7 +48,7 @@ layout! {
     }
 }
 layout! {
-    /// End of the log as it stands. Unit → tester.
+    /// End of the log as it stands.
     LogEnd, Ptu, 0xA1 {
         /// Index the next event will get.
         next_index: u32,
@@ -57,7 +57,7 @@ layout! {
     }
 }
 layout! {
-    /// One cycle of an automatic run as ATO recorded it [S0 §2, §3.1]. Unit → tester.
+    /// One cycle of an automatic run as ATO recorded it [S0 §2, §3.1].
     RunRow, Ptu, 0xA2 {
         /// Index since power-up, from 0; never reused.
         index: u32,
@@ -80,7 +80,7 @@ layout! {
     }
 }
 layout! {
-    /// End of the run record as it stands. Unit → tester.
+    /// End of the run record as it stands.
     RunEnd, Ptu, 0xA3 {
         /// Index the next row will get.
         next_index: u32,

@@ -175,7 +175,7 @@ macro_rules! messages {
                 self.spec().name
             }
 
-            /// Its declared layout.
+            /// Declared layout of the message.
             pub const fn spec(&self) -> &'static MessageSpec {
                 match self { $( Self::$name(_) => &$name::SPEC ),* }
             }

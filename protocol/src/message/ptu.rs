@@ -33,18 +33,18 @@ wire_bits! {
 }
 
 layout! {
-    /// Asks who the unit is. Tester → unit.
+    /// Asks who the unit is.
     Identify, Ptu, 0x01 {}
 }
 layout! {
-    /// First half of the arm exchange. Tester → unit.
+    /// First half of the arm exchange.
     ArmRequest, Ptu, 0x02 {
         /// Session number, not 0.
         session: u32,
     }
 }
 layout! {
-    /// Second half: the challenge's answer, within 1 s. Tester → unit.
+    /// Second half: the challenge's answer, within 1 s.
     ArmConfirm, Ptu, 0x03 {
         /// Session number.
         session: u32,
@@ -53,21 +53,21 @@ layout! {
     }
 }
 layout! {
-    /// Ends the session: all stimuli off, outputs safe. Tester → unit.
+    /// Ends the session: all stimuli off, outputs safe.
     Disarm, Ptu, 0x04 {
         /// Session number.
         session: u32,
     }
 }
 layout! {
-    /// Keeps the status flowing, and an armed unit armed. Tester → unit, at least every 500 ms.
+    /// Keeps the status flowing, and an armed unit armed; at least every 500 ms.
     KeepAlive, Ptu, 0x05 {
         /// Session number; 0 = listening only.
         session: u32,
     }
 }
 layout! {
-    /// Who the unit is. Unit → tester.
+    /// Identity of the unit.
     Identity, Ptu, 0x81 {
         /// Serial number, ASCII, filled up with 0.
         serial: [u8; 16],
@@ -86,7 +86,7 @@ layout! {
     }
 }
 layout! {
-    /// Challenge of the arm exchange. Unit → tester.
+    /// Challenge of the arm exchange.
     ArmChallenge, Ptu, 0x82 {
         /// Session number.
         session: u32,
@@ -95,18 +95,18 @@ layout! {
     }
 }
 layout! {
-    /// Outcome of arming, and notice when arming lapses. Unit → tester.
+    /// Outcome of arming, and notice when arming lapses.
     ArmState, Ptu, 0x83 {
         /// Session number.
         session: u32,
         /// 1 = armed.
         armed: u8,
-        /// Why not.
+        /// Reason for which the unit is not armed.
         refusal: ArmRefusal,
     }
 }
 layout! {
-    /// Answer to a stimulus, release or clear request. Unit → tester.
+    /// Answer to a stimulus, release or clear request.
     StimulusAnswer, Ptu, 0x84 {
         /// Sequence number of the request.
         request_seq: u16,
@@ -115,11 +115,11 @@ layout! {
     }
 }
 layout! {
-    /// Another client has the unit: said once to a TCP client that is turned away. Unit → tester.
+    /// Another client has the unit: said once to a TCP client that is turned away.
     Taken, Ptu, 0x85 {
         /// IPv6 address of the client that has it; one of IPv4 is mapped, `::ffff:192.0.2.1`.
         address: [u8; 16],
-        /// Its port.
+        /// Port of the client that has the unit.
         port: u16,
         /// Time since that client came, ms.
         for_ms: u32,
@@ -128,7 +128,7 @@ layout! {
     }
 }
 layout! {
-    /// State of the unit, every 50 ms while a tester is heard. Unit → tester.
+    /// State of the unit, every 50 ms while a tester is heard.
     Status, Ptu, 0x90 {
         /// States.
         bits: StatusBits,
@@ -172,7 +172,7 @@ layout! {
         test_speed_cms: u16,
         /// Operating state of ATO.
         ato_state: AtoState,
-        /// What ATO adds to the way its wheels tell, found between markers, 10 ppm.
+        /// Correction that ATO adds to the way its wheels tell, found between markers, 10 ppm.
         wheel_correction_10ppm: i16,
     }
 }

@@ -30,14 +30,14 @@ wire_bits! {
 }
 
 layout! {
-    /// Asks for a self-test: answered, then by one result for each item and the end. Tester → unit.
+    /// Asks for a self-test: answered, then by one result for each item and the end.
     RunSelfTest, Ptu, 0x15 {
         /// Session number.
         session: u32,
     }
 }
 layout! {
-    /// Result of one item of a self-test that was asked for. Unit → tester.
+    /// Result of one item of a self-test that was asked for.
     SelfTestItem, Ptu, 0x86 {
         /// Sequence number of the request.
         request_seq: u16,
@@ -51,12 +51,12 @@ layout! {
         low: i32,
         /// Greatest value allowed.
         high: i32,
-        /// What the three are measured in.
+        /// Unit of the three numbers.
         unit: MeasureUnit,
     }
 }
 layout! {
-    /// End of a self-test that was asked for. Unit → tester.
+    /// End of a self-test that was asked for.
     SelfTestEnd, Ptu, 0x87 {
         /// Sequence number of the request.
         request_seq: u16,

@@ -6,9 +6,9 @@ use super::log::LogEntry;
 
 layout! {
     /// Asks for what the unit has stored over power-ups, from a sequence number on; answered by `StoredEntry` and
-    /// `StoredClock`, or by `StoredRow`, then `StoredEnd`. Tester → unit.
+    /// `StoredClock`, or by `StoredRow`, then `StoredEnd`.
     ReadStored, Ptu, 0x23 {
-        /// Which of the two stores.
+        /// Store to read from.
         store: StoreKind,
         /// First entry wanted; 4294967295 asks for the end alone.
         from_sequence: u32,
@@ -17,16 +17,16 @@ layout! {
     }
 }
 layout! {
-    /// Tells the unit the time, which it stores with its own. Tester → unit, answered.
+    /// Tells the unit the time, which it stores with its own; answered.
     SetClock, Ptu, 0x24 {
         /// Time since 1970 without leap seconds, UTC, ms; from the year 2000 to the year 2100.
         utc_ms: u64,
-        /// It may be wrong by so much, ms.
+        /// Greatest error of the time, ms.
         uncertainty_ms: u16,
     }
 }
 layout! {
-    /// One stored entry of the event log. Unit → tester.
+    /// One stored entry of the event log.
     StoredEntry, Ptu, 0xA4 {
         /// Sequence number in the store, over all power-ups; never reused.
         sequence: u32,
@@ -53,7 +53,7 @@ layout! {
     }
 }
 layout! {
-    /// The time as a tester told it, among the stored entries of the event log. Unit → tester.
+    /// The time as a tester told it, among the stored entries of the event log.
     StoredClock, Ptu, 0xA5 {
         /// Sequence number in the store of events.
         sequence: u32,
@@ -63,12 +63,12 @@ layout! {
         at_ms: u32,
         /// Time since 1970, UTC, ms.
         utc_ms: u64,
-        /// It may be wrong by so much, ms.
+        /// Greatest error of the time, ms.
         uncertainty_ms: u16,
     }
 }
 layout! {
-    /// One stored row of the run record. Unit → tester.
+    /// One stored row of the run record.
     StoredRow, Ptu, 0xA6 {
         /// Sequence number in the store, over all power-ups; never reused.
         sequence: u32,
@@ -95,9 +95,9 @@ layout! {
     }
 }
 layout! {
-    /// End of a store as it stands. Unit → tester.
+    /// End of a store as it stands.
     StoredEnd, Ptu, 0xA7 {
-        /// Which of the two stores.
+        /// Store that was read.
         store: StoreKind,
         /// Sequence number that the next entry will get.
         next_sequence: u32,

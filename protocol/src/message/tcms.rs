@@ -55,7 +55,7 @@ wire_bits! {
 }
 
 layout! {
-    /// TCMS → unit.
+    /// State of the train as TCMS has it.
     TcmsToAtc, Tcms, 0x01 {
         /// States.
         bits: TcmsToAtcBits,
@@ -73,7 +73,7 @@ layout! {
 }
 
 layout! {
-    /// Unit → TCMS.
+    /// Orders and state of the unit for TCMS.
     AtcToTcms, Tcms, 0x81 {
         /// Commands and states.
         bits: AtcToTcmsBits,

@@ -18,7 +18,7 @@ wire_bits! {
 }
 
 layout! {
-    /// Speed code into the ATP test coil. Tester → unit, answered.
+    /// Speed code into the ATP test coil; answered.
     TestCode, Ptu, 0x10 {
         /// Session number.
         session: u32,
@@ -31,7 +31,7 @@ layout! {
     }
 }
 layout! {
-    /// Speed signal in place of the tachometers. Tester → unit, answered.
+    /// Speed signal in place of the tachometers; answered.
     TestSpeed, Ptu, 0x11 {
         /// Session number.
         session: u32,
@@ -41,12 +41,12 @@ layout! {
         backward: u8,
         /// Speed to reach, cm/s, at most 3000.
         speed_cms: u16,
-        /// How fast to get there, mm/s²; 0 = the board's own 3000.
+        /// Rate of the change, mm/s²; 0 = the board's own 3000.
         accel_mms2: u16,
     }
 }
 layout! {
-    /// One pulse of the test marker. Tester → unit, answered.
+    /// One pulse of the test marker; answered.
     TestMarker, Ptu, 0x12 {
         /// Session number.
         session: u32,
@@ -55,7 +55,7 @@ layout! {
     }
 }
 layout! {
-    /// Station data from the TEST modem into the TWC antenna, every 250 ms. Tester → unit, answered.
+    /// Station data from the TEST modem into the TWC antenna, every 250 ms; answered.
     TestTwc, Ptu, 0x13 {
         /// Session number.
         session: u32,
@@ -82,7 +82,7 @@ layout! {
     }
 }
 layout! {
-    /// Takes test signals away. Tester → unit, answered.
+    /// Takes test signals away; answered.
     TestRelease, Ptu, 0x14 {
         /// Session number.
         session: u32,

@@ -1,4 +1,4 @@
-//! What a tester without a harness knows of the train: [`TrainState`], sent beside `Status` to a tester that
+//! State of the train for a tester without a harness: [`TrainState`], sent beside `Status` to a tester that
 //! asked for it by [`Subscribe`].
 //!
 //! A harness shows the unit's contacts and its frames to TCMS and wayside; on a train only the unit itself
@@ -10,7 +10,7 @@ use super::layout::layout;
 use super::tcms::TcmsToAtcBits;
 
 layout! {
-    /// Asks for `TrainState` beside each `Status`, for 1 s. Tester → unit, at least every 500 ms.
+    /// Asks for `TrainState` beside each `Status`, for 1 s; at least every 500 ms.
     Subscribe, Ptu, 0x06 {
         /// 1 = also at once in the scan of a change, 0 = with each `Status` only.
         changes: u8,
@@ -18,7 +18,7 @@ layout! {
 }
 
 layout! {
-    /// What the unit does to the train and has from it, in the scan of the frame's stamp. Unit → tester.
+    /// Outputs of the unit to the train, and its inputs from it, in the scan of the frame's stamp.
     TrainState, Ptu, 0x91 {
         /// Scans of 10 ms since a change that was not sent at once, at most 255; 0 = all that is new here
         /// changed in this scan.

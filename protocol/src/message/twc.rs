@@ -18,7 +18,7 @@ wire_bits! {
 }
 
 layout! {
-    /// Station data, wayside → unit.
+    /// Station data.
     TwcWayside, Twc, 0x01 {
         /// Route number.
         route: u16,
@@ -44,7 +44,7 @@ layout! {
 }
 
 layout! {
-    /// Train data in answer to each accepted `TwcWayside`, unit → wayside.
+    /// Train data in answer to each accepted `TwcWayside`.
     TwcTrain, Twc, 0x81 {
         /// Sequence number of the frame answered.
         answered_seq: u16,
@@ -62,7 +62,7 @@ layout! {
 }
 
 layout! {
-    /// Orders for a train, wayside → unit. A wayside that knows them sends them beside `TwcWayside`.
+    /// Orders for a train. A wayside that knows them sends them beside `TwcWayside`.
     TwcOrders, Twc, 0x02 {
         /// Train number.
         train_number: u16,
@@ -72,13 +72,13 @@ layout! {
         section_length_dm: u32,
         /// Station at which the train's run ends; 0 = none.
         destination: u16,
-        /// What the train is to do beside running.
+        /// Order to the train beside running.
         order: TrainOrder,
     }
 }
 
 layout! {
-    /// What the train made of its orders, in answer to each accepted `TwcOrders`, unit → wayside.
+    /// State of the train's orders, in answer to each accepted `TwcOrders`.
     TwcReport, Twc, 0x82 {
         /// Sequence number of the frame answered.
         answered_seq: u16,
@@ -88,11 +88,11 @@ layout! {
         number_state: NumberState,
         /// Destination in force; 0 = none.
         destination: u16,
-        /// How far the last order is carried out.
+        /// State of the last order.
         order_state: OrderState,
         /// TWC frames for this train since power-up, refused ones among them, wrapping.
         received: u16,
-        /// Of those, frames that contradict the track database, wrapping.
+        /// TWC frames for this train that contradict the track database, wrapping.
         refused: u16,
         /// TWC frames for other trains since power-up, wrapping.
         others: u16,

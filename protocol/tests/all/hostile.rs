@@ -125,7 +125,7 @@ fn a_flood_is_bounded() {
     }
 }
 
-/// What arrived before a restart belongs to no frame after it, and each of its bytes is counted once.
+/// Bytes that arrived before a restart belong to no frame after it, and each byte is counted once.
 #[test]
 fn a_restart_counts_every_byte_that_it_forgets() {
     let mut decoder = Decoder::new();

@@ -1,4 +1,4 @@
-//! What the crate promises: codecs, vectors, hostile bytes, and the document of the wire.
+//! Promises of the crate: codecs, vectors, hostile bytes, and the document of the wire.
 
 mod common;
 mod hostile;

@@ -149,7 +149,7 @@ fn limits() -> String {
     )
 }
 
-/// What the prose speaks of, of the configuration that the worked sessions are of.
+/// Values of the configuration that the prose names: of the unit in the worked sessions.
 fn configuration() -> String {
     let text = fs::read_to_string(root("../scripts/units/sg100.toml")).expect("sg100 is there");
     let config = UnitConfig::from_toml(&text).expect("sg100 is sound");
@@ -264,7 +264,7 @@ const fn person(address: Address) -> &'static str {
     }
 }
 
-/// What is sent regularly: message, ms between two, and when.
+/// Messages sent regularly: name, interval in ms, and when.
 const REGULAR: [(&str, usize, &str); 15] = [
     ("IoInput", 10, "always"),
     ("TcmsToAtc", 50, "always"),

@@ -72,7 +72,7 @@ impl Database {
         self.db.clone().or_else(variable)
     }
 
-    /// Its path, of a file; for what a server does not do.
+    /// Path of a database in a file; for what a server does not do.
     pub fn file(&self) -> Result<PathBuf, Failure> {
         match self.place()? {
             DatabasePlace::File(path) => Ok(path),
@@ -117,7 +117,7 @@ impl Database {
         }
     }
 
-    /// The same, of a file; the user's own data directory is made if need be: for runs.
+    /// Opens a database in a file for runs, and makes the user's own data directory if need be.
     pub fn open_file(&self) -> Result<Store, Failure> {
         let path = self.file()?;
         if self.named().is_none() {

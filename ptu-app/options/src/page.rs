@@ -1,4 +1,4 @@
-//! Which pages the window has: their names, keys and the words of the command line.
+//! Pages of the window: their names, keys and the words of the command line.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ pub enum Page {
     Report,
     /// Waveforms: read, recorded, made and played.
     Signals,
-    /// Which causes, how often, and whether repairs hold.
+    /// Page of causes, their frequency, and whether repairs hold.
     Statistics,
 }
 
@@ -43,7 +43,7 @@ impl Page {
         Self::Signals,
     ];
 
-    /// Its name on the command line.
+    /// Name of the page on the command line.
     fn word(self) -> &'static str {
         match self {
             Self::Case => "case",

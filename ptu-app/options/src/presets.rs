@@ -1,5 +1,5 @@
-//! Defaults of options that a depot or a user chose, in files: the depot's, then the user's. Of each the table of this
-//! computer comes last, and what comes last counts. A command line counts before all of them.
+//! Defaults of options that a depot or a user chose, in files: the depot's, then the user's. In each file the table
+//! of this computer comes last, and the last value counts. A command line counts before all of them.
 //!
 //! ```toml
 //! who = "Kim"

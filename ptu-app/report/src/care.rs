@@ -1,4 +1,4 @@
-//! What the care of the history came to, in words: an exchange with a server, an import, a check.
+//! Results of maintaining the history, in words: an exchange with a server, an import, a check.
 
 use fault_db::{
     CheckReport, Difference, MergeCounts, Problem, PruneCounts, Refusals, SealHead, StateConflict,
@@ -9,14 +9,13 @@ use crate::naming::event;
 use crate::words::{Words, fill};
 use ptu_runs::words::noun;
 
-/// What was done, and what a person should know besides.
+/// Result in words, and notes for the person.
 pub struct Said {
     pub text: String,
-    /// What should be looked at.
+    /// Notes on what should be looked at.
     pub notes: Vec<String>,
 }
 
-/// How far a sync is.
 pub fn progress(progress: SyncProgress, words: &Words) -> String {
     let SyncProgress { phase, done, total } = progress;
     let phase = words.care.phase(phase);
@@ -149,7 +148,6 @@ fn span(us: u64) -> String {
     }
 }
 
-/// What pruning came to, or would.
 pub fn pruned(counts: &PruneCounts, dry_run: bool, words: &Words) -> String {
     let care = &words.care;
     let (gone, over) = match dry_run {

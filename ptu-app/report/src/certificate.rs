@@ -8,15 +8,15 @@ use serde_json::Value;
 use crate::departure::Departure;
 use ptu_runs::data::sha256;
 
-/// What stands before the certificate in a page, and after it.
+/// Text in a page before the certificate.
 const BEGIN: &str = "<script type=\"application/json\" id=\"ptu-certificate\">";
 const END: &str = "</script>";
-/// What a page ends with, behind its certificate.
+/// End of a page, behind its certificate.
 const PAGE_END: &str = "</body></html>";
 /// Version of what is signed of a sheet; the first did not cover the certificate.
 const VERSION: u32 = 2;
 
-/// What is signed of a sheet.
+/// The statement about a sheet that is signed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SheetStatement {
@@ -31,14 +31,14 @@ pub struct SheetStatement {
     pub digest: String,
     /// When the sheet was written.
     pub at_us: i64,
-    /// Who signed.
+    /// Name of the person who signed.
     #[serde(default)]
     pub who: String,
     #[serde(default)]
     pub kind: String,
     #[serde(default)]
     pub key: String,
-    /// What the run is worth as a departure test, if it is one.
+    /// Value of the run as a departure test, if it is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub departure: Option<Departure>,
 }
@@ -63,7 +63,7 @@ impl Block {
         format!("{begins}{BEGIN}{json}{END}{PAGE_END}")
     }
 
-    /// What the signature of a sheet covers: each byte of the page but its own.
+    /// Digest that the signature of a sheet covers: each byte of the page but the signature's own.
     fn covered(&self, begins: &str) -> String {
         let run = self.run.clone();
         sha256(&Self { run, sheet: None }.page(begins))

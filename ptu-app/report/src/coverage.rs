@@ -1,4 +1,4 @@
-//! How much of what was due was run, in words: every surface that tells a count of a run tells this one.
+//! Coverage of a run in words: every surface that tells a count of a run tells this one.
 
 use fault_db::StepCounts;
 use ptu_runs::coverage::Coverage;
@@ -36,7 +36,8 @@ pub fn count_text(counts: &StepCounts, words: &Words) -> String {
     text
 }
 
-/// The same for a table: steps that were due, and how many of these were run if that is not all.
+/// Count of steps for a table: the steps that were due, and how many of them were run where that
+/// differs.
 pub fn count_short(counts: &StepCounts, words: &Words) -> String {
     let of = [("run", &counts.run() as _), ("of", &counts.planned as _)];
     match counts.not_run() {
@@ -45,7 +46,7 @@ pub fn count_short(counts: &StepCounts, words: &Words) -> String {
     }
 }
 
-/// What was run, if that is not all that was due, and what the rest needs.
+/// Sentence on the coverage, if not all due steps were run, with the needs of the rest.
 pub fn coverage_text(coverage: &Coverage, words: &Words) -> Option<String> {
     if coverage.steps.not_run() == 0 {
         return None;

@@ -11,7 +11,6 @@ use crate::words::Language;
 use ptu_runs::clock::rfc3339;
 use ptu_runs::stored::kind_of;
 
-/// Names of the columns.
 const COLUMNS: [&str; 21] = [
     "run",
     "unit_serial",
@@ -36,12 +35,13 @@ const COLUMNS: [&str; 21] = [
     "departure_not_valid",
 ];
 
-/// What a file of a table begins with: without it, spreadsheets read its UTF-8 in the code page of the system.
+/// Byte-order mark at the beginning of a table's file: without it, spreadsheets read its UTF-8 in the code
+/// page of the system.
 pub const MARK: &str = "\u{feff}";
 
 /// A cell of a table: text must not act, a number must stay one.
 pub enum Cell {
-    /// What people and scripts wrote.
+    /// Text that people and scripts wrote.
     Text(String),
     Number(String),
 }
@@ -105,8 +105,8 @@ fn cells(
 }
 
 impl Cell {
-    /// As it stands in the file, where a text acts on nothing: no formula, no control characters but line
-    /// feeds and tabs.
+    /// Text of the cell in the file, where a text acts on nothing: no formula, no control characters but
+    /// line feeds and tabs.
     pub fn written(self) -> String {
         match self {
             Self::Number(number) => number,

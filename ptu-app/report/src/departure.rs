@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use fault_db::{RunDetail, RunFilter, Store, Verdict};
+use fault_db::{RunDetail, RunFilter, Store, Verdict, is_practice};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -15,6 +15,9 @@ use ptu_runs::stored::{DEPARTURE, standing};
 
 /// How long a unit that passed is good for service, µs: 24 hours, as the operating rules of a railway have it (CSS 551).
 const VALID_US: i64 = 86_400_000_000;
+
+/// Most steps that were not run of which each is named.
+const MOST_NAMED: usize = 3;
 
 /// What a run is worth as a departure test.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -34,7 +37,8 @@ fn both(sentence: impl Fn(&'static Words) -> String) -> [String; 2] {
 }
 
 impl Departure {
-    /// Of a run in which departure tests were due; a good one is these alone, whole, without injected faults, all passed.
+    /// Of a run in which departure tests were due; a good one is these alone, whole, on a real unit without injected faults,
+    /// all passed, and signed.
     pub fn of(run: &RunDetail) -> Option<Self> {
         let is_departure = |path: &str| path.starts_with(DEPARTURE);
         if !run.scripts.iter().any(|script| is_departure(&script.path)) {
@@ -44,20 +48,25 @@ impl Departure {
         if !run.scripts.iter().all(|script| is_departure(&script.path)) {
             why_not.push(both(|words| words.verify.with_others.into()));
         }
+        let run_of = &run.run;
+        let counts = counts_of(run_of);
+        let skipped = standing(&run.steps).filter(|step| step.verdict == Verdict::Skipped);
+        // Of many that were not run the number tells more than their names.
+        let named = counts.not_run() as usize == skipped.take(MOST_NAMED).count();
         for step in standing(&run.steps) {
             let said: fn(&Words) -> &'static str = match step.verdict {
                 Verdict::Passed => continue,
+                Verdict::Skipped if !named => continue,
                 Verdict::Failed => |words| words.verify.step_failed,
                 Verdict::Skipped => |words| words.verify.step_skipped,
                 _ => |words| words.verify.step_not_tested,
             };
-            why_not.push(both(|words| {
-                fill(said(words), &[("step", &words.content(&step.name))])
-            }));
+            let said = both(|words| fill(said(words), &[("step", &words.record(step))]));
+            if !why_not.contains(&said) {
+                why_not.push(said);
+            }
         }
-        let run_of = &run.run;
-        let counts = counts_of(run_of);
-        if counts.not_run() > 0 {
+        if counts.not_run() > 0 && !named {
             let of: [(&str, &dyn Display); 2] = [("n", &counts.not_run()), ("of", &counts.planned)];
             why_not.push(both(|words| fill(words.verify.steps_not_run, &of)));
         }
@@ -70,8 +79,14 @@ impl Departure {
                 fill(words.verify.with_faults, &[("faults", faults)])
             }));
         }
+        if is_practice(&run_of.source, None) {
+            why_not.push(both(|words| words.verify.of_simulated.into()));
+        }
         if run_of.verdict != Some(Verdict::Passed) && why_not.is_empty() {
             why_not.push(both(|words| words.verify.no_pass.into()));
+        }
+        if run.signature.is_none() {
+            why_not.push(both(|words| words.verify.departure_unsigned.into()));
         }
         Some(Self {
             unit: run_of.unit_serial.clone(),
@@ -100,7 +115,7 @@ impl Departure {
             ..RunFilter::default()
         };
         for later in store.runs(&filter)? {
-            let is_real = later.injected.as_deref().unwrap_or_default().is_empty();
+            let is_real = !later.is_practice();
             if is_real && Self::of(&store.run(later.id)?).is_some() {
                 let at = local_zoned(later.started_at_us);
                 let of: [(&str, &dyn Display); 2] = [("run", &later.id.short()), ("at", &at)];

@@ -148,7 +148,11 @@ const LEAST_TOLD: f64 = 0.0005;
 /// What may be the cause, `most` parts, each with its probability, the likeliest first. The
 /// probability of a part is the one that the conclusion tells.
 pub fn ranked(of: &Diagnosis, most: usize) -> Vec<(f64, Possible<'_>)> {
-    if matches!(of.conclusion, Conclusion::NothingSeen { made: 0, .. }) {
+    let nothing = matches!(
+        of.conclusion,
+        Conclusion::NothingSeen { made: 0, .. } | Conclusion::BenchFailed { .. }
+    );
+    if nothing {
         // What is known beforehand of each part is no finding.
         return Vec::new();
     }

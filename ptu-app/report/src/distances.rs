@@ -1,4 +1,4 @@
-//! How far trains have run, by readings of their odometers that a depot keeps as `train,date,km`.
+//! Distances of trains, by readings of their odometers that a depot keeps as `train,date,km`.
 //!
 //! Between two readings of a train its distance grows evenly; before the first and after the last nothing is known.
 
@@ -20,7 +20,7 @@ const FARTHEST_KM: f64 = 1e8;
 #[derive(Debug, Default, PartialEq)]
 pub struct Distances(BTreeMap<String, Vec<Reading>>);
 
-/// What an odometer stood at when a local day began.
+/// Reading of an odometer at the beginning of a local day.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Reading {
     at_us: i64,
@@ -31,7 +31,7 @@ impl Distances {
     /// Reads a file of comma-separated values with the columns train, date and km in its first line.
     ///
     /// # Errors
-    /// It cannot be read, or a value is not what it should be: the message names its line and column.
+    /// The file cannot be read, or a value is wrong: the message names its line and column.
     pub fn read(file: &Path) -> Result<Self, Failure> {
         let text = read_regular_file(file, LONGEST_FILE)
             .map_err(|error| Failure::usage(FileTrouble::unread(file, error)))?;
@@ -85,7 +85,7 @@ impl Distances {
         Some(readings.first()?.at_us..readings.last()?.at_us)
     }
 
-    /// How far a train ran in a span, as far as its readings reach, km.
+    /// Distance of a train in a span, as far as its readings reach, km.
     pub fn km(&self, train: &str, span_us: &Range<i64>) -> f64 {
         let readings = self.0.get(train).map_or(&[][..], Vec::as_slice);
         let of_two = |two: &[Reading]| {
@@ -118,7 +118,7 @@ fn day_us(date: &str) -> Option<i64> {
 mod tests {
     use super::*;
 
-    /// By hand: 3 000 km in the 30 days of June are 100 km a day; 10 days of them are 1 000 km.
+    /// 3 000 km in the 30 days of June are 100 km a day; 10 days of them are 1 000 km.
     #[test]
     fn a_train_runs_evenly_between_its_readings_and_not_beyond_them() {
         let text = "\u{feff}train,date,km\r\n\"612\", 2026-07-01 ,103000\r\n612,2026-06-01,100000\r\n\r\n613,2026-06-01,5\r\n";

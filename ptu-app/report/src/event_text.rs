@@ -1,4 +1,4 @@
-//! What an event in the history of a fault says, on the command line and in the window.
+//! Texts of events in the history of a fault, on the command line and in the window.
 
 use std::borrow::Cow;
 

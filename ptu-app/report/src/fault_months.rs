@@ -10,11 +10,11 @@ use crate::distances::Distances;
 
 /// A local month of the span, or its part in it.
 pub struct Month {
-    /// Its name, as 2026-03.
+    /// Name of the month, as 2026-03.
     pub name: String,
     /// Beginning and end, µs since 1970.
     pub span_us: std::ops::Range<i64>,
-    /// What is counted in it; a quiet month has zeros.
+    /// Counts of the month; a quiet month has zeros.
     pub stat: FaultStat,
 }
 
@@ -56,7 +56,7 @@ pub fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<Month>, Failure>
     Ok(counted.collect())
 }
 
-/// What trains whose distances are known ran in a month, and the faults that were first seen on them meanwhile.
+/// Distance that trains with known readings ran in a month, and the faults first seen on them meanwhile.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OnTheWay {
     /// Distance of all of them, km.
@@ -73,8 +73,9 @@ impl OnTheWay {
     }
 }
 
-/// The same months with the distances of trains. A train counts, with its distance and its faults, from its first run or its first
-/// reading, whichever is later, to its last reading: else there would be a distance without faults, or faults without one.
+/// Months with the distances of trains. A train counts, with its distance and its faults, from its first run or its
+/// first reading, whichever is later, to its last reading: else there would be a distance without faults, or faults
+/// without one.
 pub fn on_the_way(
     store: &Store,
     query: &StatQuery,

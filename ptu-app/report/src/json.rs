@@ -41,7 +41,7 @@ pub fn run_json(run: &RunDetail) -> Value {
     })
 }
 
-/// Who signed, with which key and when.
+/// Signature of a run: who signed, with which key and when.
 pub fn signature_json(signed: &Statement) -> Value {
     json!({
         "who": signed.who, "kind": signed.kind, "key": signed.key, "at": rfc3339(signed.at_us),
@@ -175,7 +175,6 @@ pub const FAULT_KEYS: [&str; 12] = [
     "trace_id",
 ];
 
-/// A fault in a list.
 pub fn fault_json(fault: &FaultSummary) -> Value {
     json!({
         "id": fault.id.to_string(),
@@ -196,7 +195,7 @@ pub fn fault_json(fault: &FaultSummary) -> Value {
 /// A value as one document, indented.
 ///
 /// # Errors
-/// It is none that JSON can say.
+/// JSON cannot express the value.
 pub fn json_text(value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| Failure::bench(FileTrouble::NotPrinted("JSON", Why::of(error))))?;

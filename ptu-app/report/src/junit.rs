@@ -72,7 +72,7 @@ fn by_step(steps: Vec<&StepRecord>) -> Vec<Vec<&StepRecord>> {
     all
 }
 
-/// What the run came to, where no step says it.
+/// Test case for the run as a whole, where no step has its result.
 fn of_whole(run: &RunDetail) -> Option<TestCase> {
     let passed = |verdict| matches!(verdict, Verdict::Passed | Verdict::Skipped);
     let (verdict, message) = match run.run.verdict {

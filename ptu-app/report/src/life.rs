@@ -1,4 +1,4 @@
-//! What the life of a unit, a train or a part says, on the command line and in the window.
+//! Texts of the life of a unit, a train or a part, on the command line and in the window.
 
 use fault_db::{LOG_SOURCE, Life, LifeEvent, LifeFault, LifeOf, LifeRun, LifeWhat, Stay};
 use ptu_runs::clock::{local, rfc3339};
@@ -8,7 +8,7 @@ use crate::event_text::{cause_text, repair_text};
 use crate::naming::{DOT, PartNames, event};
 use crate::words::{Words, fill};
 
-/// What it is, and the time it tells about.
+/// Name of the thing, and the time that its life covers.
 pub fn title(life: &Life, words: &Words) -> String {
     let name = fill(words.life.of(life.of), &[("serial", &life.serial)]);
     let (Some(first), Some(last)) = (life.events.first(), life.events.last()) else {
@@ -41,7 +41,7 @@ pub fn stay(of: LifeOf, stay: &Stay, words: &Words, parts: &PartNames) -> [Strin
     [place, from, until, runs]
 }
 
-/// What happened, in one line.
+/// The event in one line.
 pub fn happened(entry: &LifeEvent, words: &Words, parts: &PartNames) -> String {
     match &entry.what {
         LifeWhat::Run(run) => of_run(run, words),
@@ -70,7 +70,7 @@ fn of_fault(entry: &LifeFault, words: &Words, parts: &PartNames) -> String {
     let said = match (&entry.repair, &entry.cause) {
         (Some(repair), _) => repair_text(repair, called),
         (None, Some(cause)) => cause_text(cause, called),
-        // Of what runs prove the program notes the run, which is an entry of its own.
+        // The program notes which run proves a repair; that run is an entry of its own.
         (None, None) if matches!(&*entry.kind, "passed" | "confirmed") => String::new(),
         (None, None) => words.found(&entry.findings, &entry.note).into_owned(),
     };

@@ -1,4 +1,4 @@
-//! What people call parts and faults: "EB relay · code 25: EB reaction 640 ms, limit 472".
+//! Names of parts and faults: "EB relay · code 25: EB reaction 640 ms, limit 472".
 
 use btu_rig::procedure::finding::{Finding, Findings, LimitMissed};
 use btu_rig::procedure::spoken;
@@ -14,17 +14,18 @@ use ptu_runs::stored::findings;
 /// Between the parts of a name.
 pub const DOT: &str = " · ";
 
-/// What people call the parts.
+/// Names of the parts, for people.
 #[derive(Clone, Debug, Default)]
 pub struct PartNames(Vec<Lru>);
 
 impl PartNames {
-    /// Those of a scripts directory; none where its catalogue cannot be read, and parts go by their identifiers.
+    /// Names of the parts in a scripts directory; none where its catalogue cannot be read, and parts go by their
+    /// identifiers.
     pub fn of(scripts: &ScriptsDirectory) -> Self {
         Self(scripts.faults().map(|all| all.lrus).unwrap_or_default())
     }
 
-    /// What a part is called in this language, or that it is not known which one it is.
+    /// Name of a part in this language, or words for an unknown part.
     pub fn name<'a>(&'a self, id: &'a str, language: Language) -> &'a str {
         if !id.is_empty() && from_stored(id).is_none() {
             return language.words().common.no_part;
@@ -47,7 +48,7 @@ impl PartNames {
     }
 }
 
-/// What was seen of a fault, in few words.
+/// Finding of a fault in few words.
 pub fn seen_in_short((data, message): (&Option<String>, &str), words: &Words) -> String {
     let seen = findings(data);
     match seen.is_empty() {
@@ -56,7 +57,7 @@ pub fn seen_in_short((data, message): (&Option<String>, &str), words: &Words) ->
     }
 }
 
-/// Which repetition of this step failed, if what was seen is that one did.
+/// Number of the repetition of this step that failed, if the finding is such a failure.
 pub fn failed_turn(seen: &Findings, procedure: &str, step: &str) -> Option<u32> {
     seen.iter().find_map(|found| match &found.finding {
         Finding::CheckFailed {
@@ -69,7 +70,7 @@ pub fn failed_turn(seen: &Findings, procedure: &str, step: &str) -> Option<u32> 
     })
 }
 
-/// What was seen in few words: the step, the measured value, and its limit, or why else the step failed.
+/// Finding in few words: the step, the measured value and its limit, or why else the step failed.
 fn what_failed(seen: &Findings, words: &Words) -> String {
     let failed = seen.iter().find_map(|found| match &found.finding {
         Finding::CheckFailed { step, findings, .. } => Some((step, findings)),
@@ -125,7 +126,7 @@ pub fn signal(name: &str, words: &Words) -> String {
     }
 }
 
-/// What a fault's code means: the event's text, or the stored name as words for a fault that a tester found.
+/// Meaning of a fault's code: the event's text, or the stored name as words for a fault that a tester found.
 pub fn event(code: i64, name: &str, words: &Words) -> String {
     let known = u16::try_from(code).ok().and_then(Event::from_code);
     let text = known.map(|event| match words.language {
@@ -136,7 +137,7 @@ pub fn event(code: i64, name: &str, words: &Words) -> String {
     text.map_or_else(by_name, str::to_owned)
 }
 
-/// What a fault means, by its stored name.
+/// Meaning of a fault, by its stored name.
 pub fn event_named(name: &str, words: &Words) -> String {
     let code = Event::from_name(name).map(|event| event.definition().code);
     event(code.unwrap_or_default().into(), name, words)

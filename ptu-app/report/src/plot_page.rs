@@ -8,7 +8,7 @@ use crate::words::Words;
 /// A drawing with its title, and how it was made.
 pub struct PlotPage {
     pub plot: Plot,
-    /// By which command, and when.
+    /// Command that made the page, and time.
     pub made: String,
 }
 

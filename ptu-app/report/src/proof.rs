@@ -1,14 +1,14 @@
-//! What a passing run says of the repairs made before it, in words.
+//! Sentences on repairs before a run that passed.
 
 use ptu_runs::run_diagnosis::RepairProof;
 
 use crate::words::{Words, fill};
 
-/// What runs that passed come to for a repair.
+/// Proofs of a repair by runs that passed.
 #[derive(Clone, Copy, PartialEq)]
 enum Group {
     Proven,
-    /// More of such runs can prove it.
+    /// Further runs of this kind can prove the repair.
     Claimed,
     /// The fault does not show in such runs.
     NotShown,

@@ -4,7 +4,6 @@ use serde_json::{Value, json};
 
 use ptu_runs::record::{Compared, Parting};
 
-/// The comparison as JSON.
 pub fn json(compared: &Compared) -> Value {
     let comparison = &compared.comparison;
     let parting = |parting: &Parting| {

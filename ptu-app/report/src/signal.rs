@@ -1,11 +1,12 @@
-//! What was heard in a recording of waveforms: as text, and as a page with spectrum, envelope and eye beside it.
+//! Detected signals of a recording of waveforms: as text, and as a page with spectrum, envelope and eye beside
+//! it.
 
 use ptu_runs::signal::{
     Level, NotUnderstood, Picture, Reading, Receivers, Source, Span, Tacho, Why,
 };
 use ptu_runs::table::Table as TextTable;
 
-use crate::plot::{Place, Plot, Raster, Series, Style};
+use crate::plot::{AxisMark, Plot, Raster, Series, Style};
 use crate::run::block::{self, Align, Block, Column, Row, RowKind, Tone};
 use crate::run::{Paper, Printed};
 use crate::words::{Words, fill};
@@ -13,7 +14,8 @@ use crate::words::{Words, fill};
 /// Level below the strongest that is shown at most and at least, dB.
 const MOST_DB: f32 = 70.0;
 const LEAST_DB: f32 = 20.0;
-/// What stands less above the middle of all levels is noise, dB: it has the darkest shades.
+/// Level above the middle of all levels up to which a signal is noise, dB: noise has the darkest
+/// shades.
 const NOISE_DB: f32 = 6.0;
 /// Most signals that are named above the spectrum over time.
 const MOST_NAMED: usize = 200;
@@ -24,17 +26,15 @@ const CURVE: f64 = 220.0;
 
 /// A recording that was read.
 pub struct Recording {
-    /// Name of the file.
     pub file: String,
-    /// Name of the unit configuration.
     pub unit_config: String,
-    /// What full scale stands for, mV.
+    /// Voltage of full scale, mV.
     pub full_scale_mv: f64,
-    /// What was heard.
+    /// Codes, bytes and markers that the receivers detected.
     pub reading: Reading,
-    /// How each channel looks.
+    /// Picture of each channel.
     pub pictures: Vec<Picture>,
-    /// By which command, and when.
+    /// Command that made the page, and time.
     pub made: String,
 }
 
@@ -54,7 +54,7 @@ pub fn heads(words: &Words) -> [&'static str; 9] {
     ]
 }
 
-/// What was heard, a row each.
+/// A detected signal as a row of a table.
 pub fn row(source: &Source, words: &Words) -> [String; 9] {
     let said = &words.signals;
     let number = |value: Option<f64>, digits: usize| {
@@ -92,7 +92,7 @@ pub fn row(source: &Source, words: &Words) -> [String; 9] {
     ]
 }
 
-/// What the lines of a speed sensor tell, as a sentence.
+/// Sentence on the lines of a speed sensor.
 fn of_tacho(of: &Tacho, words: &Words) -> String {
     let number = |value: f64| format!("{value:.1}");
     let [low, high] = of.kmh.map(number);
@@ -112,7 +112,7 @@ fn of_tacho(of: &Tacho, words: &Words) -> String {
     fill(words.signals.of_tacho, &values)
 }
 
-/// What was not understood, as a sentence.
+/// Sentence on a signal that was not understood.
 pub fn not_understood(of: &NotUnderstood, words: &Words) -> String {
     let said = &words.signals;
     let why = match &of.why {
@@ -139,7 +139,7 @@ pub fn not_understood(of: &NotUnderstood, words: &Words) -> String {
     fill(said.at, &[("from", &from), ("to", &to), ("why", &why)])
 }
 
-/// How loud a channel is, as a sentence.
+/// Sentence on the level of a channel.
 pub fn level(of: &Level, words: &Words) -> String {
     let said = &words.signals;
     let strongest = of.strongest_hz.zip(of.strongest_mv);
@@ -157,7 +157,7 @@ pub fn level(of: &Level, words: &Words) -> String {
     fill(said.meter, &values)
 }
 
-/// What was heard, for a terminal.
+/// Detected signals as text for a terminal.
 pub fn text(reading: &Reading, words: &Words) -> String {
     let mut lines = vec![format!("{:.2} s", reading.duration_s)];
     if reading.sources.is_empty() {
@@ -242,10 +242,10 @@ fn table(sources: &[Source], words: &Words) -> block::Table {
     }
 }
 
-/// How a channel looks, and where what was heard on it begins.
+/// Plots of a channel, with the beginnings of its detected signals.
 pub fn plots(picture: &Picture, of: (&Reading, usize), words: &Words) -> Vec<Plot> {
     let said = &words.signals;
-    let over_time = |title, unit, (columns, each_s): (&[Span], f64)| {
+    let over_time = |title: &str, unit, (columns, each_s): (&[Span], f64)| {
         let ends = (said.time, unit, of.0.duration_s);
         curve(title, ends, spans(columns, each_s))
     };
@@ -254,14 +254,20 @@ pub fn plots(picture: &Picture, of: (&Reading, usize), words: &Words) -> Vec<Plo
     let points = points.map(|(place, level)| (place as f64 * row_hz, f64::from(*level)));
     let ends = (said.frequency, said.decibels, row_hz * levels.len() as f64);
     let mut plots = vec![over_time(said.waveform, said.millivolts, picture.wave())];
-    // A short recording has no spectrum over time.
-    if !picture.spectra().0.is_empty() {
+    // A short recording has no spectrum.
+    let has_spectrum = !picture.spectra().0.is_empty();
+    if has_spectrum {
         plots.push(spectrogram(picture, of, words));
     }
-    plots.extend([
-        over_time(said.envelope, said.millivolts_rms, picture.envelope()),
-        curve(said.spectrum, ends, points.collect()),
-    ]);
+    let envelope = fill(said.envelope, &[("hz", &picture.carrier_hz())]);
+    plots.push(over_time(
+        &envelope,
+        said.millivolts_rms,
+        picture.envelope(),
+    ));
+    if has_spectrum {
+        plots.push(curve(said.spectrum, ends, points.collect()));
+    }
     plots.extend(eye(picture, words));
     plots
 }
@@ -343,7 +349,7 @@ fn spectrogram(picture: &Picture, (reading, channel): (&Reading, usize), words: 
     let heard = heard.filter(|source| source.channel == channel + 1);
     let places = heard.take(MOST_NAMED).map(|source| {
         let [.., name, _, _, _, _] = row(source, words);
-        Place {
+        AxisMark {
             x: source.from_s,
             name,
         }

@@ -60,7 +60,7 @@ impl Target {
     /// Finds out before the run whether the file can be written after it.
     ///
     /// # Errors
-    /// It cannot.
+    /// The file cannot be written.
     pub fn check(&self) -> Result<(), Failure> {
         data::check_writable(&self.path, self.kind())
     }
@@ -68,7 +68,7 @@ impl Target {
     /// Begins the file.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn begin(&self) -> Result<NewFile, Failure> {
         NewFile::begin(&self.path, self.kind())
     }
@@ -110,12 +110,12 @@ impl Target {
         &self.path
     }
 
-    /// It is a page, which carries a signature where it is of a run.
+    /// The target is an HTML page, which carries a signature where it shows a run.
     pub fn is_html(&self) -> bool {
         self.format == Format::Html
     }
 
-    /// It is a test sheet, for people.
+    /// The target is a test sheet, for people.
     fn is_sheet(&self) -> bool {
         matches!(self.format, Format::Html | Format::Pdf)
     }
@@ -180,7 +180,7 @@ pub fn write_case(targets: &[Target], case: &CaseSheet, language: Language) -> R
 /// A report of a case. Tables are those of the run that tells how the unit is now.
 ///
 /// # Errors
-/// It cannot be made.
+/// The report cannot be made.
 pub fn case_content(
     target: &Target,
     case: &CaseSheet,
@@ -198,7 +198,7 @@ pub fn case_content(
 /// A report of two runs. Tables are those of the second one.
 ///
 /// # Errors
-/// It cannot be made.
+/// The report cannot be made.
 pub fn comparison_content(
     target: &Target,
     of: &RunComparison,
@@ -242,10 +242,10 @@ pub fn run_content(
     content(target, run, sheet.as_ref(), language)
 }
 
-/// Writes a report to a file begun for it, under a name beside it where that is taken; which it was.
+/// Writes a report to its begun file, or beside it where the name is taken; returns the path.
 ///
 /// # Errors
-/// It cannot be written.
+/// The report cannot be written.
 pub fn write_beside(
     target: &Target,
     mut file: NewFile,

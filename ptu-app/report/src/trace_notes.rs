@@ -14,7 +14,7 @@ pub struct TraceNote {
     pub time_us: i64,
     /// When it was written, UTC.
     pub at: String,
-    /// Who wrote it, and on a signed run whether it is signed.
+    /// Author of the note; on a signed run with whether the note is signed.
     pub who: String,
     pub text: String,
 }
@@ -40,7 +40,7 @@ impl TraceNote {
         Ok(notes)
     }
 
-    /// Its time, as `−0.35 s`.
+    /// Time of the note, as `−0.35 s`.
     pub fn time(&self) -> String {
         time(self.time_us)
     }
@@ -50,7 +50,7 @@ fn time(time_us: i64) -> String {
     format!("{:.2} s", time_us as f64 / 1e6).replace('-', "−")
 }
 
-/// What a note on a run says, with the place in a trace that it is about.
+/// Text of a note on a run, with its place in a trace.
 pub fn note_text(note: &RunNote, words: &Words) -> String {
     let Some(place) = note.place else {
         return note.text.clone();
@@ -62,7 +62,7 @@ pub fn note_text(note: &RunNote, words: &Words) -> String {
     )
 }
 
-/// Who wrote a note on a run; on a signed one, whether it is signed by that name, too.
+/// Author of a note on a run; on a signed run with whether the note is signed.
 pub fn noted_by(note: &RunNote, run: &RunDetail, words: &Words) -> String {
     let who = &note.who;
     match (&run.signature, &note.signed_by) {
@@ -74,7 +74,6 @@ pub fn noted_by(note: &RunNote, run: &RunDetail, words: &Words) -> String {
     }
 }
 
-/// A note on a run as JSON.
 pub(crate) fn note_json(note: &RunNote) -> Value {
     let place = note.place.map(
         |place| json!({ "trace": place.trace.to_string(), "time_s": place.at_us as f64 / 1e6 }),

@@ -7,7 +7,7 @@ use fault_db::{
 
 use ptu_runs::clock::{local_day, utc_day};
 
-/// What is known of a measurement over time.
+/// Values of a measurement over time.
 pub struct Trend {
     pub query: TrendQuery,
     /// Limits and their unit, as they were last.
@@ -28,7 +28,8 @@ pub enum TimeSeries {
 }
 
 impl Trend {
-    /// Of one unit value by value, of all units day by day; none if nothing was measured so.
+    /// The trend of one unit value by value, of all units day by day; none if the query finds no
+    /// measurement.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -62,7 +63,7 @@ impl Trend {
 }
 
 impl TimeSeries {
-    /// How its days are called: those of a fleet are counted in UTC, and begin the evening before in its west.
+    /// Names of the days: those of a fleet are counted in UTC, and begin the evening before in its west.
     pub fn day_name(&self) -> fn(i64) -> String {
         match self {
             Self::Points(_) => local_day,

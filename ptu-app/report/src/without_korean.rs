@@ -1,4 +1,5 @@
-//! Texts of procedures that a Korean reader meets in English: who adds a step to `scripts/` adds them to `korean.toml`.
+//! Texts of procedures that have no Korean: a Korean reader sees them in English until they are added to
+//! `korean.toml`.
 
 use std::collections::BTreeSet;
 
@@ -35,7 +36,7 @@ fn reasons(origin: &Origin) -> Vec<String> {
     reasons.map(|(_, reason)| reason.to_owned()).collect()
 }
 
-/// It has words of English; numbers, units and signs are the same in both languages.
+/// The text has words of English; numbers, units and signs are alike in both languages.
 fn is_said(text: &str) -> bool {
     let mut words = text.split(|letter: char| !letter.is_ascii_lowercase());
     let is_korean = text.chars().any(|letter| ('가'..='힣').contains(&letter));

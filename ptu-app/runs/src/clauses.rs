@@ -1,5 +1,5 @@
-//! What the steps prove (`scripts/clauses.toml`): clauses of papers, standards and specifications, the steps that prove each,
-//! and the injected faults by which it was seen that these steps can fail.
+//! Proofs of the steps (`scripts/clauses.toml`): clauses of papers, standards and specifications, the steps that
+//! prove each, and the injected faults by which it was seen that these steps can fail.
 
 use std::collections::BTreeSet;
 
@@ -18,16 +18,16 @@ pub const FILE: &str = "clauses.toml";
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Clause {
-    /// Its name.
+    /// Name of the clause.
     pub id: String,
     /// Paper, standard or specification, with its section.
     pub source: String,
-    /// What it demands.
+    /// Demand of the clause.
     pub text: String,
-    /// The same in Korean.
+    /// The text in Korean.
     #[serde(default)]
     pub text_ko: String,
-    /// Globs of the steps that prove it, `procedure: step`.
+    /// Globs of the steps that prove the clause, `procedure: step`.
     pub steps: Vec<String>,
 }
 
@@ -39,16 +39,16 @@ pub(crate) struct Written {
 
 /// A clause with its proof.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Proof {
-    /// Its name.
+pub struct ClauseProof {
+    /// Name of the clause.
     pub clause: String,
-    /// Where it is from.
+    /// Source of the clause.
     pub source: String,
-    /// What it demands.
+    /// Demand of the clause.
     pub text: String,
-    /// The same in Korean.
+    /// The text in Korean.
     pub text_ko: String,
-    /// Steps that prove it, `procedure: step`.
+    /// Steps that prove the clause, `procedure: step`.
     pub steps: Vec<String>,
     /// Fault modes that made one of them fail.
     pub faults: Vec<String>,
@@ -60,7 +60,7 @@ pub struct Proof {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Matrix {
     /// In the order of the file.
-    pub clauses: Vec<Proof>,
+    pub clauses: Vec<ClauseProof>,
     /// Clauses that no step of the suite proves.
     pub clauses_without_step: Vec<String>,
     /// Steps of the suite that cite no clause.
@@ -112,7 +112,7 @@ pub fn matrix(clauses: &[Clause], dictionary: &Dictionary) -> Matrix {
             .flat_map(|place| failing[*place].clone())
             .collect();
         let unproved = places.iter().filter(|place| failing[**place].is_empty());
-        proofs.push(Proof {
+        proofs.push(ClauseProof {
             clause: clause.id.clone(),
             source: clause.source.clone(),
             text: clause.text.clone(),

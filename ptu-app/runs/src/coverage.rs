@@ -1,4 +1,4 @@
-//! How much of what was due was run: what a verdict stands for where steps were not run.
+//! Coverage of a run: the due steps that were run. It qualifies a verdict where steps were not run.
 
 use std::collections::BTreeSet;
 
@@ -39,7 +39,8 @@ impl Coverage {
         Self::of(counts_of(&run.run), on_bench)
     }
 
-    /// Of these counts; `on_bench` = procedure and place of each step that was skipped because it needs the bench harness.
+    /// Coverage of a run with these counts; `on_bench` = procedure and place of each step that was skipped because
+    /// it needs the bench harness.
     pub fn of<'a>(
         steps: StepCounts,
         on_bench: impl Iterator<Item = (&'a str, Option<u32>)>,

@@ -7,14 +7,14 @@ use std::io::Write as _;
 use std::path::Path;
 
 use btu_rig::bench_scatter::BenchScatter;
+use btu_rig::train::TrainData;
 use fault_db::read_regular_file;
 use protocol::config::{UnitConfig, checksum};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use protocol::line::{self, Line};
-use script_files::{Found, Place, ScriptFiles};
+use script_files::{Found, Layer, ScriptFiles};
 use sha2::{Digest, Sha256};
 
-use crate::drive::train::train;
 use crate::failure::{Failure, FileTrouble, Unknown, Why, did_you_mean};
 use crate::new_file::{Kind, NewFile, cannot_write, head, kind};
 use crate::owner_only;
@@ -35,7 +35,7 @@ pub const LONGEST_FILE: u64 = 4 << 20;
 const TEXT_HEAD: usize = 5;
 /// Longest all scripts together, bytes.
 const LONGEST_SCRIPTS: usize = 64 << 20;
-/// How good units, trains and benches differ, in the scripts directory.
+/// File of the scripts directory that says how good units, trains and benches differ.
 pub const BENCH_SCATTER: &str = "bench_scatter.toml";
 
 /// Where all data files are; those that are meant by their name, `units/sg100.toml`.
@@ -45,9 +45,8 @@ pub struct ScriptsDirectory(ScriptFiles);
 /// A data file's content and checksums.
 #[derive(Clone, Debug)]
 pub struct DataFile<T> {
-    /// Name it was asked for by.
     pub name: String,
-    /// What was changed in it from outside, `KEY=VALUE`, in order.
+    /// Changes to the file from outside, `KEY=VALUE`, in order.
     pub settings: Vec<String>,
     /// The checked content.
     pub content: T,
@@ -61,13 +60,13 @@ impl ScriptsDirectory {
     /// The directory given, alone; else what [`ScriptFiles::find`] finds.
     ///
     /// # Errors
-    /// What is given is no directory.
+    /// `given` is no directory.
     pub fn find(given: Option<&Path>) -> Result<Self, Failure> {
         Ok(Self(ScriptFiles::find(given)?))
     }
 
     /// The places it is found in, the first of which wins.
-    pub fn places(&self) -> &[Place] {
+    pub fn places(&self) -> &[Layer] {
         self.0.places()
     }
 
@@ -76,7 +75,7 @@ impl ScriptsDirectory {
         self.0.file(name).is_some()
     }
 
-    /// How the file is shown to a person.
+    /// Name of the file, for people.
     pub fn shown(&self, name: &str) -> String {
         self.0.shown(name)
     }
@@ -84,7 +83,7 @@ impl ScriptsDirectory {
     /// The file's text.
     ///
     /// # Errors
-    /// It is missing, cannot be read, is too long or not UTF-8.
+    /// The file is missing, cannot be read, is too long or not UTF-8.
     pub fn text(&self, name: &str) -> Result<String, Failure> {
         match self.0.file(name) {
             Some(found) => text(&found),
@@ -92,10 +91,10 @@ impl ScriptsDirectory {
         }
     }
 
-    /// How the file is shown and its text in each place that has it, the one that counts first.
+    /// Name and text of the file in each place that has it, the one that counts first.
     ///
     /// # Errors
-    /// One of them cannot be read.
+    /// A file cannot be read.
     pub fn layers(&self, name: &str) -> Result<Vec<(String, String)>, Failure> {
         let files = self.0.files(name);
         files
@@ -106,7 +105,7 @@ impl ScriptsDirectory {
     /// The file's bytes, at most `most` of them.
     ///
     /// # Errors
-    /// It is missing or cannot be read.
+    /// The file is missing or cannot be read.
     pub fn bytes(&self, name: &str, most: u64) -> Result<Vec<u8>, Failure> {
         match self.0.file(name) {
             Some(found) => content(&found, most),
@@ -183,6 +182,20 @@ impl ScriptsDirectory {
         })
     }
 
+    /// The train called `name` in `trains/`, or of a file.
+    ///
+    /// # Errors
+    /// There is none, or it is wrong.
+    pub fn train(&self, name: &str) -> Result<TrainData, Failure> {
+        if !name.ends_with(".toml") {
+            return Ok(self
+                .load("trains", name, "train", TrainData::from_toml)?
+                .content);
+        }
+        TrainData::from_toml(&read(Path::new(name))?)
+            .map_err(|error| Failure::usage(FileTrouble::wrong(name, error)))
+    }
+
     /// The bench file `benches/NAME.toml`, or a file ending in .toml, with the drivers of its instruments.
     ///
     /// # Errors
@@ -255,7 +268,7 @@ impl ScriptsDirectory {
             self.line(name)?;
         }
         for name in &trains {
-            train(self, name)?;
+            self.train(name)?;
         }
         let (benches, models) = (self.names("benches"), self.names(INSTRUMENTS));
         for name in &benches {
@@ -300,17 +313,14 @@ impl ScriptsDirectory {
         names.iter().map(find).collect()
     }
 
-    /// Names of the lines there are.
     pub fn line_names(&self) -> Vec<String> {
         self.names("lines")
     }
 
-    /// Names of the unit configurations there are.
     pub fn unit_config_names(&self) -> Vec<String> {
         self.names(UNITS)
     }
 
-    /// Names of the trains there are.
     pub fn train_names(&self) -> Vec<String> {
         self.names("trains")
     }
@@ -373,7 +383,7 @@ pub fn read(file: &Path) -> Result<String, Failure> {
     read_within(file, LONGEST_FILE)
 }
 
-/// The same of a file of up to `most` bytes.
+/// Reads a file of up to `most` bytes as [`read`] does.
 ///
 /// # Errors
 /// As [`read`].
@@ -402,10 +412,10 @@ fn cannot_read(file: &Path, why: Why) -> Failure {
     Failure::usage(FileTrouble::Unread(file.display().to_string(), why))
 }
 
-/// Finds out whether a file of a kind can be written, leaving what is there as it is.
+/// Finds out whether a file of a kind can be written, leaving an existing file as it is.
 ///
 /// # Errors
-/// It cannot, and why.
+/// The file cannot be written; the error says why.
 pub fn check_writable(file: &Path, kind: Kind<'_>) -> Result<(), Failure> {
     NewFile::begin(file, kind).map(drop)
 }

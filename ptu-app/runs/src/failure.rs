@@ -41,7 +41,7 @@ impl Exit {
     }
 }
 
-/// What went wrong, as data, with its sentences in both languages. Its text is that of a command line.
+/// Trouble as data, with sentences in both languages. Its `Display` is the text of a command line.
 #[derive(Clone, Debug)]
 pub enum Trouble {
     Store(Arc<StoreError>),
@@ -51,26 +51,38 @@ pub enum Trouble {
     NotStored {
         run: Id,
         error: Arc<StoreError>,
-        /// Its last traces, which are lost.
+        /// Number of the run's last traces, which are lost.
         left_out: usize,
         /// The file that has it; none if it is lost.
         kept: Option<PathBuf>,
     },
     /// The history did not become free: what was measured since is kept in a file.
     RestKept {
-        /// Why the history cannot take it.
         error: Arc<StoreError>,
         rest: PathBuf,
     },
     /// The link to a unit that was there.
     Link(LinkTrouble),
-    /// What has its sentences in the tables of words.
+    /// Trouble with sentences in the tables of words.
     Refused(Box<Refusal>),
     /// The first one because of the second.
     Because(Box<[Self; 2]>),
     /// Several at once.
     All(Vec<Self>),
     Told(String),
+}
+
+impl Trouble {
+    /// The instrument of the bench that does not do its part.
+    pub fn of_the_bench(&self) -> Option<&LinkTrouble> {
+        match self {
+            Self::Refused(what) => match &**what {
+                Refusal::NoUnit(NoUnit::BadBench(_, why)) => Some(why),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
 }
 
 impl Say for Trouble {
@@ -149,7 +161,7 @@ fn joined(how: Manner, all: &[impl Say], by: &str) -> String {
     all.join(by)
 }
 
-/// What is on record of a run that could not begin or go on for this reason.
+/// Finding for a run that could not begin or go on for this reason.
 pub fn prevented_by(why: &impl Say) -> Finding {
     let said = |korean| {
         why.say(Manner {
@@ -195,7 +207,7 @@ impl Failure {
 }
 
 impl Failure {
-    /// The same, with what happened before the reason for it.
+    /// This failure, caused by `what`.
     #[must_use]
     pub fn because_of(self, what: impl Into<Trouble>) -> Self {
         let message = Trouble::Because(Box::new([what.into(), self.message]));

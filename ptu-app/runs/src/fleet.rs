@@ -64,8 +64,8 @@ pub fn unit_records(directory: &ScriptsDirectory) -> Result<Arc<[UnitRecord]>, F
     Ok(records.into())
 }
 
-/// Those that an embedded unit of this configuration and line may be of, by their checksums: it is made with any, and a
-/// record of others is none of it.
+/// Records of the units with this configuration and line, by their check sums: the units that an embedded unit can
+/// stand for.
 ///
 /// # Errors
 /// As [`unit_records`].

@@ -7,19 +7,20 @@
 //! * [`drive`]: automatic runs from station to station;
 //! * [`train_server`]: serves the unit aboard a train on a port;
 //! * [`replay`]: repeats recorded stimuli and compares traces;
-//! * [`field`]: imports a unit's own event log into the fault history;
+//! * [`unit_log`]: imports a unit's own event log into the fault history;
 //! * [`signal`]: waveforms made, and recordings read; [`sound`]: to and from a sound card;
 //! * [`record`]: pulls a unit's own run record as traces, and compares them with a sound unit's run;
 //! * [`run_diagnosis`]: finds the part to replace from the results of a run;
 //! * [`campaign`]: runs the suite against every fault mode, for the fault dictionary;
 //! * [`keys`]: keys of technicians and benches, and the list of those that are trusted;
-//! * [`kept`]: many runs kept in a file, divided among machines, and put together;
+//! * [`batch`]: many runs kept in a file, divided among machines, and put together;
 //! * [`stored`]: the columns of the database for verdicts and faults;
 //! * [`data`]: the scripts directory; `fleet`: the unit that each train should have; [`clock`]: the computer's time; [`failure`]: what a person reads;
 //!   [`words`]: what is refused, in both languages; [`typed`]: lines of standard input; [`stop`]: interruption by a signal; [`terminal`]: its width and colours; [`platform`]: what operating systems do
 //!   differently.
 
 pub mod aboard;
+pub mod batch;
 pub mod bench_worker;
 pub mod campaign;
 pub mod clauses;
@@ -28,9 +29,7 @@ pub mod coverage;
 pub mod data;
 pub mod drive;
 pub mod failure;
-pub mod field;
 mod fleet;
-pub mod kept;
 pub mod keys;
 pub mod link;
 pub mod new_file;
@@ -57,4 +56,5 @@ pub mod terminal;
 mod test_support;
 pub mod train_server;
 pub mod typed;
+pub mod unit_log;
 pub mod words;

@@ -13,11 +13,11 @@ use crate::platform;
 /// Names tried beside one that is taken.
 const BESIDE: u32 = 1000;
 
-/// So many bytes tell what a file is.
+/// Bytes that tell what a file is.
 const HEAD: u64 = 64;
 
-/// What a file is written as: what files of this kind begin with, spaces aside. Only such a file is replaced by one of it,
-/// and an empty one.
+/// Beginnings of a file of a kind, spaces aside. A file of this kind replaces such a file or an empty one, and no
+/// other.
 pub type Kind<'a> = &'a [&'a str];
 
 /// The kinds of files that are written by their endings.
@@ -60,11 +60,11 @@ pub mod kind {
     pub const DICTIONARY: Kind<'_> = &["(\u{fffd}/\u{fffd}"];
     /// Runs that are kept.
     pub const RUNS: Kind<'_> = &["\u{fffd}PTURUN1"];
-    /// What the program keeps for itself, at a place of its own.
+    /// Files that the program keeps for itself, at a place of its own.
     pub const OWN: Kind<'_> = &[""];
 }
 
-/// What a text begins with, as far as it tells what it is: a mark of UTF-8 does not.
+/// Beginning of a text, as far as it tells the kind of file: a byte-order mark does not.
 pub fn head(text: &[u8]) -> String {
     let text = String::from_utf8_lossy(&text[..text.len().min(HEAD as usize)]);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
@@ -76,7 +76,7 @@ pub fn head(text: &[u8]) -> String {
 #[derive(Debug)]
 pub struct NewFile {
     file: BufWriter<File>,
-    /// None once it has its name.
+    /// The part of the file that is written; none once the file has its name.
     part: Option<AtomicFile>,
     place: PathBuf,
     heads: Vec<String>,
@@ -101,7 +101,7 @@ impl NewFile {
     /// Begins a file of a kind that is to stand at `place`.
     ///
     /// # Errors
-    /// What stands there cannot be replaced, or no file can be made in that folder.
+    /// The file at `place` cannot be replaced, or no file can be made in that folder.
     pub fn begin(place: &Path, kind: Kind<'_>) -> Result<Self, Failure> {
         let cannot = |why| Failure::usage(FileTrouble::Unwritten(place.display().to_string(), why));
         place.file_name().ok_or_else(|| cannot(Why::NoFileName))?;
@@ -141,10 +141,10 @@ impl NewFile {
         })
     }
 
-    /// The same where nothing may stand yet.
+    /// As [`NewFile::begin`], where no file may exist yet.
     ///
     /// # Errors
-    /// As [`NewFile::begin`]; or something does.
+    /// As [`NewFile::begin`]; or a file exists.
     pub fn begin_new(place: &Path, kind: Kind<'_>) -> Result<Self, Failure> {
         if place.exists() {
             return Err(Failure::usage(FileTrouble::Exists(

@@ -13,10 +13,10 @@ pub fn folder(path: &Path) -> std::io::Result<()> {
     platform::make_folder(path)
 }
 
-/// The same of the folder a file is to lie in.
+/// Makes the folder in which a file is to lie, as [`folder`] does.
 ///
 /// # Errors
-/// It cannot be made.
+/// The folder cannot be made.
 pub fn folder_of(file: &Path) -> Result<(), Failure> {
     let Some(path) = file.parent().filter(|f| !f.as_os_str().is_empty()) else {
         return Ok(());
@@ -29,7 +29,7 @@ pub fn folder_of(file: &Path) -> Result<(), Failure> {
     })
 }
 
-/// What to say of a file that others can read or write, if they can. Its rights stay as they are: somebody may
+/// Warning of a file that others can read or write, if they can. Its rights stay as they are: somebody may
 /// have given them on purpose.
 pub fn told_if_shared(file: &Path) -> Option<FileTrouble> {
     let (rights, command) = platform::readable_by_others(file)?;
@@ -40,7 +40,7 @@ pub fn told_if_shared(file: &Path) -> Option<FileTrouble> {
 /// Refuses a secret that others can read.
 ///
 /// # Errors
-/// They can.
+/// Others can read the secret.
 pub fn refuse_shared(secret: &Path) -> Result<(), Failure> {
     let Some((rights, command)) = platform::readable_by_others(secret) else {
         return Ok(());

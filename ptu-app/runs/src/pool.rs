@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::stop::Stop;
 
-/// How often progress is reported.
+/// Interval at which progress is reported.
 const TELL: Duration = Duration::from_millis(100);
 
 /// Threads this machine runs at once.

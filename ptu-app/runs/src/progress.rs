@@ -16,7 +16,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Of `count` runs, called `what`.
+    /// Progress of `count` runs; `what` is what the bar calls them.
     pub fn new(count: usize, what: String) -> Self {
         let bar = stdio::draws().then(|| {
             let style = "{bar:30} {pos}/{len} runs  {elapsed} (left {eta})  {msg}";

@@ -10,13 +10,13 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 
 use crate::{clauses, fleet, places, structure, symptoms};
 
-/// A schema, and the files that it is of.
+/// A schema, and the files that have it.
 pub struct FileSchema {
-    /// Its name, without the ending.
+    /// Name of the schema, without the ending.
     pub name: &'static str,
     /// Paths under the scripts directory, with `*` for any name.
     pub files: &'static [&'static str],
-    /// Those of them that are of another.
+    /// Paths among `files` that have another schema.
     pub except: &'static [&'static str],
     /// The schema.
     pub schema: Schema,
@@ -30,7 +30,7 @@ pub fn all() -> Vec<FileSchema> {
         except: &[],
         schema,
     };
-    // Of the modes that are added the parts are listed already.
+    // Modes that a user adds use the parts that the embedded catalogue lists.
     let mut further_faults = of::<FaultCatalogue>();
     further_faults.insert("required".to_owned(), ["faults"].into());
     vec![

@@ -39,7 +39,7 @@ impl Stop {
         }
     }
 
-    /// Why the tester itself ended the run; `None` if the operator did.
+    /// Reason for which the tester itself ended the run; `None` if the operator did.
     pub fn reason(&self) -> Option<&Finding> {
         self.0.because.get()
     }
@@ -53,12 +53,11 @@ impl Stop {
         (self.presses() > 0).then_some(left_out)
     }
 
-    /// Presses so far.
     pub fn presses(&self) -> u32 {
         self.0.count.load(Ordering::Relaxed)
     }
 
-    /// Whether another procedure may begin.
+    /// Whether the next procedure may begin.
     pub fn may_begin(&self) -> bool {
         self.presses() == 0
     }
@@ -70,7 +69,7 @@ impl Stop {
         self.listen_and(|| {});
     }
 
-    /// The same, and does something at each signal.
+    /// As [`Self::listen`]; `then` runs at each signal.
     pub fn listen_and(&self, then: impl Fn() + Send + 'static) {
         let stop = self.clone();
         let (listens, heard) = std::sync::mpsc::sync_channel(1);

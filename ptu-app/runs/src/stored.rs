@@ -57,7 +57,7 @@ pub fn fault_record(
     }
 }
 
-/// What was found, from its column; nothing where that is empty or of another version.
+/// Findings of a stored column; empty where the column is empty or of another version.
 pub fn findings(stored: &Option<String>) -> Findings {
     let read = stored.as_deref().and_then(Findings::from_json);
     read.unwrap_or_default()
@@ -66,7 +66,7 @@ pub fn findings(stored: &Option<String>) -> Findings {
 /// The procedure of an entry that is of the run as a whole.
 pub const WHOLE_RUN: &str = "run";
 
-/// What stands for the run as a whole among its procedures: it has no steps.
+/// Stand-in for the run as a whole among its procedures: it has no steps.
 pub fn whole_run() -> Procedure {
     Procedure {
         id: WHOLE_RUN.to_owned(),
@@ -85,13 +85,14 @@ pub fn whole_run() -> Procedure {
     }
 }
 
-/// What a record among the steps of a run is, in a word: `step`, `attempt`, or where outside steps it failed.
+/// Kind of a record among the steps of a run, in a word: `step`, `attempt`, or the place of a failure outside
+/// steps.
 pub fn kind_of(step: &StepRecord) -> &'static str {
     outside_of(step).map_or(step.kind.as_str(), Outside::name)
 }
 
-/// What failed outside the steps of a procedure as it is stored: among the steps, so that whoever reads these reads it,
-/// without a line of a script.
+/// Record of a failure outside the steps of a procedure. It is stored among the steps, without a line of a script,
+/// so that their readers find it.
 pub fn outside_record(procedure: &str, entry: &OutsideStep, bench_us: i64) -> StepRecord {
     StepRecord {
         kind: StepKind::Outside,
@@ -104,7 +105,7 @@ pub fn outside_record(procedure: &str, entry: &OutsideStep, bench_us: i64) -> St
     }
 }
 
-/// How a result of a step is stored.
+/// Stored form of a result's kind.
 pub fn kind(kind: ResultKind) -> StepKind {
     match kind {
         ResultKind::Step => StepKind::Step,

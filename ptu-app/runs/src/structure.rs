@@ -21,7 +21,7 @@ use serde::Deserialize;
 
 use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, FileTrouble};
-pub use chain::{Chain, Link, Made};
+pub use chain::{Chain, Link, LinkOutput};
 
 /// Where it stands in the scripts directory.
 pub const FILE: &str = "units/structure.toml";
@@ -66,13 +66,13 @@ struct WrittenWay {
 #[serde(deny_unknown_fields)]
 struct WrittenGroup {
     parts: Vec<LruId>,
-    /// What tells which has failed, after "to tell which, ".
+    /// Measure that tells which has failed, after "to tell which, ".
     measure: String,
-    /// The same in Korean.
+    /// The measure in Korean.
     measure_ko: String,
 }
 
-/// What several parts share.
+/// A part that several parts share.
 #[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct WrittenShared {
@@ -90,7 +90,7 @@ pub struct KnownOffWay {
     pub faults: Vec<String>,
     /// The step, `procedure: step`.
     pub step: String,
-    /// Why it fails all the same.
+    /// Reason for which the step fails all the same.
     pub because: String,
 }
 
@@ -251,7 +251,7 @@ impl Structure {
         found
     }
 
-    /// Those of them that the file does not list.
+    /// Fault modes of `off_way` that the file does not list.
     pub fn not_understood(&self, off_way: Vec<OffWay>) -> Vec<OffWay> {
         let is_known = |off: &OffWay| {
             self.known_off_way.iter().any(|known| {

@@ -14,9 +14,9 @@ pub const FILE: &str = "symptoms.toml";
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Symptom {
-    /// Its name in commands and in the database.
+    /// Name of the symptom in commands and in the database.
     pub id: String,
-    /// What a person reads.
+    /// Name for people.
     pub name: String,
     /// Parts that it may come from.
     pub parts: Vec<LruId>,

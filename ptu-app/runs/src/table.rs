@@ -158,7 +158,7 @@ impl Table {
     }
 }
 
-/// Of columns that stand two spaces apart.
+/// Width of columns that stand two spaces apart.
 fn total(columns: &[(usize, usize)]) -> usize {
     let widths: usize = columns.iter().map(|(_, width)| width + 2).sum();
     widths.saturating_sub(2)

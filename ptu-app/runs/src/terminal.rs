@@ -1,4 +1,4 @@
-//! How answers and notes are shown on a terminal: within its width, and in colour.
+//! Display of answers and notes on a terminal: within its width, and in colour.
 
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -19,7 +19,7 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// What was set; before that, no terminal.
+    /// Settings of the terminal; before they are set, no terminal.
     pub fn get() -> Self {
         TERMINAL.get().copied().unwrap_or_default()
     }
@@ -53,7 +53,7 @@ pub enum Style {
 impl Style {
     const ALL: [Self; 5] = [Self::Good, Self::Bad, Self::Doubt, Self::Part, Self::Limit];
 
-    /// That of a verdict by its word in either language; none of another word.
+    /// Style of a verdict by its word in either language; none for another word.
     pub fn of_verdict(word: &str) -> Option<Self> {
         match word.trim_end() {
             "passed" | "합격" => Some(Self::Good),

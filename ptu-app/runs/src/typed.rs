@@ -35,7 +35,7 @@ impl Typed {
         Self { lines }
     }
 
-    /// Those that have come since.
+    /// Lines that were typed since the last call.
     pub fn lines(&self) -> Vec<String> {
         self.lines.try_iter().take(WAITING).collect()
     }
@@ -81,7 +81,7 @@ mod tests {
 
     use super::*;
 
-    /// What each read gives; an empty one is an end.
+    /// Results of the reads in turn; an empty one is an end.
     struct Reads(Vec<String>);
 
     impl Read for Reads {

@@ -9,7 +9,7 @@ mod place;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-pub use place::{Found, Place, embed, own_folder};
+pub use place::{Found, Layer, embed, own_folder};
 
 /// Most files and folders in the places together.
 const MOST_ENTRIES: usize = 100_000;
@@ -19,13 +19,13 @@ const DEEPEST_FOLDER: usize = 16;
 /// A place or a file that cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ScriptsError {
-    /// What was given is no folder.
+    /// The path that was given is no folder.
     #[error("{} is not a directory", .0.display())]
     NotADirectory(PathBuf),
     /// A file or folder, by its path or name, and why.
     #[error("cannot read {what}: {why}")]
     Unreadable {
-        /// Its path, or its name and "(embedded)".
+        /// Path of the file, or its name and "(embedded)".
         what: String,
         /// The system's word, or ours.
         why: String,
@@ -43,18 +43,18 @@ impl ScriptsError {
 
 /// Where all procedures and data files are: a file is taken from the first place that has it.
 #[derive(Clone, Debug)]
-pub struct ScriptFiles(Vec<Place>);
+pub struct ScriptFiles(Vec<Layer>);
 
 impl ScriptFiles {
     /// The folder given, alone; else `./scripts` or `scripts` above the program, alone; else the user's own files over
     /// the system's over the embedded ones.
     ///
     /// # Errors
-    /// What is given is no folder.
+    /// `given` is no folder.
     pub fn find(given: Option<&Path>) -> Result<Self, ScriptsError> {
         if let Some(folder) = given {
             return match folder.is_dir() {
-                true => Ok(Self(vec![Place::Folder(folder.to_owned())])),
+                true => Ok(Self(vec![Layer::Folder(folder.to_owned())])),
                 false => Err(ScriptsError::NotADirectory(folder.to_owned())),
             };
         }
@@ -64,24 +64,24 @@ impl ScriptFiles {
             .map(|place| place.join("scripts"))
             .find(|folder| folder.join("units").is_dir());
         Ok(match beside {
-            Some(folder) => Self(vec![Place::Folder(folder)]),
+            Some(folder) => Self(vec![Layer::Folder(folder)]),
             None => Self::layered(own_folder().into_iter().chain(place::system_folders())),
         })
     }
 
-    /// These folders, those of them that are there, over the embedded files.
+    /// Script files of these folders, as far as they are there, over the embedded files.
     pub fn layered(folders: impl IntoIterator<Item = PathBuf>) -> Self {
         let folders = folders.into_iter().filter(|folder| folder.is_dir());
         Self(
             folders
-                .map(Place::Folder)
-                .chain([Place::Embedded])
+                .map(Layer::Folder)
+                .chain([Layer::Embedded])
                 .collect(),
         )
     }
 
     /// The places, the first of which wins.
-    pub fn places(&self) -> &[Place] {
+    pub fn places(&self) -> &[Layer] {
         &self.0
     }
 
@@ -90,7 +90,7 @@ impl ScriptFiles {
         self.files(name).next()
     }
 
-    /// How the file of this name is shown to a person: where it is, or where the first place would have it.
+    /// Path of the file of this name, for people: its place, or the place in the first folder.
     pub fn shown(&self, name: &str) -> String {
         let missing = || self.0[0].shown(name);
         self.file(name).map_or_else(missing, |found| found.shown())

@@ -17,24 +17,25 @@ pub fn embed(files: Embedded) {
     EMBEDDED.get_or_init(|| files);
 }
 
-/// Nothing in its place: a program without procedures and data would say that each is missing, and not why.
+/// Embedded files; nothing stands in for them: a program without procedures and data would say that each is
+/// missing, and not why.
 fn embedded() -> Embedded {
     let files = EMBEDDED.get();
     files.expect("main calls script_files::embed before files are looked for")
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum Layer {
     /// A folder on the disk.
     Folder(PathBuf),
-    /// What the program carries with it.
+    /// The files in the program.
     Embedded,
 }
 
 /// A file that a place has.
 #[derive(Clone, Debug)]
 pub enum Found {
-    /// On the disk.
+    /// A file on the disk.
     File(PathBuf),
     Embedded(&'static str, &'static [u8]),
 }
@@ -45,7 +46,7 @@ pub fn own_folder() -> Option<PathBuf> {
         .map(|directories| directories.data_dir().join("scripts"))
 }
 
-/// Those of all users of this computer: the depot's own, and those that a package installed.
+/// Folders for all users of this computer: the depot's own, and those that a package installed.
 pub(crate) fn system_folders() -> Vec<PathBuf> {
     if cfg!(windows) {
         let programs = std::env::var_os("ProgramData").map(PathBuf::from);
@@ -59,7 +60,7 @@ pub(crate) fn system_folders() -> Vec<PathBuf> {
         .into()
 }
 
-impl Place {
+impl Layer {
     pub(crate) fn file(&self, name: &str) -> Option<Found> {
         match self {
             Self::Folder(folder) => {
@@ -74,7 +75,7 @@ impl Place {
         }
     }
 
-    /// How the file of this name would be shown to a person.
+    /// Path that the file of this name would have, for people.
     pub(crate) fn shown(&self, name: &str) -> String {
         match self {
             Self::Folder(folder) => folder.join(name).display().to_string(),
@@ -123,7 +124,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Layer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Folder(folder) => folder.display().fmt(f),
@@ -133,11 +134,11 @@ impl fmt::Display for Place {
 }
 
 impl Found {
-    /// As it is named to a person.
+    /// Path or name, for people.
     pub fn shown(&self) -> String {
         match self {
             Self::File(path) => path.display().to_string(),
-            Self::Embedded(name, _) => Place::Embedded.shown(name),
+            Self::Embedded(name, _) => Layer::Embedded.shown(name),
         }
     }
 }

@@ -181,9 +181,7 @@ impl CatalogArguments {
 impl CatalogArguments {
     /// S3's table, derived from the train's file.
     fn train(&self) -> Result<Vec<Value>, Failure> {
-        let TrainData::Cars(data) =
-            ptu_runs::drive::train::train(&self.scripts.find()?, &self.train)?
-        else {
+        let TrainData::Cars(data) = self.scripts.find()?.train(&self.train)? else {
             return Err(Failure::usage(DriveTrouble::PointMass(self.train.clone())));
         };
         let empty = Consist::new(&data);

@@ -14,7 +14,7 @@ use ptu_runs::clock;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Exit, Failure};
 
-/// By this variable a shell asks the program.
+/// Variable by which a shell asks the program.
 const VARIABLE: &str = "PTU_COMPLETE";
 /// Newest entries of a history that are offered.
 const NEWEST: u32 = 100;
@@ -64,7 +64,7 @@ pub(super) fn answer() {
     CompleteEnv::with_factory(command).var(VARIABLE).complete();
 }
 
-/// The same commands, with the names that their arguments take.
+/// The commands, with the names that their arguments take.
 fn named(command: Command) -> Command {
     let verb = command.get_name().to_owned();
     named_below(command, &verb)
@@ -80,7 +80,7 @@ fn named_below(command: Command, verb: &str) -> Command {
         None => argument,
     });
     command.mut_subcommands(|below| {
-        // Of two words, the first says what an id stands for.
+        // The first of two words says what an id stands for.
         let verb = if verb == "ptu" {
             below.get_name().to_owned()
         } else {

@@ -21,7 +21,7 @@ const MAKERS: [(&str, &str); 5] = [
     ("train", "Serve a unit aboard a simulated train on a port"),
 ];
 
-/// The same commands, the makers' verbs in a section of their own; each is called and explained as before.
+/// The commands with the makers' verbs in a section of their own; each is called and explained as before.
 pub fn sectioned(mut command: Command) -> Command {
     let mut section = "For makers of procedures, dictionaries and controllers:".to_owned();
     for (name, about) in MAKERS {
@@ -31,8 +31,8 @@ pub fn sectioned(mut command: Command) -> Command {
     command.after_help(section)
 }
 
-/// The same commands, their texts without the line ends of the source: those within a paragraph, where the
-/// next line does not begin with spaces, as an example does.
+/// The commands, their texts without line ends of the source within a paragraph. A line that begins with
+/// spaces, as an example does, stays a line.
 pub fn flowing(command: Command) -> Command {
     let about = command.get_about().map(joined);
     let long_about = command.get_long_about().map(joined);

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::print_out;
+use ptu_runs::batch::{Keep, Shard};
 use ptu_runs::data::check_writable;
 use ptu_runs::failure::{Exit, Failure, KeepTrouble};
-use ptu_runs::kept::{Keep, Shard};
 use ptu_runs::new_file::kind;
 
 /// Where runs are kept, and which are made here.
@@ -33,7 +33,7 @@ impl KeepOptions {
         self.runs.as_deref().map_or(Ok(()), check)
     }
 
-    /// What was asked for.
+    /// Runs that are kept, as the options say.
     pub fn keep(&self) -> Result<Keep, Failure> {
         let shard = self.shard.as_deref().map(str::parse::<Shard>).transpose();
         Ok(Keep {

@@ -107,7 +107,7 @@ impl KeysOption {
     /// The list; empty where nobody has made one.
     ///
     /// # Errors
-    /// What was named is not there, or it cannot be read.
+    /// The list that was named does not exist, or a list cannot be read.
     pub fn read(&self) -> Result<KeyList, Failure> {
         let place = self.place()?;
         match (place.exists(), self.keys.is_some()) {
@@ -225,7 +225,7 @@ fn list(keys: &KeysOption, json: Json) -> Result<Exit, Failure> {
     json.answer(document, || table(&list, &files, now))
 }
 
-/// In which files a key is, its private key's file first.
+/// Files in which a key is, the file of its private key first.
 struct FilesOfKeys(BTreeMap<String, Vec<String>>);
 
 impl FilesOfKeys {

@@ -118,7 +118,8 @@ enum Verb {
 static PAGES: AtomicBool = AtomicBool::new(false);
 
 impl Verb {
-    /// It only answers; what works for long with nobody watching must not wait in a pager.
+    /// Whether the verb only answers; what works for long with nobody watching must not wait in a
+    /// pager.
     fn is_question(&self) -> bool {
         match self {
             Self::Run(arguments) => arguments.is_list(),
@@ -130,7 +131,7 @@ impl Verb {
 }
 
 impl Cli {
-    /// What the command line asks; ends the program if that is help, or nothing that can be done.
+    /// Reads the command line; ends the program after help, or where the line is wrong.
     ///
     /// # Errors
     /// The command line holds a server's password, which is looked at first: whatever else is wrong would be shown as it stands;
@@ -290,7 +291,7 @@ fn answered(told: Result<Exit, Failure>, exit: Exit) -> Result<Exit, Failure> {
     }
 }
 
-/// How many to show: none is no answer.
+/// Range of a number of entries: none is no answer.
 fn at_least_one() -> RangedI64ValueParser<u32> {
     clap::value_parser!(u32).range(1..)
 }

@@ -91,7 +91,7 @@ impl Form {
     }
 }
 
-/// How an answer is printed.
+/// Form of an answer.
 #[derive(Clone, Debug, Args)]
 pub struct Output {
     #[command(flatten)]
@@ -162,7 +162,7 @@ fn has_columns(row: &Value, columns: &[&str]) -> bool {
 fn line(cells: impl Iterator<Item = Cell>) -> String {
     let line = cells.map(Cell::written).collect::<Vec<_>>().join(",");
     match line.is_empty() {
-        // Of one empty cell: many readers pass over a line without anything.
+        // The line of one empty cell: many readers pass over a line without anything.
         true => "\"\"".to_owned(),
         false => line,
     }

@@ -47,7 +47,7 @@ pub struct ReportArguments {
     scripts: ScriptsOption,
 }
 
-/// What an id stands for.
+/// Record that an id stands for.
 enum Told {
     Run(Id),
     Case(Id),

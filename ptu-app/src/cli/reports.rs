@@ -17,7 +17,7 @@ pub struct ReportOption {
 }
 
 impl ReportOption {
-    /// There is nothing to write.
+    /// Whether no report is to be written.
     pub fn is_empty(&self) -> bool {
         self.report.is_empty()
     }

@@ -285,14 +285,14 @@ impl RunArguments {
         }
         .setup(directory)
         .and_then(calibrated)?;
-        // It is only looked at: any unit will do.
+        // A list only looks at the bench: any unit will do.
         if let Some(bench) = self.bench.as_ref().filter(|_| !drives) {
             setup.places = Some(Arc::new(directory.bench_places(bench)?));
         }
         Ok(setup)
     }
 
-    /// It drives nothing, and lists what would be run.
+    /// Whether the command drives nothing, and lists what would be run.
     pub fn is_list(&self) -> bool {
         self.list
     }

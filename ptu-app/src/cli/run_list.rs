@@ -25,7 +25,7 @@ pub fn show(tasks: &[Task], harness: Harness, json: bool, whole: bool) -> Result
     print_out(&lines.join("\n"))
 }
 
-/// Why a procedure will be skipped, as far as is known before the unit is reached.
+/// Reason for which a procedure will be skipped, as far as it is known before the unit is reached.
 fn skipped(procedure: &Procedure, harness: Harness) -> Option<Finding> {
     match harness {
         Harness::None => procedure.needs.lacks(Connection::Ptu),

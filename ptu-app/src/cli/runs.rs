@@ -192,7 +192,7 @@ impl RunsArguments {
     }
 }
 
-/// Who signed the run, below its verdict.
+/// Signature of the run, for the line below its verdict.
 fn signed(run: &RunDetail) -> String {
     let words = Words::shown();
     let terminal = &words.terminal;

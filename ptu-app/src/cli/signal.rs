@@ -318,7 +318,7 @@ impl ReadArguments {
     }
 }
 
-/// Columns of what was heard.
+/// Columns of a detected signal.
 const SOURCE_COLUMNS: [&str; 15] = [
     "channel",
     "from_s",

@@ -1,4 +1,4 @@
-//! How answers are shown: colours, and a pager for what is longer than the screen.
+//! Display of answers: colours, and a pager for what is longer than the screen.
 
 use std::ffi::OsString;
 use std::io::Write as _;
@@ -76,10 +76,10 @@ pub fn paged(text: &str) -> bool {
     let Ok(mut pager) = command.spawn() else {
         return false;
     };
-    // Who stops a search in the pager means the pager.
+    // A Ctrl-C that stops a search in the pager is for the pager.
     Stop::default().listen();
     if let Some(mut input) = pager.stdin.take() {
-        // Who has read enough leaves it.
+        // A reader who has read enough leaves the pager.
         let _ = writeln!(input, "{}", stdio::shown(text));
     }
     let _ = pager.wait();

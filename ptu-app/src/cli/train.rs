@@ -9,7 +9,7 @@ use ptu_runs::failure::{Exit, Failure, RunTrouble};
 use ptu_runs::run::BenchChoice;
 use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
-use ptu_runs::train_server::{self, NO_AUTHENTICATION, Place, TrainRequest, check_exposed};
+use ptu_runs::train_server::{self, NO_AUTHENTICATION, PortAddress, TrainRequest, check_exposed};
 
 use super::ScriptsOption;
 
@@ -33,8 +33,8 @@ pub struct TrainArguments {
     #[arg(long)]
     pty: bool,
     /// Serve on a serial port [default rate: 115200]
-    #[arg(long, value_name = "PATH[@BAUD]", value_parser = Place::serial)]
-    serial: Option<Place>,
+    #[arg(long, value_name = "PATH[@BAUD]", value_parser = PortAddress::serial)]
+    serial: Option<PortAddress>,
     /// Serve one TCP client at a time; others get the answer that the unit is taken
     #[arg(long, value_name = "HOST:PORT")]
     tcp: Option<String>,
@@ -85,9 +85,9 @@ impl TrainArguments {
                 check_exposed(&address, self.expose)
                     .map_err(|why| Failure::usage(RunTrouble::NotServed(why)))?;
                 stdio::note(NO_AUTHENTICATION);
-                Place::Tcp(address)
+                PortAddress::Tcp(address)
             }
-            _ => Place::Pty,
+            _ => PortAddress::Pty,
         };
         let request = TrainRequest {
             place,

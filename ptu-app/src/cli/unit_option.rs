@@ -2,8 +2,8 @@
 
 use clap::Args;
 
-use ptu_runs::field::AskedUnit;
 use ptu_runs::link::Endpoint;
+use ptu_runs::unit_log::AskedUnit;
 
 /// The unit on a port.
 #[derive(Debug, Args)]

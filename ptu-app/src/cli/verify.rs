@@ -89,9 +89,8 @@ impl VerifyArguments {
         if let Some(store) = &history {
             departure.held_against(store)?;
         }
-        if found.signatures.is_empty() {
-            departure.add(|words| words.verify.departure_unsigned.into());
-        } else if !(found.changes.is_empty() && found.doubts.is_empty()) {
+        let is_verified = found.changes.is_empty() && found.doubts.is_empty();
+        if !(found.signatures.is_empty() || is_verified) {
             departure.add(|words| words.verify.departure_unverified.into());
         }
         found.say_departure(departure);
@@ -105,7 +104,7 @@ impl VerifyArguments {
         if looks_like_a_file(&self.what) {
             return Err(Failure::usage(FileTrouble::Missing(self.what.clone())));
         }
-        // Of a code on a sheet: the run, and the SHA-256 of its content that the sheet was written from.
+        // The code on a sheet: the run, and the SHA-256 of its content that the sheet was written from.
         let code = self.what.strip_prefix("ptu:");
         let (asked, digest) = match code.map(|code| code.split_once('/')) {
             None => (self.what.as_str(), None),

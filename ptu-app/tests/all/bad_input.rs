@@ -1,4 +1,5 @@
-//! What others wrote acts on nothing. `bad_steps` and `wrong_commands` among the sessions have commands that are wrong.
+//! Inputs of others act on nothing. `bad_steps` and `wrong_commands` among the sessions have commands that are
+//! wrong.
 
 use crate::common::{Place, list, text};
 use protocol::display_text::is_unseen;

@@ -21,7 +21,7 @@ pub fn record(store: &Store, at_us: i64, fault: Option<&str>) -> Option<Id> {
     record_in(store, "", at_us, fault)
 }
 
-/// The same of the unit in a train.
+/// Records a run of the unit in a train, with a fault if there is one.
 fn record_in(store: &Store, train: &str, at_us: i64, fault: Option<&str>) -> Option<Id> {
     let record = RunRecord {
         unit: UnitRecord {

@@ -14,13 +14,14 @@ const PRINTED_POLES: &str =
     "--set 'ato.servo.poles=[[0.6982, 0.0], [0.9682, 0.0], [0.92, 0.0332], [0.92, -0.0332]]'";
 /// Deceleration that ATO asks for at most [S0 §4], km/h/s.
 const MOST_KMH_S: f64 = 3.5;
-/// ATO knows brakes and resistance of the train of cars to so much of it.
+/// Share to which ATO knows brakes and resistance of the train of cars.
 const KNOWN_TO: f64 = 1.02;
 /// Where `pss` begins to slow for S2's step at 235 m at the earliest: 80 m suffice from 50 to 40 km/h, so it does reach 50.
 const SLOWS_FROM_M: f64 = 150.0;
 /// Difference between target and limit less 5 km/h at which the stop curve counts as taking over.
 const TAKES_OVER_KMH: f64 = 0.1;
-/// What less resistance below 40 km/h and a descent add to full traction [S3: 3.0 km/h/s at 40 km/h].
+/// Acceleration above that of full traction, by less resistance below 40 km/h and a descent [S3: 3.0
+/// km/h/s at 40 km/h].
 const STARTING_KMH_S: f64 = 0.1;
 
 /// JSON of a drive in which every train stopped where doors may open.
@@ -244,7 +245,7 @@ fn procedures_show_figures_5_to_7_of_s3() {
     assert!(value("regeneration cut out", "air_takes_over") < 1_000.0);
 }
 
-/// These columns of a report's rows.
+/// Values of these columns, by row of a report.
 fn rows<const N: usize>(csv: &str, names: [&str; N]) -> Vec<[f64; N]> {
     let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let head = lines.next().expect("a head");

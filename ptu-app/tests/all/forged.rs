@@ -2,13 +2,13 @@
 
 use crate::common::{Place, Said, text};
 
-/// What stands before the certificate in a page.
+/// Text in a page before the certificate.
 const BEGIN: &str = "<script type=\"application/json\" id=\"ptu-certificate\">";
 
 const PIN: &str = "sesame-7";
 
 /// A key `kim.key` of Kim, trusted in `depot.keys`.
-fn with_key() -> Place {
+pub fn with_key() -> Place {
     let place = Place::new();
     place.write("pin.txt", &format!("{PIN}\n"));
     place
@@ -22,11 +22,11 @@ fn with_key() -> Place {
 }
 
 /// A command that signs with Kim's key.
-fn signed(place: &Place, line: &str) -> Said {
+pub fn signed(place: &Place, line: &str) -> Said {
     place.ptu(&format!("{line} --key kim.key --pin-file pin.txt"))
 }
 
-fn verify(place: &Place, what: &str) -> Said {
+pub fn verify(place: &Place, what: &str) -> Said {
     place.ptu(&["verify", what, "--keys", "depot.keys"])
 }
 

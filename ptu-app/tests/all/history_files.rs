@@ -64,7 +64,7 @@ fn sorted(answer: &Value) -> Vec<String> {
     rows
 }
 
-/// The same answer from the file: rows as lists.
+/// Answer from the file: rows as lists.
 fn from_file(place: &Place, question: &str) -> Value {
     let answer = place.json(&["db", "query", "--json", "--", question]);
     answer["rows"].clone()

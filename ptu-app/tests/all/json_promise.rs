@@ -1,4 +1,4 @@
-//! What other programs may rely on: every key of every JSON answer, with its types, is in `docs/json.txt`.
+//! Promise to other programs: every key of every JSON answer, with its types, is in `docs/json.txt`.
 
 use std::collections::{BTreeMap, BTreeSet};
 

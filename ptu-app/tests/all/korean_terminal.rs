@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::common::{Place, Said, record_bad_unit};
 
-/// What a technician asks and does, of the history of a unit with a bad relay.
+/// Commands of a technician, on the history of a unit with a bad relay.
 const COMMANDS: &[&str] = &[
     "run tcms/link",
     "run atp/overspeed --inject eb_relay.slow --verbose",

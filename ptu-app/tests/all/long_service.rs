@@ -28,7 +28,7 @@ const QUICK: [&str; 6] = [
 const STEPS: u64 = 106;
 /// A process's own memory; pages of its program's file come and go as the system has room for them.
 const OWN: &str = "RssAnon";
-/// What caches, queues and the recorder's ring may still take after the first tenth, kB.
+/// Memory that caches, queues and the recorder's ring may still take after the first tenth, kB.
 const FILLS_UP_KB: u64 = 16 << 10;
 /// Steps that a run holds, to write them again should its file be lost, a kilobyte each; of a longer run none.
 const HELD_STEPS: u64 = 100_000;

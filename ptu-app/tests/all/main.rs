@@ -1,4 +1,5 @@
-//! What the program promises, tried as its users do: in virtual time or lock step but for [`on_ports`] and [`by_the_clock`].
+//! Promises of the program, tried as its users do: in virtual time or lock step but for [`on_ports`] and
+//! [`by_the_clock`].
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -10,6 +11,7 @@ mod bad_input;
 mod bad_scripts;
 mod by_the_clock;
 mod campaigns;
+mod departure;
 mod diagnose;
 
 mod documents;
@@ -39,7 +41,6 @@ mod server;
 mod sessions;
 mod shards;
 mod small_files;
-mod sound;
 mod suite;
 mod trace_files;
 mod train_faults;

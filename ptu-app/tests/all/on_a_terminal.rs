@@ -7,7 +7,7 @@ use crate::common::{Place, record_bad_unit};
 
 const WIDTH: u16 = 80;
 
-/// What a terminal of 12 rows shows of an answer.
+/// Lines of an answer that a terminal of 12 rows shows.
 fn shown(place: &Place, words: &str, variables: &[(&str, &str)]) -> String {
     let terminal = Terminal::open();
     terminal.resize([12, WIDTH]);

@@ -205,7 +205,7 @@ fn a_history_that_is_lost_under_a_run_is_told_and_the_run_is_kept() {
         let kept = on(&place, &history, "runs show latest --json").exits(0);
         let kept: Value = serde_json::from_str(&kept.out).expect("JSON");
         assert!(told > 20, "{events}");
-        // That the run was stopped is no step.
+        // The entry for the stop of the run is no step.
         let steps = list(&kept["steps"]).iter();
         let steps = steps.filter(|step| step["kind"] == "step").count();
         assert_eq!(steps, told, "{}", said.all());

@@ -1,5 +1,5 @@
-//! What `scripts/package` and `scripts/windows` put together is there, so that a moved file is found before a package is
-//! built; the manuals among it lead nowhere else.
+//! All files that `scripts/package` and `scripts/windows` put together are there, so that a moved file is found
+//! before a package is built; the manuals among it lead nowhere else.
 
 use crate::common::{Place, workspace};
 

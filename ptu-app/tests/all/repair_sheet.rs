@@ -20,7 +20,7 @@ fn repaired() -> (Place, String) {
     (place, fault)
 }
 
-/// The same, with the run that proves the repair.
+/// A repaired fault, with the run that proves the repair.
 fn proved() -> (Place, String) {
     let (place, fault) = repaired();
     let run = "run atp/overspeed --serial-no BAD-1 --who Lee";

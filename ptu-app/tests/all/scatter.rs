@@ -43,7 +43,7 @@ fn the_same_seed_gives_the_same_unit_and_another_seed_another_one() {
     assert_ne!(first["steps"], normalised(nominal)["steps"]);
 }
 
-/// What is outside of what a good unit may differ by is found on every one of them.
+/// Faults beyond the scatter of good units are found on every unit.
 #[test]
 fn faults_are_found_on_units_that_differ() {
     for (fault, procedure) in [

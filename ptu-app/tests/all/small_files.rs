@@ -14,7 +14,7 @@ use parquet::schema::parser::parse_message_type;
 use crate::common::{Place, Said};
 use crate::trace_files::{kept, trace};
 
-/// What a file of at most 10 MB may take, KiB.
+/// Memory that a file of at most 10 MB may take, KiB.
 const MOST_KIB: u32 = 512 * 1024;
 /// And the processor's time, s.
 const MOST_S: u32 = 10;
@@ -83,7 +83,7 @@ fn zeros(bytes: u64) -> Vec<u8> {
     .concat()
 }
 
-/// So many messages of ten texts and a number.
+/// A file of `count` messages of ten texts and a number.
 fn messages(count: u32, encoding: &str) -> Vec<u8> {
     let mut file = std::io::Cursor::new(Vec::new());
     let options = mcap::WriteOptions::new().compression(Some(mcap::Compression::Lz4));

@@ -12,7 +12,7 @@ use fault_db::{
 };
 use serde_json::{Value, json};
 
-/// What the signals of [`trace`] are called in every format.
+/// Names of the signals of [`trace`] in every format.
 const HEADINGS: [&str; 6] = ["speed_kmh", "jerk_m_s3", "effort", "mode", "eb", "empty_v"];
 /// Where `scripts/test full` puts the readers, under the target directory.
 const READERS: &str = "readers";

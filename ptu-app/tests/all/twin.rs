@@ -1,4 +1,4 @@
-//! What was expected beside what came: good twins, first deviations, differences, replays.
+//! Expected and recorded traces: good twins, first deviations, differences, replays.
 
 use crate::common::{Place, has_shape, list, number, text};
 use fault_db::Store;

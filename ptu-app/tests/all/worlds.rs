@@ -8,7 +8,7 @@ use fuzzing::draw;
 
 /// Worlds of the long suite.
 const WORLDS: usize = 200;
-/// What one per mille takes of a train's acceleration, km/h/s.
+/// Acceleration of a train that one per mille takes, km/h/s.
 const KMH_PER_S_PER_PERMILLE: f64 = 0.0353;
 
 /// A number between two others, to a tenth.

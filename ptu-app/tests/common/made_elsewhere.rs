@@ -4,8 +4,8 @@ use btu_rig::procedure::UnitEvent;
 use fault_db::{Channel, ChannelKind, Id, Store, TraceData};
 use protocol::event::Event;
 use ptu_runs::clock;
-use ptu_runs::field::{Entry, Source, import};
 use ptu_runs::record::{RecordedRun, pull};
+use ptu_runs::unit_log::{Entry, Source, import};
 
 use super::made_plans::Chance;
 use super::made_runs::PARTS;

@@ -1,4 +1,4 @@
-//! What made runs are of: procedures, of their own or of the fault dictionary, and plans; and who follows them.
+//! Material of made runs: procedures, of their own or of the fault dictionary, plans, and listeners.
 
 use Kind::*;
 use btu_rig::procedure::{Procedure, Verdict};
@@ -9,10 +9,10 @@ use ptu_runs::bench_worker::Progress;
 use ptu_runs::run::{BenchContents, Listener, SessionEvent};
 use serde_json::{from_value, json};
 
-/// What stands in a step's name behind its mark.
+/// Texts in a step's name behind its mark.
 const NAMES: &str = "| 속도 코드 25: 경보| a;b,\"c\"| <b>&amp;</b>|=1+1| \u{202e}rtl| tab\there| 漢字 😀| \u{fffe}\u{1b}[31m| (cab)| self-test| 1 of 7 steps run, all passed";
 
-/// How a run goes.
+/// Course of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Passed,
@@ -54,7 +54,7 @@ impl Chance {
     }
 }
 
-/// What follows a run while it goes on: the stream, its lines, and the window.
+/// Listeners of a run: the stream, its lines, and the window.
 pub struct Heard(pub EventLines, pub Vec<String>, pub Progress);
 
 impl Listener for Heard {

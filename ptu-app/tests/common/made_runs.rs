@@ -34,14 +34,13 @@ use super::told::{Facts, marks, sorted, turn_of, turned, value_and_limits};
 /// Parts that faults name.
 pub const PARTS: [&str; 4] = ["eb_relay", "tra", "twc_cpu", "speed_sensor_1"];
 
-/// A run that was made.
 pub struct Made {
     pub seed: u64,
     pub id: Id,
     pub facts: Facts,
     /// Lines of its stream for other programs.
     pub lines: Vec<String>,
-    /// What the window that led it knows; none if it was read of a unit.
+    /// Knowledge of the window that led the run; none if the run was read of a unit.
     pub live: Option<Progress>,
 }
 
@@ -54,7 +53,7 @@ pub struct Maker {
 }
 
 impl Maker {
-    /// In this file, with the fault dictionary of these scripts.
+    /// A maker of runs in this file, with the fault dictionary of these scripts.
     pub fn new(file: PathBuf, scripts: &Path) -> Self {
         let packed = std::fs::read(scripts.join("dictionary.zst")).expect("a dictionary");
         Self {
@@ -94,7 +93,7 @@ impl Maker {
         let stopped = making.collect(&mut collector);
         let outcome = if making.kind == Broken {
             drop(collector);
-            // Its writer writes what there is, and goes away.
+            // The writer of the run writes what there is, and goes away.
             while self.open().run(id).expect("begun").run.state == RunState::Running {
                 std::thread::yield_now();
             }
@@ -156,11 +155,11 @@ struct Making<'a> {
     not_passed: Vec<String>,
     values: Vec<(String, String)>,
     parts: BTreeMap<&'static str, usize>,
-    /// Of faults, by part and code.
+    /// Number of faults, by part and code.
     faults: usize,
     /// Verdict of what was read of a unit.
     read_as: Option<&'static str>,
-    /// Which repetition the results are of that did not pass.
+    /// Repetition of each result that did not pass.
     turns: Vec<String>,
     turn: usize,
     measured: usize,
@@ -242,7 +241,7 @@ impl<'a> Making<'a> {
         }
     }
 
-    /// Has it recorded; what makes an end of it before its time.
+    /// Records the run; returns what ends it before its time.
     fn collect(&mut self, to: &mut Collector<'_>) -> Option<Verdict> {
         let tasks = self.plan.tasks.iter();
         let all: Vec<_> = tasks.map(|task| task.procedure.clone()).collect();
@@ -353,7 +352,8 @@ impl<'a> Making<'a> {
         verdict
     }
 
-    /// What a step comes to: `is_end` = there the run is broken off; `after` = it comes after that.
+    /// Result of a step; `is_end` = the run is broken off there; `after` = the step comes after
+    /// that.
     fn result(
         &mut self,
         of: &Procedure,
@@ -515,7 +515,7 @@ impl<'a> Making<'a> {
         self.turn += 1;
     }
 
-    /// What was read of a unit, and told by nobody before.
+    /// A run that was read of a unit, and told by nobody before.
     fn read_of_a_unit(mut self, store: &Store) -> (Id, Facts) {
         let is_log = self.kind == Imported;
         let read = read_of_a_unit(store, self.seed, is_log, &mut self.chance);
@@ -528,7 +528,6 @@ impl<'a> Making<'a> {
         (read.id, self.facts(read.id))
     }
 
-    /// What the run comes to.
     fn facts(mut self, id: Id) -> Facts {
         let planned = self.planned();
         let of = |rank: u8| self.worst.values().filter(|worst| **worst == rank).count();

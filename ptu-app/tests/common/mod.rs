@@ -1,4 +1,4 @@
-//! What the end-to-end tests share: a place of its own for each test, and the program run in it.
+//! Parts shared by end-to-end tests: a place of its own for each test, and the program run in it.
 
 #![allow(dead_code, reason = "each of the test programs uses its part")]
 
@@ -31,7 +31,7 @@ pub struct Place {
     folder: TempDir,
 }
 
-/// What is typed behind the name of a program.
+/// Text behind the name of a program.
 pub trait Typed {
     /// The arguments, one by one.
     fn words(&self) -> Vec<String>;
@@ -69,7 +69,7 @@ impl<T: AsRef<str>> Typed for Vec<T> {
     }
 }
 
-/// What a program said, and how it ended.
+/// Output of a program, and its exit code.
 pub struct Said {
     pub code: Option<i32>,
     pub out: String,
@@ -154,7 +154,7 @@ impl Place {
         Said::from(output)
     }
 
-    /// What the shell of the place says to this line, in which `ptu` is the program.
+    /// Answer of the place's shell to this line, in which `ptu` is the program.
     pub fn shell(&self, line: &str) -> Said {
         let ptu = self.command("");
         let envs = ptu.get_envs();
@@ -283,7 +283,8 @@ fn keep_to_owner(_path: &Path) {
     }
 }
 
-/// The same in a run of its own, for whoever compares or joins the histories of two places.
+/// Records the bad unit in a run of its own, for tests that compare or join the histories of two
+/// places.
 pub fn record_bad_unit_anew(place: &Place) {
     let who = ["--serial-no", "BAD-1", "--who", "Kim"];
     let arguments = [

@@ -19,7 +19,7 @@ pub fn peer(act: impl FnOnce(TcpStream) + Send + 'static) -> SocketAddr {
     address
 }
 
-/// What a proxy does to the bytes of one direction.
+/// Change of the bytes in one direction of a proxy.
 pub type Change = Box<dyn FnMut(&[u8]) -> Vec<u8> + Send>;
 
 /// Stands between `ptu` and a served unit for one client; gives what `--unit` takes.

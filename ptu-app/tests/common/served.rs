@@ -16,7 +16,7 @@ use serialport::SerialPort;
 
 use super::{Place, Said, scripts};
 
-/// How much more the system should care for who must keep time.
+/// Arguments of `nice` for a program that must keep time.
 const URGENT: [&str; 2] = ["-n", "-15"];
 /// Longest time anything here takes to come about, also on a machine that is held up.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -26,19 +26,19 @@ pub struct Unit {
     child: Child,
     /// Where a train's cab is spoken to.
     cab: Option<ChildStdin>,
-    /// What `--unit` takes.
+    /// Address for `--unit`.
     pub address: String,
     /// Port or socket address alone.
     pub port: String,
 }
 
 impl Unit {
-    /// On a new pseudo-terminal.
+    /// A unit on a new pseudo-terminal.
     pub fn on_pty(arguments: &[&str]) -> Self {
         Self::serve(&[&["--pty"], arguments].concat(), "serial:")
     }
 
-    /// On a new pseudo-terminal, scan by scan with its tester.
+    /// A unit on a new pseudo-terminal, in lock step with its tester.
     pub fn in_lock_step(arguments: &[&str]) -> Self {
         Self::serve(
             &[&["--pty", "--lock-step"], arguments].concat(),
@@ -46,12 +46,12 @@ impl Unit {
         )
     }
 
-    /// On a free TCP port.
+    /// A unit on a free TCP port.
     pub fn on_tcp(arguments: &[&str]) -> Self {
         Self::serve(&[&["--tcp", "127.0.0.1:0"], arguments].concat(), "tcp:")
     }
 
-    /// On a free TCP port, with these programs before those of the system.
+    /// A unit on a free TCP port, with these programs before those of the system.
     pub fn with_programs(programs: &str, arguments: &[&str]) -> Self {
         let path = format!("PATH={programs}:/usr/bin:/bin");
         let unit = super::program("ato-under-test").display().to_string();
@@ -121,7 +121,7 @@ impl Unit {
         self.child.wait().expect("its end").code()
     }
 
-    /// As if its computer did something else for so long.
+    /// Stops the process for this time, as a busy computer would.
     pub fn stand_still(&self, time: Duration) {
         stand_still(&self.child, time);
     }
@@ -195,7 +195,7 @@ impl<'a> Running<'a> {
         kill_process(Pid::from_child(&self.child), Signal::INT).expect("a signal");
     }
 
-    /// As if its computer did something else for so long.
+    /// Stops the process for this time, as a busy computer would.
     pub fn stand_still(&self, time: Duration) {
         stand_still(&self.child, time);
     }
@@ -245,7 +245,7 @@ impl Observer {
         self.port.write_all(&frame).expect("the port takes a frame");
     }
 
-    /// What arrives within the next few milliseconds.
+    /// Messages that arrive within the next few milliseconds.
     pub fn hear(&mut self) -> Vec<Message> {
         let now = protocol::Instant::from_ms(self.began.elapsed().as_millis() as u64);
         if Instant::now() >= self.keep_alive_due {

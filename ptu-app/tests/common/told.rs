@@ -1,4 +1,4 @@
-//! What a surface says of a run to people, read as people read it: sentences, and the texts of a sheet in their order.
+//! Texts of a surface about a run, read as people read them: sentences, and the texts of a sheet in their order.
 
 use std::collections::BTreeMap;
 
@@ -71,7 +71,8 @@ pub fn numbers(names: &str, numbers: impl IntoIterator<Item = impl ToString>) ->
     names.map(|(name, number)| fact(name, number)).collect()
 }
 
-/// Which of so many repetitions, and what it is if not the result that counts; empty where it is run once.
+/// Number of the repetition and kind of the result, if the result does not count; empty where the step is
+/// run once.
 pub fn turn_of(turn: u64, turns: u64, kind: &str) -> String {
     let kind = match kind {
         "step" => "",
@@ -83,7 +84,7 @@ pub fn turn_of(turn: u64, turns: u64, kind: &str) -> String {
     }
 }
 
-/// The same as it stands behind a name.
+/// Repetition and kind of a result, from its name.
 pub fn turn_in(name: &str) -> String {
     let kinds = [
         (" (repeated)", "again"),
@@ -110,7 +111,8 @@ pub fn turned(marks: &[String], turn: &str) -> Vec<String> {
     marks.map(|mark| mark.clone() + turn).collect()
 }
 
-/// What records of results come to: of each whether it is a step's, its name, its verdict, why, and its turn.
+/// Summary of records of results: for each whether it is a step's, its name, its verdict, the reason, and its
+/// turn.
 pub fn results<'a>(all: impl Iterator<Item = (bool, &'a str, &'a str, &'a str, String)>) -> Told {
     let (mut attempts, mut outside, mut bad, mut link) = (0, 0, Vec::new(), None);
     let (mut turns, mut in_vain) = (Vec::new(), Vec::new());
@@ -163,7 +165,7 @@ pub fn value_and_limits(
     )
 }
 
-/// Of each measurement its value and its limits; an uncertainty follows the value it is of.
+/// Value and limits of each measurement; an uncertainty follows its value.
 pub fn measured(all: impl Iterator<Item = (String, [Option<f64>; 3])>) -> Told {
     let mut known: Vec<(String, [Option<f64>; 3], Option<f64>)> = Vec::new();
     for (name, [value, low, high]) in all {
@@ -193,7 +195,7 @@ fn behind<'a>(text: &'a str, word: &str) -> Option<&'a str> {
     Some(&tail[..end.unwrap_or(tail.len())])
 }
 
-/// What stands behind the numbers of a sentence that counts a run, in each language.
+/// Texts behind the numbers of a sentence that counts a run, in each language.
 const SAID: [&str; 2] = [
     " steps run| did not pass| not run| attempts| need the bench harness",
     "개 수행|개 미합격|개 미실행|회|개는 시험대 하네스 필요",
@@ -371,7 +373,7 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
     told
 }
 
-/// What the window says that led the run.
+/// Texts of the window that led the run.
 pub fn live(run: &Progress, language: Language) -> Told {
     let (counts, words) = (run.counts(), language.words());
     let all = run.procedures.iter().flat_map(|of| &of.results);

@@ -344,7 +344,7 @@ fn tables_and_messages_of_other_programs() {
     fuzz("parquet", [parquet_file()]).run(20_000, |bytes| drop(read(&parquet, bytes)));
 }
 
-/// What is read of a file; what is refused names it.
+/// Result of reading a file; an error names the file.
 fn refused_by_name<T>(file: &Path, read: Result<T, Failure>) -> Option<T> {
     let name = file.display().to_string();
     read.inspect_err(|error| assert!(error.to_string().contains(&name), "{error}"))

@@ -1,4 +1,4 @@
-//! What is signed, and by whom: certificates, sheets, lists of keys and key files.
+//! Signed things and their signers: certificates, sheets, lists of keys and key files.
 
 use fault_db::{Signed, Signer, Statement};
 use ptu_report::{has_certificate, read_certificate};

@@ -26,7 +26,7 @@ use ptu_runs::link::{Pace, keep_time};
 use ptu_window::DataPaths;
 use ptu_window::{App, Options, Settings};
 
-/// How long each measurement takes.
+/// Duration of each measurement.
 const LASTS: Duration = Duration::from_secs(20);
 
 fn main() {

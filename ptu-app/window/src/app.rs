@@ -24,14 +24,14 @@ use ptu_runs::clock;
 use ptu_runs::failure::Failure;
 use ptu_runs::stop::Stop;
 
-/// How often a window that is being closed looks whether all units are let go.
+/// Interval at which a closing window looks whether all units are let go.
 const CLOSING: Duration = Duration::from_millis(50);
 
-/// What a window is opened with.
+/// Options with which a window is opened.
 pub struct Options {
     /// Where database and scripts are.
     pub paths: DataPaths,
-    /// What was kept from the last time.
+    /// Settings of the last time.
     pub settings: Settings,
     /// Where it is kept; none = nowhere.
     pub settings_file: Option<PathBuf>,
@@ -133,7 +133,7 @@ impl App {
             _ => Watched::Bar,
         });
         let panel = match page {
-            // Its own panels reach to the edges.
+            // The page's own panels reach to the edges.
             Page::Case => CentralPanel::no_frame(),
             _ => CentralPanel::default(),
         };
@@ -171,12 +171,11 @@ impl App {
         &self.queries
     }
 
-    /// It is closed: every run recorded, every unit disarmed.
+    /// The window is closed: every run recorded, every unit disarmed.
     pub fn is_closed(&self) -> bool {
         self.closed
     }
 
-    /// The settings as they are now.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }

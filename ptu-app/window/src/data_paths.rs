@@ -27,7 +27,7 @@ pub struct DataPaths {
 }
 
 impl DataPaths {
-    /// These; nothing is opened yet.
+    /// Paths of a history in a file; nothing is opened yet.
     pub fn new(database: PathBuf, scripts: ScriptsDirectory) -> Self {
         Self {
             database,
@@ -38,7 +38,7 @@ impl DataPaths {
         }
     }
 
-    /// Those of a server; it is not connected to yet.
+    /// Paths of a history on a server; the window is not connected to it yet.
     pub fn of_server(server: Address, scripts: ScriptsDirectory) -> Self {
         Self {
             server: Some(server.clone()),
@@ -46,12 +46,12 @@ impl DataPaths {
         }
     }
 
-    /// It is a server, which is only read.
+    /// The history is on a server, which is only read.
     pub fn is_server(&self) -> bool {
         self.server.is_some()
     }
 
-    /// There is something to read.
+    /// Whether there is a history to read.
     pub fn is_there(&self) -> bool {
         self.is_server() || self.database.exists()
     }
@@ -61,10 +61,10 @@ impl DataPaths {
         self.was_there.load(Ordering::Relaxed) && !self.is_there()
     }
 
-    /// The database, to be written to; made if it is not there yet, but never in place of one that was.
+    /// Opens the database for writing. A missing one is made, but never in place of one that was there.
     ///
     /// # Errors
-    /// It cannot be opened, is gone, or is a server.
+    /// The database cannot be opened, is gone, or is a server.
     pub fn open(&self) -> Result<Store, Failure> {
         if self.is_server() {
             let path = self.database.clone();
@@ -83,11 +83,11 @@ impl DataPaths {
         store
     }
 
-    /// The database, to be read; one that is not there yet is made, one of an older schema is copied
-    /// and brought up to date.
+    /// Opens the database for reading. A missing one is made; one of an older schema is copied and
+    /// brought up to date.
     ///
     /// # Errors
-    /// It cannot be opened.
+    /// The database cannot be opened.
     pub fn read(&self) -> Result<Store, Failure> {
         if let Some(server) = &self.server {
             return Ok(self.seen(Store::connect_read_only(server)?));

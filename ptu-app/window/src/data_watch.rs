@@ -20,7 +20,6 @@ const LOOK: Duration = Duration::from_secs(1);
 /// Looks after which a server is asked again: it does not say when somebody has written to it.
 const ASK_AGAIN: u32 = 60;
 
-/// What the thread has seen.
 #[derive(Default)]
 struct Seen {
     changes: AtomicU64,
@@ -72,13 +71,13 @@ impl DataWatch {
         self.seen.changes.load(Ordering::Relaxed)
     }
 
-    /// It was there and is no longer.
+    /// The history was there and is no longer.
     pub fn is_gone(&self) -> bool {
         self.seen.gone.load(Ordering::Relaxed)
     }
 }
 
-/// Which file it is and how it was left.
+/// Identity of the file and its log, with the time of the last change.
 #[derive(PartialEq, Eq)]
 struct Stamp([Option<(u64, u64, Option<SystemTime>)>; 2]);
 

@@ -3,13 +3,13 @@
 use eframe::egui::{Context, Id, Style, TextStyle, Ui};
 use serde::{Deserialize, Serialize};
 
-/// Who the window is laid out for.
+/// The reader that the window is laid out for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Density {
     /// Large text and targets; nothing that only scripts name.
     Operator,
-    /// As much as there is room for.
+    /// Shows as much as there is room for.
     #[default]
     Engineer,
 }
@@ -58,10 +58,10 @@ impl Density {
 /// Sizes, points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sizes {
-    /// Of text that explains another one.
+    /// Size of text that explains another text.
     pub caption: f32,
     pub body: f32,
-    /// What a page is about.
+    /// Size of the text a page is about.
     pub lead: f32,
     pub title: f32,
     pub headline: f32,
@@ -76,7 +76,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Of the window as it is.
+    /// Sizes of the window as it is.
     pub fn of(ui: &Ui) -> Self {
         let kept = ui.data(|data| data.get_temp(id()));
         kept.unwrap_or_else(|| Density::default().sizes())

@@ -14,7 +14,7 @@ const USUAL: [f32; 2] = [1280.0, 800.0];
 /// Repaints asked for from other threads are this far apart at least.
 const REPAINT: Duration = Duration::from_millis(16);
 
-/// So soon a frame comes after it is asked for.
+/// Time in which a frame comes after it is asked for.
 const SOON: Duration = Duration::from_millis(1);
 
 /// Opens the window and stays until it is closed.

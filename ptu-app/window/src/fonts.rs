@@ -6,7 +6,6 @@ use ptu_report::fonts::PRETENDARD;
 
 const NAME: &str = "Pretendard";
 
-/// Gives the window its fonts.
 pub fn set(context: &Context) {
     let mut fonts = FontDefinitions::default();
     fonts

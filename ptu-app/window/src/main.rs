@@ -52,7 +52,7 @@ fn run() -> Result<Exit, Failure> {
     Ok(Exit::Passed)
 }
 
-/// What the window is opened with: what was asked for, over what was kept from the last time.
+/// Options of the window: command line over settings of the last time.
 fn options(asked: WindowOptions) -> Result<Options, Failure> {
     if !asked.create {
         asked.database.check_named().map_err(|why| {

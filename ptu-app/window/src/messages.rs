@@ -10,7 +10,7 @@ pub struct Messages {
     all: Vec<Message>,
     /// Index of the latest trouble, until the user acknowledges it.
     unread: Option<usize>,
-    /// What was taken back last.
+    /// Record that was taken back last.
     taken_back: Option<Written>,
     /// Runs that had ended when an undo was offered last.
     runs_ended: usize,
@@ -24,7 +24,7 @@ pub struct Written {
     pub at_us: i64,
 }
 
-/// What a message is about while it is shown: it goes when that is over.
+/// Subject of a message while it is shown: the message goes when the matter is over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum About {
     /// The connection to the unit of this number.
@@ -36,32 +36,31 @@ pub enum About {
 
 #[derive(Debug)]
 pub struct Message {
-    /// In the language chosen when it happened.
+    /// Text, in the language chosen when the message came.
     pub text: String,
-    /// What went wrong; empty if the text says it all.
+    /// The trouble; empty if the text says it all.
     pub detail: Trouble,
-    /// Whether it reports trouble.
     pub bad: bool,
     /// µs since 1970.
     pub at_us: i64,
-    /// None = until the next.
+    /// Subject of the message; none = shown until the next message.
     about: Option<About>,
-    /// What it is about is over: it is only listed.
+    /// The matter is over: the message is only listed.
     pub over: bool,
-    /// It tells of this, which can be undone for a while.
+    /// Record that the message tells of; the message can undo it for a while.
     written: Option<Written>,
     /// When it was shown first, in the window's time, s.
     shown_at_s: Option<f64>,
 }
 
 impl Message {
-    /// It says how a run ended.
+    /// The message says how a run ended.
     pub fn is_of_run(&self) -> bool {
         matches!(self.about, Some(About::Run(_)))
     }
 }
 
-/// What was written can be undone so long, s.
+/// Time for which a written record can be undone, s.
 pub const UNDO_S: f64 = 10.0;
 /// Any other message is shown so long, s.
 const SHOWN_S: f64 = 10.0;
@@ -147,7 +146,7 @@ impl Messages {
         self.taken_back == Some(written)
     }
 
-    /// What was said about this no longer holds.
+    /// Ends the messages about this matter.
     pub fn over(&mut self, about: About) {
         for message in &mut self.all {
             message.over |= message.about == Some(about);

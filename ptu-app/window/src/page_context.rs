@@ -1,4 +1,4 @@
-//! What a page reads and changes while it is drawn, and how it leads to another page.
+//! Data that a page reads and changes while it is drawn, and ways to other pages.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -14,7 +14,7 @@ use super::units::Units;
 use ptu_report::words::Words;
 use ptu_runs::symptoms::Symptom;
 
-/// What a page reads and changes while it is drawn.
+/// Data that a page reads and changes while it is drawn.
 pub struct PageContext<'a> {
     pub words: &'static Words,
     /// Queries to the database and the scripts directory.
@@ -31,13 +31,14 @@ pub struct PageContext<'a> {
 }
 
 impl PageContext<'_> {
-    /// Why nothing can be recorded here, if nothing can: the window reads a server.
+    /// Reason for which nothing can be recorded here: the window reads a server. None if recording
+    /// is possible.
     pub fn only_reads(&self) -> Option<&'static str> {
         let reads = self.queries.paths().is_server();
         reads.then_some(self.words.care.is_server)
     }
 
-    /// What the database holds may have changed when this has: a run has ended here, or another program wrote.
+    /// Version of the data: it changes when a run has ended here, or another program has written.
     pub fn data_version(&self) -> (usize, u64) {
         (self.units.runs_ended(), self.database.changes())
     }
@@ -78,9 +79,9 @@ pub enum Destination {
         procedures: BTreeSet<String>,
         part: String,
     },
-    /// What the chosen unit is set up for; stays where it is.
+    /// The set-up dialog of the chosen unit; the page stays.
     Setup,
-    /// What the chosen unit's run left when its link was lost; stays where it is.
+    /// The rest of the chosen unit's run after its link was lost; the page stays.
     GoOn,
     /// The procedures, with one step chosen and nothing run.
     ChooseStep {

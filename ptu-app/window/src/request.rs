@@ -12,7 +12,6 @@ pub enum Request<T> {
     /// The query worker has not answered yet.
     Pending(Pending<T>),
     Ready(T),
-    /// Why there is no response.
     Failed(Trouble),
 }
 
@@ -100,7 +99,7 @@ impl<T> CachedResponse<T> {
 }
 
 impl<T> CachedResponse<Vec<T>> {
-    /// What the latest response lists; nothing before there is one.
+    /// Entries of the latest response; empty before there is one.
     pub fn items(&self) -> &[T] {
         self.shown.value().map(Vec::as_slice).unwrap_or_default()
     }

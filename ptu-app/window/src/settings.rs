@@ -20,14 +20,14 @@ pub const LARGEST_ZOOM: f32 = 2.5;
 /// A name is asked for again after so long: another shift has begun.
 const SHIFT_US: i64 = 10 * 3_600_000_000;
 
-/// What the window keeps between starts.
+/// Settings that the window keeps between starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
     pub language: Language,
     /// Dark window, as in a dark cab.
     pub dark: Option<bool>,
-    /// Who the window is laid out for.
+    /// The reader that the window is laid out for.
     pub density: Density,
     /// Size of everything, 1 = as the desktop has it.
     pub zoom: f32,
@@ -35,7 +35,7 @@ pub struct Settings {
     pub window_size: Option<[f32; 2]>,
     /// Page shown last.
     pub page: Page,
-    /// Who tests.
+    /// Name of the tester.
     pub operator: String,
     /// When the name was written, µs since 1970; 0 = not known.
     pub operator_at_us: i64,
@@ -50,7 +50,7 @@ pub struct Settings {
     pub unit: BenchChoice,
     /// Signals of the rolling plot, by name.
     pub plotted: Vec<String>,
-    /// They are shown on the page Procedures, too.
+    /// The live plot is shown on the page Procedures, too.
     pub live_plot: bool,
     /// Lanes of the trace page, by channel.
     pub lanes: Vec<String>,
@@ -62,7 +62,7 @@ pub struct Settings {
     pub faults: Vec<SavedQuestion<FaultsQuestion>>,
 }
 
-/// What the page Statistics is asked.
+/// Choices of the page Statistics.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct StatisticsQuestion {
@@ -74,7 +74,7 @@ pub struct StatisticsQuestion {
     pub step: Option<(String, String)>,
 }
 
-/// What the page Faults is asked.
+/// Choices of the page Faults.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FaultsQuestion {
@@ -125,14 +125,15 @@ impl Settings {
         Some(directories.config_dir().join("window.json"))
     }
 
-    /// Those in `file`; usual ones if there is none or it cannot be read, which is no reason not to open.
+    /// Settings in `file`; defaults if there is none or it cannot be read, which is no reason not to
+    /// open.
     pub fn load(file: &Path) -> Self {
         Self::of(&read_regular_file(file, LONGEST_FILE).unwrap_or_default())
     }
 
     fn of(text: &[u8]) -> Self {
         let mut settings: Self = match text.is_empty() {
-            // Who starts the window for the first time is led through a case.
+            // A person who starts the window for the first time is led through a case.
             true => Self {
                 density: Density::Operator,
                 ..Self::default()
@@ -152,7 +153,7 @@ impl Settings {
         }
     }
 
-    /// Who worked here has gone: somebody else is to give a name.
+    /// Locks the window after its user has gone: the next user gives a name.
     pub fn lock(&mut self) {
         self.operator.clear();
         self.locked = true;

@@ -27,7 +27,7 @@ pub struct Palette {
     pub second: Color32,
     /// Labels.
     pub quiet: Color32,
-    /// What is chosen or acts, and the first curve.
+    /// Colour of a choice, an acting button and the first curve.
     pub accent: Color32,
     /// Ground of the button that is pressed first; white stands on it.
     pub fill: Color32,
@@ -128,7 +128,7 @@ pub fn set(context: &Context) {
     });
 }
 
-/// What the toolkit paints by itself, in these colours.
+/// Parts that the toolkit paints by itself, in these colours.
 fn visuals(theme: Theme, palette: &Palette) -> Visuals {
     let mut visuals = theme.default_visuals();
     // The window is cleared with its ground: painted again under each panel it would cost time at each pixel.
@@ -188,7 +188,7 @@ pub fn ground(visuals: &Visuals) -> Color32 {
 }
 
 impl Palette {
-    /// Of the window as it is.
+    /// Palette of the window as it is.
     pub fn of(ui: &Ui) -> Self {
         Self::of_mode(ui.visuals().dark_mode)
     }

@@ -26,7 +26,7 @@ pub use pole_placement::{Gains, place};
 pub use pss::Pss;
 pub use servo::Servo;
 
-/// What a controller is given each 50 ms cycle.
+/// Inputs of a controller in each 50 ms cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControllerInput {
     /// Speed to run at: the most restrictive of limit and order, m/s.
@@ -60,7 +60,7 @@ impl From<&ControllerInput> for ReferenceInputs {
     }
 }
 
-/// What a controller asks for.
+/// Demand of a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
     /// Target speed now, m/s.

@@ -5,9 +5,9 @@
 //! * the integral rests while effort is clipped and the error asks for still more: a full train on a
 //!   gradient, which runs behind its profile for long, would wind it up and then pass the target;
 //! * the profile's acceleration is asked for outright (feed-forward): the law alone needs an error of
-//!   `M·a/K_p`, 1.2 m/s with the printed gains in m/s, to follow a ramp, and a station stop is a
-//!   ramp to its very end. `profile.feed_forward = false` leaves it to the station stop, which S1
-//!   has not, and gives the printed law everywhere else;
+//!   `M·a/K_p`, 1.2 m/s with the printed gains in m/s, to follow a ramp, and a station stop is a ramp
+//!   to its very end. `profile.feed_forward = false` keeps the feed-forward for the station stop,
+//!   which S1 lacks, and gives the printed law elsewhere;
 //! * the station stop ([`super::super::profile`]).
 
 use protocol::config::{AtoConfig, GainUnit};

@@ -52,7 +52,7 @@ impl Pss {
         }
     }
 
-    /// The printed target where the train is now: the situation is that much ahead.
+    /// The printed target at the train's present place; the inputs are predicted `ahead_s` ahead.
     fn target_mps(&self, input: &ControllerInput) -> f64 {
         let ahead_m = input.speed_mps * self.ahead_s;
         input.to_stop_m.map_or(input.cruise_mps, |distance| {
@@ -61,7 +61,7 @@ impl Pss {
         })
     }
 
-    /// The reference: the cruising speed, or what leads from there to the curve and along it.
+    /// The reference: the cruising speed, or a profile from there to the curve and along it.
     fn reference(&mut self, input: &ControllerInput) -> Setpoint {
         let cruise = Setpoint {
             speed_mps: input.cruise_mps.max(0.0),
@@ -99,8 +99,8 @@ impl SpeedController for Pss {
         }
     }
 
-    /// At the greatest brake, built up at the jerk limit, until the force goes down with the error: the last of
-    /// that is gone after two time constants.
+    /// Distance in which the train slows, m: at the greatest brake, built up at the jerk limit, until the force
+    /// goes down with the error. The last of the force is gone after two time constants.
     fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64 {
         let rate_mps2 = self.gain_per_s * self.near_mps;
         let seconds = (from_mps - to_mps).max(0.0) / rate_mps2

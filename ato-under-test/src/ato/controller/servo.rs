@@ -25,7 +25,7 @@ use crate::ato::profile::{FinalStop, FinalStopLimits, MarkerApproach, SCurve, Se
 /// Speed by which an order must be below the station stop's profile to rule instead, m/s.
 const ORDER_MPS: f64 = 0.05;
 
-/// What the profile is doing.
+/// Phase of the profile.
 #[derive(Clone, Debug)]
 enum Phase {
     /// Toward or at the cruising speed by eq. (1).
@@ -104,8 +104,8 @@ impl Servo {
         }
     }
 
-    /// What is to be followed instead of the station stop's profile because the cruising speed is lower.
-    /// When it rises again the profile goes on from where the train is.
+    /// Setpoint to follow in place of the station stop's profile where the cruising speed is lower. When
+    /// the cruising speed rises again the profile goes on from where the train is.
     fn ordered(&mut self, from: Setpoint, input: &ControllerInput, dt: f64) -> Option<Setpoint> {
         let profile = self.reference;
         let lower = input.cruise_mps < profile.speed_mps - ORDER_MPS;
@@ -178,7 +178,7 @@ impl Servo {
         SCurve::new(from, target_mps, seconds, self.rates.jerk_mps3)
     }
 
-    /// Its time for a change of speed, s.
+    /// Time of the S-curve for a change of speed, s.
     fn s_curve_s(&self, change_mps: f64) -> f64 {
         self.config.s_curve_s_per_mps * libm::fabs(change_mps) + self.config.s_curve_s
     }
@@ -193,7 +193,7 @@ impl Servo {
         self.phase = Phase::Cruise(SCurve::hold(input.speed_mps));
     }
 
-    /// Compensator [S0 eq. 7], conditioned on what was granted of the last demand.
+    /// Compensator [S0 eq. 7], conditioned on the granted part of the last demand.
     fn compensate(&mut self, granted_mps2: f64) {
         let t = CYCLE.as_secs();
         let input = [t * t * t / 6.0, t * t / 2.0, t];
@@ -232,7 +232,7 @@ impl SpeedController for Servo {
         } else {
             self.config.correction_mps2
         };
-        // What is beyond is a wheel that slides, and no effort helps.
+        // A larger correction means a sliding wheel, against which no effort helps.
         let given = correction.clamp(-self.config.correction_mps2, most);
         Demand {
             target_mps: reference.speed_mps,

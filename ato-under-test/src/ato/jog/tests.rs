@@ -79,7 +79,7 @@ impl Train {
         outcome
     }
 
-    /// Until it is over; within a minute and a half, or never.
+    /// Runs until jogging is over; within a minute and a half, or the test fails.
     fn run(&mut self) -> JogOutcome {
         let mut cycles = (0..1_800).map(|_| self.cycle());
         let outcome = cycles.find(|outcome| outcome.ended);

@@ -1,4 +1,4 @@
-//! What ATO's watch finds in a run, and what it passes over.
+//! Findings of ATO's monitor in a run, and events that it passes over.
 
 use alloc::vec::Vec;
 
@@ -8,7 +8,7 @@ use protocol::message::{Mode, RunningMode};
 use super::*;
 use crate::ato::{Checks, tests::config};
 
-/// A cycle of a run at 10 m/s in section 61, with this to be monitored beside it.
+/// A cycle of a run at 10 m/s in section 61, and the monitor's own inputs.
 fn with_run(then: impl FnOnce(AtoInputs<'_>, MonitorInputs)) {
     let line = include_str!("../../../../scripts/lines/line8.toml");
     let line = Line::from_toml(line).unwrap();
@@ -57,7 +57,8 @@ fn frozen_after_s(asked_mps2: f64) -> Option<f64> {
     found.map(|step| f64::from(step) * CYCLE.as_secs())
 }
 
-/// What is found in a train that inches at 0.3 m/s and whose speed is then this, m/s, cycle by cycle.
+/// Absurd inputs found in a train that inches at 0.3 m/s and then has these speeds, m/s, cycle by
+/// cycle.
 fn found_inching(speeds_mps: &[f64]) -> AbsurdInputs {
     let mut absurd = AbsurdInputs::empty();
     with_run(|inputs, on| {
@@ -83,7 +84,7 @@ fn a_speed_that_a_lone_pulse_makes_is_passed_over_and_one_that_stays_is_absurd()
     assert_eq!(found_inching(&again), AbsurdInputs::SPEED_JUMP);
 }
 
-/// Overruns that are reported of a run through these distances past the stop point, m, at each of which it stands.
+/// Overruns reported in a run that stands at each of these distances past the stop point, m.
 fn overruns_m(past_m: &[f64]) -> Vec<f64> {
     let mut told = Vec::new();
     with_run(|inputs, on| {

@@ -45,7 +45,7 @@ impl JerkLimited {
         self.now
     }
 
-    /// Goes on from `from`, its acceleration cut to the limits.
+    /// Goes on from `from`, whose acceleration is cut to the limits.
     pub fn place(&mut self, from: Setpoint) {
         self.now = Setpoint {
             accel_mps2: from.accel_mps2.clamp(-self.decel_mps2, self.accel_mps2),

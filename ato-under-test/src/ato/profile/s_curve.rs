@@ -1,6 +1,6 @@
 //! S-curve between two speeds by time [S0 eq. 1].
 
-/// What of an acceleration at the beginning is carried over, and for how long at least, s.
+/// Shortest time over which an initial acceleration is carried over, s.
 const CARRY_S: f64 = 1.0;
 /// A target speed and how it changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -70,7 +70,7 @@ fn a_code_counts_when_it_was_steady_and_is_lost_after_the_hold_time() {
     let mut receiver = Receiver::new();
     assert_eq!(receiver.hear(CODE_55, 1000), [(400, Code::Known(4))]);
     let scan_ms = SCAN.as_ms();
-    // It was heard last one scan before the silence.
+    // The code was heard last one scan before the silence.
     assert_eq!(receiver.hear(SILENCE, 2000), [(1000, Code::None)]);
     assert_eq!(receiver.events(), [event(Event::CodeLost, 0)]);
     // Steady means without a break: 390 ms twice is not 400.
@@ -83,7 +83,7 @@ fn a_code_counts_when_it_was_steady_and_is_lost_after_the_hold_time() {
     assert_eq!(receiver.hear(CODE_55, 500), [(400, Code::Known(4))]);
 }
 
-/// It is lost, as it was not there for long enough within the hold time, and detected again.
+/// A code that was not there for long enough within the hold time is lost, and detected again.
 #[test]
 fn one_long_silence_is_no_flicker() {
     let mut receiver = Receiver::new();
@@ -94,7 +94,7 @@ fn one_long_silence_is_no_flicker() {
     assert_eq!(receiver.events(), [event(Event::CodeLost, 0)]);
 }
 
-/// What is heard now and then renews no code, nor does any other.
+/// A code heard now and then renews no code, neither itself nor another.
 #[test]
 fn a_scan_now_and_then_renews_no_code() {
     for rate_hz in [15.0, 12.0] {

@@ -13,7 +13,7 @@ const CONFIG: DriverlessConfig = DriverlessConfig {
     reopen_ms: 2000,
     close_tries: 3,
 };
-/// At a platform on the left, held.
+/// A train at a platform on the left, held.
 const HELD: StationInputs = StationInputs {
     driverless: true,
     standstill: true,
@@ -57,7 +57,8 @@ impl Stop {
         }
     }
 
-    /// These inputs for a time: sides it orders to open then, whether it closes, whether departure waits.
+    /// Feeds these inputs for a time; gives the sides ordered to open then, whether doors are ordered to
+    /// close, whether departure waits.
     fn after(&mut self, inputs: StationInputs, ms: u64) -> (DoorSide, bool, bool) {
         for _ in 0..=ms / 50 {
             self.station.step(self.now, &inputs, &CONFIG, &mut self.log);

@@ -1,4 +1,4 @@
-//! What a unit stores over power-ups.
+//! Stored memory of a unit over power-ups.
 
 use protocol::event::Event;
 

@@ -35,7 +35,8 @@ impl Locator {
         self.fix.marker != 0 && self.to_stop_m().is_some_and(near)
     }
 
-    /// Whether the place counts: not in a train that moves at yard or emergency, or whose cab was left.
+    /// Sets whether the place counts: not in a train that moves at yard or emergency, or whose cab was
+    /// left.
     pub fn keep_place(&mut self, keeps: bool) {
         self.placed = keeps && (self.placed || !self.at_end());
         if !keeps {

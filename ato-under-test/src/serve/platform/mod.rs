@@ -1,5 +1,5 @@
-//! What each operating system does in a way of its own, under the same names: pseudo-terminals, reads of serial ports
-//! and priorities.
+//! Functions that differ by operating system, under one name for all: pseudo-terminals, reads of serial ports and
+//! priorities.
 
 #[cfg(unix)]
 mod unix;

@@ -17,7 +17,7 @@ use thread_priority::{
     set_thread_priority_and_policy, thread_native_id,
 };
 
-/// How long reads and writes of a serial port wait.
+/// Time for which reads and writes of a serial port wait.
 pub const PORT_WAITS: Duration = Duration::ZERO;
 /// Above all that goes by no clock, and low among what does: the system's own time-keeping threads stand higher
 /// \[default\].

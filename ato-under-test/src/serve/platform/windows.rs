@@ -11,7 +11,7 @@ use thread_priority::windows::{
     WinAPIThreadPriority, set_winapi_thread_priority, thread_native_id,
 };
 
-/// How long a write to a serial port waits at most: a frame takes some milliseconds to go out. No read waits
+/// Longest wait of a write to a serial port: a frame takes some milliseconds to go out. No read waits
 /// ([`read_port`]).
 pub const PORT_WAITS: Duration = Duration::from_millis(100);
 

@@ -48,17 +48,17 @@ pub struct Bench {
     pub keep_alive: bool,
     pub output: IoOutput,
     pub status: Status,
-    /// What TCMS says each cycle, its alive counter left out; `None` = nothing.
+    /// Frame of TCMS in each cycle, its alive counter left out; `None` = none.
     pub tcms: Option<TcmsToAtc>,
     /// The unit says that it is armed.
     pub armed: bool,
-    /// What the unit last sent to TCMS.
+    /// Last frame of the unit to TCMS.
     pub to_tcms: AtcToTcms,
     /// TCMS orders the full service brake when the unit asks for it.
     pub tcms_obeys: bool,
     /// The brake line stays energised, whatever the relay does.
     pub welded: bool,
-    /// Its alive counter stands still.
+    /// The alive counter of TCMS stands still.
     pub alive_stands: bool,
     /// The emergency brake is cut out: an open line does not apply it.
     pub eb_cut_out: bool,
@@ -68,7 +68,7 @@ pub struct Bench {
     pub backward_bits: u8,
     pub answers: Vec<Message>,
     pub log: Vec<LogEntry>,
-    /// What the unit sent in the last scan.
+    /// Bytes that the unit sent in the last scan.
     pub sent: Vec<u8>,
     turned: [f64; 2],
     scans: u64,
@@ -96,7 +96,7 @@ pub fn departure(section: &protocol::line::Section) -> TwcWayside {
     }
 }
 
-/// The same as a request to the TEST module.
+/// Station data as a request to the TEST module.
 pub fn test_station(session: u32, data: TwcWayside) -> TestTwc {
     TestTwc {
         session,
@@ -189,7 +189,7 @@ impl Bench {
         self.input.code_rate_chz = 0;
     }
 
-    /// Both wheels at a speed, reached at 3 m/s².
+    /// Brings both wheels to a speed at 3 m/s².
     pub fn speed_kmh(&mut self, kmh: f64) {
         let goal = kmh / 3.6;
         while (self.speeds[0] - goal).abs() > 0.03 {
@@ -200,7 +200,7 @@ impl Bench {
         self.speeds = [goal; 2];
     }
 
-    /// Both wheels to a stop at 3 m/s².
+    /// Brings both wheels to a stop at 3 m/s².
     pub fn stop(&mut self) {
         while self.speeds != [0.0; 2] {
             self.speeds = self.speeds.map(|speed| speed - speed.clamp(-0.03, 0.03));

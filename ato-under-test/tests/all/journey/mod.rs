@@ -24,9 +24,9 @@ pub struct Journey {
     pub channels_tell: [f64; 2],
     /// Marker and where its pulse comes, m.
     pub markers: Vec<(u8, f64)>,
-    /// What traction and brake give of what is asked.
+    /// Share of the demand that traction and brake give.
     pub follows: f64,
-    /// What of it TCMS says the train gives.
+    /// Share of the demand that TCMS says the train gives.
     pub says: f64,
     /// Acceleration TCMS makes by itself, whatever is asked, m/s².
     pub by_tcms_mps2: Option<f64>,

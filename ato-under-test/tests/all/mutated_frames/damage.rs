@@ -5,7 +5,7 @@ use protocol::link::{Link, MAX_AHEAD};
 use protocol::message::{CATALOGUE, Channel, Message, MessageSpec};
 use protocol::{Instant, Random};
 
-/// What is done to a frame.
+/// Damage to a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Bits,
@@ -65,7 +65,7 @@ impl Kind {
 /// Makes frames and damages them, the same for the same seed.
 pub struct Damager {
     random: Random,
-    /// What most requests that have a session name.
+    /// Session that most requests name.
     session: u32,
     specs: Vec<&'static MessageSpec>,
     /// Frames that were left as they were, and not sent.
@@ -211,7 +211,7 @@ impl Damager {
     }
 }
 
-/// What stands between flags and has a check sequence that fits.
+/// Bytes between flags whose check sequence fits.
 fn whole_frames(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let between = bytes.split(|&byte| byte == FLAG);
     between.filter(|stuffed| opened(stuffed).is_some())

@@ -20,7 +20,7 @@ const GONE: Duration = Duration::from_secs(20);
 const FIRST: usize = 40;
 const KEPT: usize = 400;
 
-/// What came of a connection.
+/// Outcome of a connection.
 pub struct Ended {
     /// Frames that the unit counts as refused.
     pub refused: u64,
@@ -29,7 +29,7 @@ pub struct Ended {
     /// Longest time to an answer, and in which this program said nothing.
     pub slowest: Duration,
     pub silent: Duration,
-    /// What the unit did that it must not.
+    /// Acts of the unit that no frame may bring about.
     pub faults: Vec<String>,
 }
 
@@ -39,7 +39,7 @@ pub struct Tester {
     station: TwcWayside,
     session: u32,
     scans: u64,
-    /// What stands between flags and was sent, as the unit must count it, and whether more of the last comes.
+    /// Number of frames sent, as the unit must count them; and whether more of the last one comes.
     frames: u64,
     under_way: bool,
     /// Sound frames, and some of them.
@@ -110,7 +110,7 @@ impl Tester {
         }
     }
 
-    /// Says nothing but what is due until something is so, for so many scans at most.
+    /// Sends only what is due until the condition holds, for at most this number of scans.
     fn until(&mut self, scans: u32, so: impl Fn(&Self) -> bool) -> bool {
         for _ in 0..scans {
             if so(self) {

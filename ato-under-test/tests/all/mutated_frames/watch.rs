@@ -1,4 +1,5 @@
-//! What a unit shows and answers while damaged frames come: the one must not change, the other must be asked for.
+//! State and answers of a unit while damaged frames come: the state must not change, and each answer must have
+//! been asked for.
 
 use std::fmt::Debug;
 use std::time::{Duration, Instant};
@@ -12,7 +13,7 @@ use protocol::message::{
 /// Most faults that are told of a connection.
 const MOST_FAULTS: usize = 10;
 
-/// What the unit was asked and has not answered.
+/// Answers that are due.
 #[derive(Debug, Default)]
 pub struct Due {
     pub identities: usize,

@@ -17,7 +17,7 @@ pub fn config() -> AtoConfig {
     UnitConfig::from_toml(text).unwrap().ato
 }
 
-/// What a run is like.
+/// Conditions of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Run {
     /// Passengers, kg.
@@ -64,7 +64,7 @@ pub struct Train<'a> {
     run: Run,
     position_m: f64,
     speed_mps: f64,
-    /// Of the effort alone, m/s².
+    /// Acceleration by the effort alone, m/s².
     effort_mps2: f64,
     asked: Vec<f64>,
     granted_mps2: f64,
@@ -121,7 +121,7 @@ impl<'a> Train<'a> {
             position += speed * CYCLE_S;
             speed += (effort + known) * CYCLE_S;
         }
-        // Of a first-order lag, v + lag·a follows the command at once.
+        // With a first-order lag, v + lag·a follows the command at once.
         let accel = effort + known;
         let lag_s = self.config.train.lag_ms / 1000.0;
         position += (speed + 0.5 * accel * lag_s) * lag_s;
@@ -142,7 +142,7 @@ impl<'a> Train<'a> {
         (CYCLE_S / (self.config.train.lag_ms / 1000.0)).min(1.0)
     }
 
-    /// What REG grants of a demand, and the train makes of it in a cycle.
+    /// Grants a demand as REG does, and moves the train by a cycle.
     fn act(&mut self, demand: Demand, at_s: f64) {
         let train = &self.config.train;
         let asked = (demand.force_n / self.mass_kg()).clamp(

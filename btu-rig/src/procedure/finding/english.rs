@@ -14,7 +14,7 @@ use crate::procedure::plan::Condition;
 use crate::procedure::runner::ATTEMPTS;
 use crate::stimulus::text::number;
 
-/// Who logged what, as the beginning of a sentence.
+/// Beginning of a sentence: who logged which event.
 impl Display for LoggedEvent {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let event = self.event();
@@ -248,12 +248,19 @@ impl Display for Finding {
                 of,
                 left,
                 instrument,
+                bench,
             } => {
-                match instrument {
-                    Some(name) => write!(f, "instrument {name} of the bench failed")?,
-                    None => f.write_str("link lost")?,
+                match (instrument, bench) {
+                    (Some(name), Some(bench)) => {
+                        write!(f, "instrument {name} of bench {bench} failed")?;
+                    }
+                    (Some(name), None) => write!(f, "instrument {name} of the bench failed")?,
+                    (None, _) => f.write_str("link lost")?,
                 }
-                write!(f, " at step {run} of {of}; {left} not run")
+                match run {
+                    0 => write!(f, " before the first of {of} steps"),
+                    _ => write!(f, " at step {run} of {of}; {left} not run"),
+                }
             }
             Self::NotAcceptance { run, of } => {
                 write!(f, "not an acceptance: {run} of {of} steps run, all passed")
@@ -304,7 +311,8 @@ impl Display for Finding {
     }
 }
 
-/// What the bits that a condition asks for are instead, with the name of their signal; `None` where it has no set of bits.
+/// Actual states of the bits in a condition, with the name of their signal; `None` where the signal has no set of
+/// bits.
 fn named_bits(condition: &Condition, bits: u16) -> Option<(&'static str, String)> {
     let Condition::Compare { signal, .. } = condition else {
         return None;
@@ -312,7 +320,7 @@ fn named_bits(condition: &Condition, bits: u16) -> Option<(&'static str, String)
     Some((signal.name(), bit_names(*signal, bits)?))
 }
 
-/// What an event is, with what its parameter says.
+/// Event, with its parameter, as text.
 fn happened(logged: &LoggedEvent) -> String {
     let Some(event) = logged.event() else {
         let (code, parameter) = (logged.code, logged.parameter);

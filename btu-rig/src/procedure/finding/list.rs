@@ -1,4 +1,4 @@
-//! What was found in one place: each finding once, in the order in which it came first.
+//! Findings in one place: each finding once, in the order in which it came first.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ pub struct Findings(Vec<Found>);
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Found {
     pub finding: Finding,
-    /// How often it came; not in JSON if once.
+    /// Number of times the finding came; not in JSON if 1.
     #[serde(default = "once", skip_serializing_if = "is_once")]
     pub times: u32,
 }
@@ -39,13 +39,13 @@ impl Findings {
         self.0.is_empty()
     }
 
-    /// As they are stored; `None` for nothing.
+    /// Findings as JSON, as they are stored; `None` if there are none.
     pub fn to_json(&self) -> Option<String> {
         let stored = || serde_json::to_string(self).ok();
         (!self.is_empty()).then(stored)?
     }
 
-    /// As they were stored; `None` for what this version does not know.
+    /// Findings from stored JSON; `None` for a form that this version does not know.
     pub fn from_json(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
     }

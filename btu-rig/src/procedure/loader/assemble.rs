@@ -23,7 +23,7 @@ struct NamedMeasurement {
     unit: &'static str,
 }
 
-/// What a script declared, each step complete but for the part to suspect.
+/// Declarations of a script, each step complete but for the part to suspect.
 #[derive(Default)]
 struct Declared {
     head: Option<ProcedureDraft>,
@@ -175,7 +175,7 @@ fn step(draft: StepDraft, line: u32, known: &mut Vec<NamedMeasurement>) -> Resul
     Ok(step)
 }
 
-/// There is something by which the step can fail.
+/// Whether anything can make the step fail.
 fn checks(step: &Step) -> bool {
     let judges = |action: &Action| {
         let (action, _) = action.where_done(true);

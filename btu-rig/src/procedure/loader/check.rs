@@ -173,7 +173,7 @@ impl Checker<'_> {
         });
     }
 
-    /// What `expr` is, as far as that is known without running the script.
+    /// Item of an expression, as far as it is known without running the script.
     fn expr(&mut self, expr: &AstExpr) -> Item {
         let mut found = Item::Unknown;
         self.deeper(|this| found = this.expr_here(expr));

@@ -1,4 +1,4 @@
-//! What scripts may read besides signals: unit configuration, code table and line.
+//! Data that scripts may read besides signals: unit configuration, code table and line.
 
 use std::sync::Arc;
 

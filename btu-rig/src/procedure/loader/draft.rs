@@ -1,4 +1,4 @@
-//! What `procedure()` and `step()` declare, before names are resolved and times computed.
+//! Declarations of `procedure()` and `step()`, before names are resolved and times computed.
 
 use protocol::{Duration, LruId};
 
@@ -21,7 +21,7 @@ pub(super) struct ProcedureDraft {
     pub suspect: Option<LruId>,
     pub setup: Vec<Action>,
     pub cleanup: Vec<Action>,
-    /// Of numbers in expectations that say none themselves.
+    /// Sources of numbers in expectations that name none themselves.
     pub sources: Vec<String>,
 }
 
@@ -32,6 +32,6 @@ pub(super) struct StepDraft {
     pub limit: Option<Duration>,
     /// The call says which part the step suspects, or that it suspects none.
     pub says_suspect: bool,
-    /// Of numbers that say none themselves.
+    /// Sources of numbers that name none themselves.
     pub sources: Vec<String>,
 }

@@ -77,7 +77,7 @@ impl<'a> Evaluation<'a> {
         (self.library_errors.into_inner(), self.printed.into_inner())
     }
 
-    /// What the script at `path` declares.
+    /// Declarations of the script at `path`.
     pub(super) fn procedure(&self, path: &str, text: &str) -> Result<Declared, Vec<LoadError>> {
         self.evaluate(path, text, false)
             .map(|(_, declared)| declared)

@@ -27,7 +27,7 @@ use super::item::Item;
 /// Lists nested deeper than this are refused; a list may contain itself.
 const DEEPEST_LIST: usize = 16;
 
-/// What a script's verbs need and what its declarations leave behind; reached through the
+/// Data that a script's verbs need, and declarations that they leave; reached through the
 /// evaluator.
 #[derive(Debug, ProvidesStaticType)]
 pub(super) struct Session<'a> {
@@ -236,7 +236,7 @@ fn alloc(item: Item, heap: Heap<'_>) -> Value<'_> {
     }
 }
 
-/// The same for predeclared names.
+/// Value of a predeclared name on a frozen heap.
 pub(super) fn alloc_frozen(item: Item, heap: &FrozenHeap) -> FrozenValue {
     match item {
         Item::None => heap.alloc(NoneType),

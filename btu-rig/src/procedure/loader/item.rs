@@ -23,9 +23,9 @@ pub(super) enum Item {
     /// A speed code, a section, or a part of the configuration.
     Record(Arc<Record>),
     Actions(Vec<Action>),
-    /// With the source of the numbers it compares with.
+    /// A condition, with the source of the numbers it compares with.
     Condition(Condition, Origin),
-    /// With the source of its numbers.
+    /// An expectation, with the source of its numbers.
     Expectation(Expectation, Origin),
     Measure(Box<Measure>),
     /// A value measured by an earlier step, by name, and what is added to it.
@@ -54,7 +54,7 @@ impl Record {
 }
 
 impl Item {
-    /// What it is, with article, for messages.
+    /// Name of the item's type, with article, for messages.
     pub(super) fn found(&self) -> String {
         match self {
             Self::None => "None".into(),
@@ -80,7 +80,6 @@ impl Item {
         }
     }
 
-    /// Its number, if it is one.
     pub(super) fn number(&self) -> Option<f64> {
         match self {
             Self::Int(n) => Some(*n as f64),

@@ -69,7 +69,7 @@ pub struct LoadError {
     pub message: String,
 }
 
-/// What came of loading scripts.
+/// Result of loading scripts.
 #[derive(Clone, Debug, Default)]
 pub struct Loaded {
     /// The procedures of all scripts without errors, by path.
@@ -110,8 +110,8 @@ pub fn load(scripts: &Scripts, unit: &UnitConfig, line: &Line, train: &TrainData
     }
 }
 
-/// The same as [`load`], with each procedure passed on as soon as it is loaded: many scripts
-/// take no more memory than one.
+/// As [`load`], but each procedure is passed on as soon as it is loaded: many scripts take no more
+/// memory than one.
 pub fn load_each(
     scripts: &Scripts,
     unit: &UnitConfig,
@@ -170,7 +170,7 @@ fn load_for(
     let mut loaded = Loaded::default();
     for (path, text) in scripts {
         if is_library(path) {
-            // Its errors are kept aside, so that each is reported once.
+            // Errors of a library are kept aside, so that each is reported once.
             let _ = evaluation.library(path);
             continue;
         }

@@ -41,7 +41,6 @@ pub(super) enum ParamType {
     TimeFrom,
     /// One or a list of whole numbers.
     Ints,
-    /// Any number of conditions.
     Conditions,
     /// Where numbers come from: a text or a list of them.
     Sources,

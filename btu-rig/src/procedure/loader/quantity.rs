@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::procedure::origin::Origin;
 
-/// What a quantity is an amount of, with the unit it is kept in.
+/// Dimension of a quantity, with the unit in which it is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Dimension {
     /// km/h.
@@ -51,7 +51,7 @@ impl Dimension {
         }
     }
 
-    /// With article and an example, for messages.
+    /// Name with article and example, for messages.
     pub(super) const fn wanted(self) -> &'static str {
         match self {
             Self::Speed => "a speed such as kmh(55)",
@@ -76,7 +76,7 @@ impl Dimension {
         }
     }
 
-    /// With article.
+    /// Name with article.
     pub(super) fn found(self) -> String {
         let article = match self {
             Self::Acceleration => "an",
@@ -89,7 +89,7 @@ impl Dimension {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Quantity {
     pub dimension: Dimension,
-    /// In the dimension's unit.
+    /// Value in the dimension's unit.
     pub value: f64,
     /// Where its number comes from.
     pub origin: Origin,

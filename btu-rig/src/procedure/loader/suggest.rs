@@ -13,7 +13,7 @@ pub(super) fn hint<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str
     }
 }
 
-/// The same where a candidate is near, else nothing.
+/// Suggests the nearest candidate; empty where none is near.
 pub(super) fn near<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let candidates = candidates.into_iter();
     let all = candidates.map(|name| (strsim::osa_distance(wrong, name), name));

@@ -38,7 +38,7 @@ pub(super) const fn takes(name: &'static str, want: ParamType) -> Param {
 /// A word of the script language.
 #[derive(Debug)]
 pub(super) struct Verb {
-    /// As written, namespace included.
+    /// Name as written, namespace included.
     pub name: &'static str,
     pub params: &'static [Param],
     pub make: fn(&Args<'_>) -> Result<Item, String>,
@@ -64,7 +64,7 @@ pub(super) fn members(space: &str) -> Vec<String> {
 #[derive(Debug)]
 pub(super) struct CallError {
     pub message: String,
-    /// Which argument, if it is one: in the order given, positional first.
+    /// Place of the wrong argument, if an argument is wrong: in the order given, positional first.
     pub argument: Option<usize>,
 }
 

@@ -25,12 +25,12 @@ pub const ATTEMPTS: u32 = 3;
 const LOG_SETTLES: Duration = Duration::from_ms(600);
 /// And its log is read within this time, or the steps begin all the same.
 const LOG_WITHIN: Duration = Duration::from_ms(10_000);
-/// What frames lost in a pause lead to shows within this time: unit and TCMS miss each other, brake and log it.
+/// Time in which the effects of frames lost in a pause show: unit and TCMS miss each other, brake and log it.
 const AFTERMATH: Duration = Duration::from_ms(1_000);
 /// How often clean-up is begun at most.
 const CLEAN_UPS: u32 = 3;
 
-/// What a runner is to go on with, and what it knows of the steps before.
+/// State that a runner is to go on with, and what it knows of earlier steps.
 #[derive(Clone, Debug)]
 pub struct Resume {
     /// Place in the schedule of the first step that is run again, so that the target finds the state it needs.
@@ -76,7 +76,7 @@ impl Runner {
         }
     }
 
-    /// What is left of the procedure, when this runner is done and has not run all of it.
+    /// Rest of the procedure, when this runner is done and has not run all of it.
     pub fn to_be_resumed(&self) -> Option<&Resume> {
         self.resume.as_ref()
     }
@@ -87,8 +87,8 @@ impl Runner {
         self.stood_still = Some(by);
     }
 
-    /// How far the bench is behind the unit's clock: a step that fails meanwhile may have been looked at too
-    /// late.
+    /// Notes that the bench is behind the unit's clock: a step that fails meanwhile may have been looked at
+    /// too late.
     pub fn behind(&mut self, by: Duration) {
         if let Phase::Steps {
             live: Some(live), ..
@@ -104,7 +104,7 @@ impl Runner {
         self.last_pause = Some((now, by));
     }
 
-    /// How long such a pause was, if what is seen now may come of it.
+    /// Length of such a pause, if it may explain what is seen now.
     pub(super) fn after_pause(&self, now: Instant) -> Option<Duration> {
         let (at, by) = self.last_pause?;
         (now.since(at) <= AFTERMATH).then_some(by)
@@ -130,7 +130,7 @@ impl Runner {
             Phase::Setup(_) => self.spoil(self.begun_at.target, now, now, by),
             Phase::Steps { next, live } => {
                 let (place, live) = (*next, live.take());
-                // It counts, although the step that it came in is repeated.
+                // A failure from before the standstill counts, although its step is repeated.
                 let before = live.iter().flat_map(|run| run.failures());
                 let before = before.map(|why| Finding::BeforeStandstill(Box::new(why.clone())));
                 self.findings.extend(before);
@@ -139,7 +139,7 @@ impl Runner {
                     self.spoil(place, live.map_or(now, |run| run.started()), now, by);
                 }
             }
-            // Its actions may have waited for what the unit did not do while it braked.
+            // Actions of the clean-up may have waited for what the unit did not do while it braked.
             Phase::CleanUp { actions, since } if self.clean_ups < CLEAN_UPS => {
                 self.clean_ups += 1;
                 (*actions, *since) = (ActionRun::default(), now);

@@ -6,10 +6,11 @@ use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
 use super::{Phase, Runner, Stop};
-use crate::procedure::action_run::{Progress, Scan};
+use crate::procedure::action_run::Progress;
 use crate::procedure::evidence::LogState;
 use crate::procedure::finding::Finding;
 use crate::procedure::report::{Outside, RunEvent};
+use crate::procedure::scan::Scan;
 use crate::procedure::worst_case::{TIME_LIMIT_MARGIN, total_worst_case};
 use crate::procedure::{Driver, Verdict};
 

@@ -1,13 +1,13 @@
-//! What ends a run early: a lost link, a stalled tester, and the operator's stop.
+//! Early ends of a run: a lost link, a stalled tester, and the operator's stop.
 
 use protocol::Instant;
 use protocol::signal::Sample;
 
 use super::{Phase, Runner, Stop};
 use crate::procedure::Verdict;
-use crate::procedure::action_run::Problem;
 use crate::procedure::finding::Finding;
 use crate::procedure::link_trouble::LinkTrouble;
+use crate::procedure::problem::Problem;
 use crate::procedure::report::Outside;
 
 impl Runner {

@@ -22,16 +22,18 @@ use protocol::{Duration, Instant, LruId};
 pub use attempts::{ATTEMPTS, Resume};
 pub use closing::{CLEANUP_WITHOUT_LINK, SAFE_WITHIN};
 use pause::Pause;
-pub use schedule::{PromptPolicy, RunOptions};
+pub use schedule::RunOptions;
 use schedule::{ScheduledStep, schedule};
 
-use super::action_run::{ActionRun, Operator, Progress, Scan};
+use super::action_run::{ActionRun, Progress};
 use super::event_set::EventSet;
 use super::evidence::Evidence;
 use super::finding::{Before, Finding, Findings};
 use super::link_trouble::LinkTrouble;
+use super::operator::Operator;
 use super::plan::{Procedure, Step};
 use super::report::{Outside, OutsideStep, RunEvent};
+use super::scan::Scan;
 use super::step_run::StepRun;
 use super::{Driver, UnitEvent, Verdict};
 
@@ -89,11 +91,11 @@ pub struct Runner {
     stop: Stop,
     answer: Option<bool>,
     link_lost: bool,
-    /// Why nothing since the last scan can be judged.
+    /// Reason for which nothing since the last scan can be judged.
     interrupted: Option<Finding>,
     /// Why the procedure is not run at all.
     passed_over: Option<Finding>,
-    /// How far what is heard can be trusted, as of the present scan.
+    /// Evidence by which data from the unit can be trusted, as of the present scan.
     evidence: Evidence,
     /// Entries of the unit's log not kept before this procedure.
     not_kept_before: Option<u64>,
@@ -105,16 +107,16 @@ pub struct Runner {
     left_open: Vec<UnitEvent>,
     /// Reported events that no step provoked.
     reported: usize,
-    /// Those that were not, because there were too many.
+    /// Unprovoked events beyond those reported, because there were too many.
     not_reported: u64,
     leaving: bool,
     pause: Pause,
     begun_at: Resume,
-    /// What is left for the next runner.
+    /// State for the next runner.
     resume: Option<Resume>,
     /// When the set-up before repeated steps was done.
     set_up_at: Option<Instant>,
-    /// How long the tester's computer stood still since the last scan, if too long.
+    /// Time for which the tester's computer stood still since the last scan, if too long.
     stood_still: Option<Duration>,
     /// When computer, tester and unit stood still together last, and how long.
     last_pause: Option<(Instant, Duration)>,
@@ -199,8 +201,8 @@ impl Runner {
         self.outside(Outside::BringUp, Verdict::Failed, finding, at);
     }
 
-    /// What is left of the procedure is not wanted: after the present step, clean-up. The verdict is that
-    /// of the steps that were run; those left are not reported.
+    /// Leaves the procedure after the present step, with clean-up. The verdict covers the steps that were
+    /// run; the rest is not reported.
     pub fn leave(&mut self) {
         self.leaving = true;
     }
@@ -339,7 +341,7 @@ impl Runner {
         }
     }
 
-    /// What stands at the end beside the steps.
+    /// Reports the findings that stand beside the steps at the end.
     fn conclude(&mut self, now: Instant) {
         if !self.self_test.is_empty() {
             let items = self.self_test.bits();
@@ -354,8 +356,8 @@ impl Runner {
         }
     }
 
-    /// Over all steps and what stands beside them. Where nothing could be judged any more, what was
-    /// judged before is no verdict on the unit.
+    /// Verdict over all steps and what stands beside them. Where nothing could be judged any more,
+    /// what was judged before is no verdict on the unit.
     fn overall(&self) -> Verdict {
         match self.verdict {
             Verdict::Aborted => Verdict::Aborted,

@@ -5,13 +5,12 @@ use protocol::Instant;
 use super::{Phase, Runner};
 use crate::procedure::report::RunEvent;
 
-/// Whether a step may begin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pause {
     on: bool,
     /// Steps that may begin all the same.
     single: u32,
-    /// It has been said that the next step waits.
+    /// The pause before the next step has been reported.
     said: bool,
 }
 

@@ -1,15 +1,7 @@
 //! The steps to run, in order and with their repetitions.
 
+use crate::procedure::PromptPolicy;
 use crate::procedure::plan::Procedure;
-
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PromptPolicy {
-    /// No operator is present: a step with a prompt is skipped; one in set-up or clean-up is an error.
-    #[default]
-    Refuse,
-    /// A [`RunEvent::Prompt`](crate::procedure::RunEvent::Prompt) is sent and [`Runner::answer`](super::Runner::answer) awaited.
-    Ask,
-}
 
 #[derive(Clone, Debug)]
 pub struct RunOptions {

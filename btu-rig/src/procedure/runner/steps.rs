@@ -6,12 +6,14 @@ use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
 use super::schedule::ScheduledStep;
-use super::{Phase, PromptPolicy, Runner};
-use crate::procedure::action_run::{ActionRun, Scan};
+use super::{Phase, Runner};
+use crate::procedure::PromptPolicy;
+use crate::procedure::action_run::ActionRun;
 use crate::procedure::condition::Answer;
 use crate::procedure::finding::Finding;
 use crate::procedure::plan::{Action, OnFail, Step};
 use crate::procedure::report::{ResultKind, RunEvent, StepResult};
+use crate::procedure::scan::Scan;
 use crate::procedure::step_run::StepRun;
 use crate::procedure::{Driver, Verdict};
 
@@ -200,7 +202,7 @@ impl Runner {
     /// Reports all steps still to come as skipped and goes on to clean-up.
     pub(super) fn skip_rest(&mut self, now: Instant, reason: &Finding) {
         if let Phase::Steps { next, .. } = &mut self.phase {
-            // Those before have their results.
+            // Steps before this one have their results.
             *next = (*next).max(self.begun_at.target);
         }
         while let Phase::Steps { next, .. } = &self.phase

@@ -43,7 +43,7 @@ impl ClockRate {
         self.begun = Some((at, stamp_ms));
     }
 
-    /// By how much it is faster than the bench's, thousandths, if it is wrong.
+    /// Excess of the unit's clock over the bench's, thousandths, if the unit's clock is wrong.
     pub fn wrong_by_permille(&self) -> Option<i32> {
         (self.wrong >= SPANS).then_some(self.off_permille)
     }

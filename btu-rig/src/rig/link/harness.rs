@@ -15,7 +15,7 @@ const ALONE: Duration = Duration::from_ms(500);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Harness {
-    /// To be found out from what the unit says.
+    /// Whether there is a harness follows from what the unit says.
     #[default]
     Auto,
     /// Only the maintenance channel.
@@ -43,7 +43,7 @@ impl std::str::FromStr for Harness {
     }
 }
 
-/// What is known of it.
+/// Presence of the harness, as far as it is known.
 #[derive(Debug)]
 pub struct HarnessWatch {
     found: Option<bool>,
@@ -68,7 +68,7 @@ impl HarnessWatch {
         self.found
     }
 
-    /// It is there, as far as is known.
+    /// Whether the harness is connected, as far as is known.
     pub fn is_there(&self) -> bool {
         self.found == Some(true)
     }

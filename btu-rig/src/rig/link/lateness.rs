@@ -1,4 +1,4 @@
-//! How late the unit's frames come: a link that holds bytes back shows what the unit did when it is over.
+//! Lateness of the unit's frames: a link that holds bytes back shows what the unit did when it is over.
 //!
 //! A frame's stamp says when the unit made it. Of the frames of the last moments the fastest took the link's own time; what
 //! another took beyond that is its lateness.

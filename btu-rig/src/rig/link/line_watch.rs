@@ -21,9 +21,9 @@ use super::lateness::Lateness;
 
 /// Span over which a line is bad or good, as the unit's own.
 const SPAN: Duration = Duration::from_ms(10_000);
-/// How often counts are kept.
+/// Interval at which counts are kept.
 const EVERY: Duration = Duration::from_ms(500);
-/// What the unit does about lost frames may be reported so much later: its time-outs, and reading its log.
+/// Time for which the unit may still report the effects of lost frames: its time-outs, and reading its log.
 const LATELY: Duration = Duration::from_ms(12_000);
 /// After first contact and a restart both ends may refuse what is left of the time before.
 const SETTLES: Duration = Duration::from_ms(2_200);
@@ -87,7 +87,7 @@ pub struct LineWatch {
     lateness: Lateness,
     /// When a frame came last, and how late it was.
     late: (Instant, Duration),
-    /// Until when the unit refuses what is damaged on purpose.
+    /// Time until which the unit refuses what is damaged on purpose.
     on_purpose_until: Instant,
     /// Counts of the last seconds, oldest first.
     past: VecDeque<(Instant, Counts)>,
@@ -243,7 +243,7 @@ impl LineWatch {
         self.settles_until.is_some_and(|until| now >= until)
     }
 
-    /// By how much the unit's clock is faster than the bench's, thousandths, if it is wrong.
+    /// Excess of the unit's clock over the bench's, thousandths, if the unit's clock is wrong.
     pub fn clock_wrong_by_permille(&self) -> Option<i32> {
         self.rate.wrong_by_permille()
     }

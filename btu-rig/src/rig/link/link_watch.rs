@@ -113,8 +113,8 @@ impl LinkWatch {
         }
     }
 
-    /// What is wrong, if anything; `asks_since` = since when the tester speaks. The I/O channel is watched only with
-    /// a `harness`.
+    /// Trouble of the link, if any; `asks_since` = since when the tester speaks. The I/O channel is watched only
+    /// with a `harness`.
     pub fn error(
         &self,
         now: Instant,

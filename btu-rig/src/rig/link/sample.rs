@@ -200,7 +200,7 @@ impl LatestSample {
         }
     }
 
-    /// What a harness shows otherwise.
+    /// Takes the values that a harness would carry from `TrainState`.
     fn on_train_alone(&mut self, now: Instant, state: &TrainState) {
         let io = IoOutput {
             outputs: state.outputs,

@@ -1,4 +1,4 @@
-//! Which frame of the unit tells which signals.
+//! Signals that each frame of the unit carries.
 
 use protocol::signal::Signal;
 

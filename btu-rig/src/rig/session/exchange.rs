@@ -22,7 +22,8 @@ const MAX_QUEUE: usize = 32;
 const ANSWER_TIME: Duration = Duration::from_ms(300);
 /// Pause before arming is tried again while the unit starts up or another session lapses.
 const ARM_PAUSE: Duration = Duration::from_ms(200);
-/// How long that is tried: shorter than a procedure waits, so that the unit's reason is reported.
+/// Time for which arming is tried: shorter than a procedure waits, so that the unit's reason is
+/// reported.
 const ARM_PATIENCE: Duration = Duration::from_ms(4000);
 
 /// Time a self-test may take once it is accepted.
@@ -49,7 +50,7 @@ pub struct Exchange {
 }
 
 impl Exchange {
-    /// Nothing asked, not armed; `session` must not be 0.
+    /// An exchange without requests, not armed; `session` must not be 0.
     pub fn new(session: u32) -> Self {
         Self {
             session,

@@ -1,4 +1,4 @@
-//! Who the unit says it is, against what its train's record says it should be.
+//! Comparison of the unit's identity with its train's record.
 
 use std::sync::Arc;
 
@@ -11,7 +11,6 @@ use protocol::signal::{Sample, Signal};
 pub struct UnitRecord {
     /// The train, as the depot names it.
     pub train: String,
-    /// Serial number.
     pub serial: String,
     /// Software version: major, minor, patch.
     pub software: [u8; 3],
@@ -34,13 +33,12 @@ pub struct ExpectedIdentity {
     pub software: Option<[u8; 3]>,
 }
 
-/// What a comparison came to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Compared {
     signal: Signal,
     /// `None` = nothing says what it should be.
     same: Option<bool>,
-    /// Both sides, or why there is only one.
+    /// Both sides of the comparison, or why there is only one.
     said: String,
 }
 

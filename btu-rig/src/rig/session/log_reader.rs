@@ -68,7 +68,7 @@ pub struct LogReader {
     asked: Option<Instant>,
     /// Index at which an entry was missed and asked for again.
     gap_at: Option<u32>,
-    /// It was missed again: ask only where the log begins.
+    /// The entry was missed again: the reader asks only where the log begins.
     probing: bool,
     /// Times it was asked for since.
     probes: u32,

@@ -115,7 +115,7 @@ impl LogSession {
         }
     }
 
-    /// Who the unit is, once it has said so.
+    /// Identity of the unit, once the unit has told it.
     pub fn identity(&self) -> Option<&Identity> {
         self.tester.identity()
     }
@@ -125,7 +125,7 @@ impl LogSession {
         self.identified_at
     }
 
-    /// Its operating mode as it last reported it.
+    /// Operating mode as the unit last reported it.
     pub fn mode(&self) -> Option<Mode> {
         self.mode
     }
@@ -140,7 +140,7 @@ impl LogSession {
         self.tester.take_events()
     }
 
-    /// Who the unit is and all it has logged or stored is read.
+    /// Whether the identity and all that the unit has logged or stored is read.
     pub fn is_complete(&self) -> bool {
         let stored = |reader: &StoreReader| *reader.state() == StoreState::Read;
         let read = match self.events.state() {

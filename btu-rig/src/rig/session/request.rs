@@ -72,7 +72,7 @@ impl Current {
         )
     }
 
-    /// Why it is given up.
+    /// Sentence that says why the request is given up.
     pub fn gives_up(&self, now: Instant) -> String {
         let (what, ms) = (self.what(), now.since(self.begun).as_ms());
         if self.tests_itself {

@@ -44,14 +44,14 @@ pub struct StoredData {
 /// How far a store is read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StoreState {
-    /// It is not known yet whether there is one.
+    /// Whether the unit has a store is not known yet.
     Unknown,
-    /// There is none: the unit is an older one.
+    /// The unit has no store: it is an older one.
     Missing,
     Reading,
     /// All is read that was there when it was first asked for.
     Read,
-    /// It cannot be read: why.
+    /// The reason for which the store cannot be read.
     Failed(LinkTrouble),
 }
 
@@ -227,7 +227,6 @@ impl StoreReader {
         }
     }
 
-    /// How far it is read.
     pub fn state(&self) -> &StoreState {
         &self.state
     }

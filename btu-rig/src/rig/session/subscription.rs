@@ -50,7 +50,7 @@ impl Subscription {
         !self.heard && self.asked >= ATTEMPTS
     }
 
-    /// It is known whether the unit tells.
+    /// Whether it is known that the unit answers the subscription or does not.
     pub fn settled(&self) -> bool {
         self.heard || self.refused()
     }

@@ -34,18 +34,18 @@ pub struct Tester {
     keep_alive_due: Instant,
     identify_due: Instant,
     identity: Option<Identity>,
-    /// Who it was when it was first asked.
+    /// Identity of the unit when it was first asked.
     first: Option<Identity>,
-    /// What another unit said otherwise.
+    /// Differences of another unit that answered.
     changed: Option<LinkTrouble>,
     self_test: SelfTest,
     /// Count of events in the last status.
     logged: Option<u32>,
     events_at_contact: Option<u32>,
-    /// Those are not read.
+    /// Events from before the contact are not read.
     leaves_old: bool,
     restarts: u32,
-    /// Its log says that it restarted by itself, since it was started.
+    /// The log says that the unit restarted by itself after it was started.
     restarted_itself: bool,
     exchange: Exchange,
     log: LogReader,
@@ -267,7 +267,7 @@ impl Tester {
         self.session
     }
 
-    /// Who the unit is, once it has said so.
+    /// Identity of the unit, once the unit has told it.
     pub fn identity(&self) -> Option<&Identity> {
         self.identity.as_ref()
     }
@@ -328,7 +328,6 @@ impl Tester {
         self.exchange.self_test()
     }
 
-    /// The log as read so far.
     pub fn log(&self) -> &LogReader {
         &self.log
     }
@@ -336,7 +335,7 @@ impl Tester {
     /// How far the log is read.
     pub fn log_state(&self, now: Instant) -> LogState {
         match self.log.state(now) {
-            // It is not asked for.
+            // The silent tester does not ask for the log.
             LogState::Unanswered if self.silent => LogState::Behind,
             state => state,
         }

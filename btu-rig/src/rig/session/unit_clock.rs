@@ -16,7 +16,7 @@ pub struct TimeOfDay {
     pub at: Instant,
     /// Time since 1970 then, UTC, µs.
     pub utc_us: i64,
-    /// It may be wrong by so much, ms; the way to the unit included.
+    /// Greatest error of the time, ms; the way to the unit included.
     pub uncertainty_ms: u16,
 }
 

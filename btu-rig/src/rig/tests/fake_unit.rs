@@ -19,9 +19,9 @@ pub struct FakeUnit {
     pub reading: Option<u32>,
     pub log: Vec<LogEntry>,
     pub oldest: u32,
-    /// Who it says it is, its uptime aside.
+    /// Identity that the unit tells, its uptime aside.
     pub identity: Identity,
-    /// What its status says of its self-test.
+    /// Self-test bits of its status.
     pub self_test: SelfTest,
     /// Whether it answers when its log is asked for.
     pub answers_log: bool,
@@ -33,15 +33,15 @@ pub struct FakeUnit {
     pub answer: Answer,
     /// Channels on which nothing is sent or heard.
     pub dead: Vec<Channel>,
-    /// How much faster its clock goes than the bench's, as a share.
+    /// Share by which its clock is faster than the bench's.
     pub clock_gains: f64,
     /// Bytes it sends in each scan beside its frames.
     pub noise: &'static [u8],
     pub to_tcms: AtcToTcms,
     pub outputs: Outputs,
-    /// It is reached at its harness, and not at its maintenance port alone.
+    /// The unit is reached at its harness, too, not at its maintenance port alone.
     pub harness: bool,
-    /// It knows `Subscribe`.
+    /// The unit knows `Subscribe`.
     pub tells_train_state: bool,
     pub subscribed: bool,
     pub train_state: TrainState,

@@ -35,7 +35,7 @@ fn bench(unit: FakeUnit) -> Bench<FakeUnit> {
     Bench::new(rig(1), unit)
 }
 
-/// What is wrong with the link, as it is told; empty if nothing is.
+/// Trouble of the link as text; empty if there is none.
 fn link_error<L: UnitLink>(bench: &Bench<L>) -> String {
     let error = bench.rig().link_error();
     error.map_or_else(String::new, |error| error.to_string())

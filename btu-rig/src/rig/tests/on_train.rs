@@ -158,7 +158,7 @@ fn a_procedure_of_a_bench_is_not_run_on_a_train() {
     }
 }
 
-/// What others did to the unit, as the runner tells it.
+/// Act of others on the unit, as the runner tells it.
 fn intervention(bench: &mut Bench<FakeUnit>) -> Option<String> {
     let what = bench.rig_mut().take_intervention();
     what.map(|what| what.to_string())

@@ -1,4 +1,4 @@
-//! What TCMS logs, as the bench hands it on.
+//! Events that TCMS logs, as the bench hands them on.
 
 use protocol::event::Event;
 use protocol::injection::FaultCatalogue;

@@ -265,7 +265,8 @@ fn a_train_can_be_exchanged() {
     ask(&mut bench, 0.0);
     bench.run_ms(1_000);
     let after = bench.rig().truth().speed_mps;
-    // It coasts by r·v alone, after the two cycles in which the order for power still stands.
+    // The train coasts by r·v alone, after the two cycles in which the order for power still
+    // stands.
     assert!((after - before).abs() < 0.2, "{before} {after}");
     assert!(bench.rig().truth().accel_mps2 > -0.02);
     let cut_out = Stimulus::CutOut {

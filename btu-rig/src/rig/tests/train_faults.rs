@@ -56,7 +56,7 @@ fn air_share(equipment: &Equipment, car: usize, like: usize) -> f64 {
     equipment.air_n[car - 1] / equipment.air_n[like - 1]
 }
 
-/// Whether a fault shows now.
+/// Tells whether a fault shows now.
 type Shows = fn(&mut Bench<FakeUnit>) -> bool;
 
 const CASES: [(&str, Shows); 30] = [
@@ -239,7 +239,7 @@ fn the_table_has_every_fault_of_the_train() {
     assert_eq!(check_places(&faults, &TrainData::line6()), Ok(()));
 }
 
-/// How weak is the catalogue's to say, and two cylinders can be weak by different shares.
+/// The catalogue says how weak a cylinder is, and two cylinders can be weak by different shares.
 #[test]
 fn a_weak_cylinder_gets_the_share_of_its_own_mode() {
     let text = include_str!("../../../../scripts/units/faults.toml");
@@ -296,7 +296,8 @@ fn a_train_without_the_place_is_refused() {
     assert_eq!(check_places(&[mode("door_contact.open")], &ideal), Ok(()));
 }
 
-/// What a bench sent, what it read of the unit's contacts, and what it recorded of what was asked for.
+/// Bytes that a bench sent, contacts of the unit that it read, and levels that it recorded as asked
+/// for.
 fn played(fault: Option<FaultMode>) -> (Vec<u8>, Vec<Option<f64>>, Vec<Option<f64>>) {
     let mut bench = bench(FakeUnit::default());
     bench.apply(Stimulus::Wayside(WaysideCondition::Good));

@@ -1,4 +1,5 @@
-//! What the rig must not believe: a log that is not answered or does not end, another unit, a bad line.
+//! Data that the rig must not believe: a log that is not answered or does not end, another unit, a bad
+//! line.
 
 use protocol::Instant;
 use protocol::Random;
@@ -179,8 +180,9 @@ fn frames_that_are_late_to_a_fast_clock_are_not_the_lines() {
     assert_eq!(bench.rig().link_error(), None);
 }
 
-/// Goal: the same after the tester's computer stood still, when the clock is compared from the beginning; and the rate of the clock is
-/// measured, from 13 s on. Method: a clock 3 % fast, which refuses frames for seconds on end, and stalls.
+/// Goal: a fast clock is at fault, not the line, also after the tester's computer stood still, when the clock is
+/// compared from the beginning; the rate of the clock is measured from 13 s on. Method: a clock 3 % fast, which
+/// refuses frames for seconds on end, and stalls.
 #[test]
 fn a_fast_clock_is_measured_and_stays_wrong_over_a_stall() {
     let mut bench = bench(FakeUnit {
@@ -223,7 +225,7 @@ fn a_log_that_is_never_answered_is_an_error_with_the_count_of_questions() {
     assert_eq!(bench.rig().link_error(), None);
 }
 
-/// Nothing is logged, and so nothing is there to be read; but that it could be is not known.
+/// A unit whose log is empty and is never answered: whether it could be read is not known.
 #[test]
 fn a_unit_that_never_shows_its_log_is_an_error_though_nothing_is_in_it() {
     let mut bench = bench(FakeUnit {
@@ -237,7 +239,7 @@ fn a_unit_that_never_shows_its_log_is_an_error_though_nothing_is_in_it() {
     assert!(error.ends_with("times, no answer"), "{error}");
 }
 
-/// It says it has logged something, and answers with the end of the log alone.
+/// A unit says that it has logged something, and answers with the end of the log alone.
 #[test]
 fn a_log_without_the_entries_it_should_have_is_an_error() {
     let mut bench = bench(FakeUnit {
@@ -351,7 +353,7 @@ fn failed_self_test_items_are_known_from_identity_and_status() {
     bench.run_ms(3_000);
     let both = SelfTest::TRA | SelfTest::MEMORY;
     assert_eq!(bench.rig().evidence().self_test, both);
-    // What it said before it was started again does not hold.
+    // The self-test result from before the restart does not hold.
     bench.link_mut().restart();
     bench.run_ms(4_000);
     assert_eq!(bench.rig().evidence().self_test, SelfTest::empty());
@@ -409,7 +411,7 @@ fn a_unit_that_restarts_repeatedly_is_not_reported_as_a_bad_line() {
     }
     bench.link_mut().dead = Channel::ALL.to_vec();
     bench.run_ms(200);
-    // It may be about to be heard again.
+    // The unit may be about to be heard again.
     assert_eq!(bench.rig().link_error(), None);
     bench.run_ms(9_000);
     let error = link_error(&bench);

@@ -1,4 +1,4 @@
-//! What goes over the wire: periods, budget, determinism, and what is said of a bad connection.
+//! Traffic on the wire: periods, budget, determinism, and what is said of a bad connection.
 
 use protocol::message::{Channel, DoorSide, RunningMode};
 use protocol::{Instant, SCAN};

@@ -75,7 +75,7 @@ impl BenchFaults {
         }
     }
 
-    /// What the bench reads of the unit's contacts.
+    /// Contacts of the unit as the bench reads them.
     pub fn read(&self, outputs: Outputs) -> Outputs {
         (outputs | self.read_closed) - self.read_open
     }
@@ -119,7 +119,7 @@ pub struct Wires {
 }
 
 impl Wires {
-    /// What arrives of one scan's inputs.
+    /// Inputs of one scan as they arrive.
     pub fn carry(&mut self, faults: &BenchFaults, input: &mut IoInput) {
         input.carrier_hz = faults.carrier_hz(input.carrier_hz);
         input.code_rate_chz = faults.rate_chz(input.code_rate_chz);

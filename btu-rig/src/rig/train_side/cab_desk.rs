@@ -1,4 +1,4 @@
-//! Cab desks and train lines: what drivers, doors and the brake loop give TCMS and the unit.
+//! Cab desks and train lines: inputs of TCMS and the unit from drivers, doors and the brake loop.
 
 use protocol::message::{CabEntries, Message, ModeSwitch, TrainLines, WheelEntry};
 use protocol::{Duration, Instant};
@@ -10,9 +10,9 @@ use crate::train::CarSet;
 
 use super::train_faults::CabDeskFaults;
 
-/// How long a button stays pressed.
+/// Time for which a button stays pressed.
 const PRESSED: Duration = Duration::from_ms(500);
-/// How often what is keyed in is sent, and how many times: few enough that a unit that does not know them logs nothing.
+/// Period and number of the frames of an entry: few enough that a unit which does not know them logs nothing.
 const ENTRY_PERIOD: Duration = Duration::from_ms(50);
 const ENTRY_FRAMES: u8 = 6;
 
@@ -21,19 +21,19 @@ const ENTRY_FRAMES: u8 = 6;
 pub struct CabDesk {
     /// Doors on the left and on the right.
     pub doors: [DoorState; 2],
-    /// What each door line says to the unit, whatever the doors are.
+    /// State that each door line shows the unit, whatever the doors do.
     pub line_said: [Option<bool>; DoorLine::ALL.len()],
     pub hcr: bool,
     pub maintenance_key: bool,
     pub mode_switch: ModeSwitch,
     pub lever: Lever,
-    /// Voltage of its potentiometer, whatever its position.
+    /// Voltage of the lever's potentiometer, whatever its position.
     pub volts: Option<f64>,
-    /// Its P and B contacts, whatever its position.
+    /// P and B contacts, whatever the lever's position.
     pub contacts: Option<(bool, bool)>,
     /// Reverser: 1, 0 or −1.
     pub reverser: i8,
-    /// What is wrong with desk and train lines.
+    /// Faults of desk and train lines.
     pub faults: CabDeskFaults,
     pub brakes_cut_out: CarSet,
     pub inverters_cut_out: CarSet,
@@ -46,7 +46,7 @@ pub struct CabDesk {
     wheel: Entry,
 }
 
-/// What was keyed in last, 0 = as the unit is configured, and what of it is still to be sent.
+/// Value keyed in last, 0 = as the unit is configured, and the frames of it still to be sent.
 #[derive(Clone, Copy, Debug, Default)]
 struct Entry {
     value: u16,
@@ -78,7 +78,7 @@ impl Entry {
 struct Switches(u16);
 
 impl Default for Switches {
-    /// The dead man is held and the line takes power.
+    /// The dead man is held, and the contact line takes regenerated power.
     fn default() -> Self {
         let mut switches = Self(0);
         switches.set(TrainSwitch::DeadMan, true);
@@ -126,8 +126,8 @@ impl Default for CabDesk {
 }
 
 impl CabDesk {
-    /// Everything back to where [`Self::default`] has it; loop and faults are the train's and stay. Another train number
-    /// than the configured one is taken back.
+    /// Restores [`Self::default`]; loop and faults belong to the train and stay. A train number that was keyed in is
+    /// taken back.
     pub fn reset(&mut self, now: Instant) {
         for entry in [&mut self.number, &mut self.wheel] {
             if entry.value != 0 {
@@ -162,7 +162,7 @@ impl CabDesk {
         self.wheel.key_in(now, diameter_01mm);
     }
 
-    /// What is keyed in, when it is due to be sent.
+    /// Entries that are due to be sent.
     pub fn entries_due(&mut self, now: Instant) -> [Option<Message>; 2] {
         let number = self.number.due(now);
         let wheel = self.wheel.due(now);
@@ -177,7 +177,6 @@ impl CabDesk {
         self.switches.set(switch, on);
     }
 
-    /// Whether a switch of the train is on.
     pub fn is_on(&self, switch: TrainSwitch) -> bool {
         self.switches.on(switch)
     }
@@ -190,7 +189,7 @@ impl CabDesk {
         }
     }
 
-    /// The loop as TCMS's relays have it.
+    /// Sets the brake loop as TCMS's relays have it.
     pub fn set_loop(&mut self, energised: bool, fed: bool) {
         self.eb_loop = energised;
         self.eb_loop_fed = fed;
@@ -276,7 +275,7 @@ impl CabDesk {
             emergency_button: self.is_on(TrainSwitch::Button1),
             forced_release: self.is_on(TrainSwitch::ForcedRelease),
         };
-        // Nobody drives from there: its desk is as it was left.
+        // Nobody drives from the other cab: its desk is as it was left.
         let other = CabInputs {
             hcr: self.is_on(TrainSwitch::OtherCab),
             controller: tcms.at(Lever::Neutral),
@@ -334,7 +333,7 @@ mod tests {
         assert!(!desk.lines(Instant::ZERO).contains(TrainLines::DOORS_CLOSED));
     }
 
-    /// A contact of one side that is bridged says closed, also to the line of all doors; the locks do not.
+    /// A bridged contact of one side says closed, also to the line of all doors; the lock line still says unlocked.
     #[test]
     fn each_side_has_lines_of_its_own() {
         let sides = TrainLines::LEFT_CLOSED
@@ -356,7 +355,7 @@ mod tests {
         assert!(!desk.doors_proved());
     }
 
-    /// What a line says to the unit is no matter of the doors, nor of TCMS.
+    /// A line can show the unit another state than the doors have and TCMS reads.
     #[test]
     fn a_line_may_say_what_the_doors_do_not() {
         let mut desk = CabDesk::default();

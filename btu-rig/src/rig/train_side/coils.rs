@@ -15,17 +15,16 @@ const SAMPLE_HZ: f64 = COIL_SAMPLE_HZ as f64;
 /// Speed at which a marker passes that was asked for, m/s.
 const ASKED_MPS: f64 = 20.0;
 
-/// What is in the coils in one scan.
+/// Content of the coils in one scan.
 pub struct InCoils<'a> {
     /// Both codes in the ATP antenna: carrier, Hz, code rate, Hz, level, mV.
     pub codes: [(f64, f64, f64); 2],
     /// Frames that the wayside sends through the loop.
     pub twc: &'a [u8],
-    /// How the train moves over its markers.
+    /// Motion of the train over its markers.
     pub motion: &'a Motion,
     /// Number and place of each marker along the way.
     pub markers: &'a mut dyn Iterator<Item = (u8, f64)>,
-    /// A marker that was asked for.
     pub asked_marker: Option<u8>,
 }
 
@@ -181,7 +180,7 @@ impl Coils {
         [line_a, line_b]
     }
 
-    /// What disturbs a coil comes on top; silence is not sent.
+    /// Adds the disturbances of a coil; silence is not sent.
     fn finish(
         &mut self,
         now: Instant,

@@ -43,7 +43,7 @@ impl DoorGear {
         }
     }
 
-    /// An obstacle stops so many closings of a side.
+    /// Number of closings of a side that an obstacle stops.
     pub fn obstruct(&mut self, left: bool, times: u8) {
         self.sides[usize::from(!left)].obstacles = times;
     }
@@ -63,7 +63,7 @@ impl DoorGear {
 impl Drive {
     fn step(&mut self, opens: bool, closes: bool, data: &DoorData) -> DoorState {
         if opens {
-            // It is taken out while the doors open again.
+            // The obstacle is taken out while the doors open again.
             self.obstacles -= u8::from(self.blocked);
             self.blocked = false;
             self.open = (self.open + SCAN.as_secs() / data.opening_s).min(1.0);

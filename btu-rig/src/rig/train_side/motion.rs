@@ -67,7 +67,7 @@ impl Motion {
         moving.copied().next().unwrap_or_default()
     }
 
-    /// How long before the scan's end the wheel had rolled up to `distance_m`, s.
+    /// Time before the scan's end at which the wheel had rolled up to `distance_m`, s.
     pub fn age_of_distance_s(&self, distance_m: f64) -> f64 {
         let mut distance_left = distance_m - self.distance_before_m;
         let mut time_left = self.seconds;
@@ -83,7 +83,7 @@ impl Motion {
         0.0
     }
 
-    /// How long before the scan's end the train was at `position_m`, s; `None` if it was not
+    /// Time before the scan's end at which the train was at `position_m`, s; `None` if it was not
     /// reached in this scan.
     pub fn age_of_position_s(&self, position_m: f64) -> Option<f64> {
         let (from, to) = (self.position_before_m, self.position_m);

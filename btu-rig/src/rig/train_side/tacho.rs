@@ -29,7 +29,7 @@ pub struct Tacho {
     base_distance_m: f64,
     base_phase: f64,
     phase: f64,
-    /// How far each tooth of a turn lies from its place, pitches; none = all lie right.
+    /// Distance of each tooth of a turn from its place, pitches; none = all are in place.
     teeth: Vec<f64>,
     /// The last tooth that passed.
     passed: f64,
@@ -75,7 +75,7 @@ impl Tacho {
         self.await_noise();
     }
 
-    /// Sets how a good channel with a wheel of so many teeth differs from an ideal one.
+    /// Sets how a good channel with a wheel of this number of teeth differs from an ideal one.
     pub fn set_sensors(&mut self, sensors: &Sensors, teeth: u32, random: &mut Random) {
         let places = (0..teeth).map(|_| sensors.tooth_pitch * normal(random));
         self.teeth = places
@@ -102,7 +102,7 @@ impl Tacho {
         }
     }
 
-    /// How far a tooth lies from its place, pitches.
+    /// Distance of a tooth from its place, pitches.
     fn displaced(&self, tooth: f64) -> f64 {
         let place = tooth.rem_euclid(self.teeth.len().max(1) as f64);
         self.teeth.get(place as usize).copied().unwrap_or_default()
@@ -331,7 +331,7 @@ mod tests {
         );
         let var = pitches.iter().map(|p| (p - 40_500.0).powi(2)).sum::<f64>();
         let sigma = (var / pitches.len() as f64).sqrt() / 40_500.0;
-        // Of the difference of two places, each 5 %.
+        // Each pitch is the difference of two places, each uncertain by 5 %.
         assert!((sigma - 0.0707).abs() < 0.015, "{sigma}");
     }
 

@@ -1,4 +1,4 @@
-//! TCMS's end of the RS-485 link to the unit: what it sends each cycle.
+//! TCMS's end of the RS-485 link to the unit: the frame of each cycle.
 
 use protocol::message::{TcmsToAtc, TcmsToAtcBits};
 use protocol::{CYCLE, Duration, Instant};
@@ -9,12 +9,12 @@ use crate::tcms::TcmsView;
 /// Age of the last moved alive counter at which TCMS does not count as sending.
 const SILENT: Duration = Duration::from_ms(500);
 
-/// What TCMS sees of the train, beside what it does itself.
+/// State of the train that TCMS reads.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TrainSeen {
     /// The service brake is applied.
     pub braking: bool,
-    /// Door line, as its contact says.
+    /// Doors are closed, by the contact of the door line.
     pub doors_closed: bool,
     /// Head control relay of the unit's cab.
     pub hcr: bool,
@@ -24,12 +24,12 @@ pub struct TrainSeen {
 pub struct TcmsPort {
     /// Condition of the link as the procedure wants it.
     pub condition: TcmsCondition,
-    /// What is wrong with it.
+    /// Condition of the port, if it is faulty.
     pub fault: Option<TcmsCondition>,
     pub ato_enable: bool,
     /// Passengers, kg.
     pub load_kg: f64,
-    /// Passengers unless something else is set, kg.
+    /// Passengers by default, kg.
     pub usual_load_kg: f64,
     alive: u8,
     next_due: Instant,
@@ -37,7 +37,7 @@ pub struct TcmsPort {
 }
 
 impl Default for TcmsPort {
-    /// In order, ATO permitted, no passengers.
+    /// A TCMS in order: ATO permitted, no passengers.
     fn default() -> Self {
         Self {
             condition: TcmsCondition::Good,
@@ -53,19 +53,19 @@ impl Default for TcmsPort {
 }
 
 impl TcmsPort {
-    /// Good, ATO permitted, loaded as usual; the alive counter goes on.
+    /// Restores a good link, permission of ATO and the default load; the alive counter goes on.
     pub fn reset(&mut self) {
         self.condition = TcmsCondition::Good;
         self.ato_enable = true;
         self.load_kg = self.usual_load_kg;
     }
 
-    /// Nothing comes through, either way.
+    /// Whether nothing comes through, either way.
     pub fn silent(&self) -> bool {
         self.condition() == TcmsCondition::Silent
     }
 
-    /// Frames are sent whose alive counter moves.
+    /// Whether frames with a moving alive counter are sent.
     pub fn alive(&self, now: Instant) -> bool {
         self.moved.is_some_and(|at| now.since(at) < SILENT)
     }

@@ -9,18 +9,18 @@ use crate::train::{CarSet, EquipmentFaults, Role, TrainData};
 
 use super::bench_faults::BenchFaults;
 
-/// What is wrong with desk and train lines.
+/// Faults of desk and train lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CabDeskFaults {
-    /// What all door lines say, whatever the doors do.
+    /// State that all door lines show, whatever the doors do.
     pub doors: Option<bool>,
-    /// What the closed contacts of the left and of the right say, whatever the doors do.
+    /// State that the closed contacts of the left and of the right show, whatever the doors do.
     pub side_doors: [Option<bool>; 2],
     /// State of a failed head control relay, independent of its command.
     pub hcr: Option<bool>,
     /// Voltage of the master controller's potentiometer, whatever its position.
     pub volts: Option<f64>,
-    /// How much more it gives than its position says, V.
+    /// Voltage above that of the lever's position, V.
     pub volts_offset: f64,
     /// The main reservoir's pressure switch, whatever the pressure.
     pub main_reservoir_low: Option<bool>,
@@ -38,7 +38,7 @@ pub struct TrainFaults {
     pub equipment: EquipmentFaults,
     /// Desk and train lines.
     pub desk: CabDeskFaults,
-    /// What becomes of TCMS's frames, if anything.
+    /// Fault of TCMS's frames, if any.
     pub tcms: Option<TcmsCondition>,
     /// TCMS does not change the cabs.
     pub cabs_stay: bool,
@@ -48,7 +48,8 @@ pub struct TrainFaults {
 
 /// Fault modes around the unit, and how much of each acts.
 ///
-/// Each has a generator of its own: whatever is injected, the bench draws as without it.
+/// Each fault has a generator of its own: whatever is injected, the other random draws of the bench
+/// stay the same.
 #[derive(Debug)]
 pub struct Injected {
     modes: Vec<ActiveFault>,
@@ -73,7 +74,7 @@ impl Injected {
         }
     }
 
-    /// Those of `modes` that are not in the unit; their times count from `from`.
+    /// Injects those of `modes` that act outside the unit; their times count from `from`.
     pub fn begin(&mut self, modes: &[FaultMode], from: Instant) {
         self.from = from;
         let random = &mut self.random;
@@ -91,7 +92,7 @@ impl Injected {
             .collect();
     }
 
-    /// What is wrong now, when that has changed; the wheels turn at `rims`.
+    /// Faults that act now, if they have changed; the wheels turn at `rims`.
     pub fn step(&mut self, now: Instant, rims: Speed) -> Option<TrainFaults> {
         if now < self.from {
             return None;

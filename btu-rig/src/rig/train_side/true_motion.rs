@@ -13,11 +13,8 @@ pub struct TrueMotion {
     pub to_stop_m: Option<f64>,
     /// Traction power at the wheels, W; this and the forces are 0 while generators turn the wheels.
     pub tractive_power_w: f64,
-    /// Traction, N.
     pub traction_n: f64,
-    /// Electric brake, N.
     pub electric_brake_n: f64,
-    /// Air brake, N.
     pub air_brake_n: f64,
     /// A car slips or slides.
     pub sliding: bool,
@@ -38,7 +35,7 @@ pub struct SpeedHistory {
 }
 
 impl Default for SpeedHistory {
-    /// At rest for long.
+    /// History of a train at rest for long.
     fn default() -> Self {
         Self {
             speeds_mps: [0.0; HISTORY],

@@ -11,7 +11,7 @@ use super::motion::Motion;
 /// Slowing down when a step or a run ends: brisk, yet believable for a wheel [default].
 const SAFE_DECEL_MPS2: f64 = 3.0;
 
-/// What rounding may leave of a segment, s: its end belongs to the scan that reached it.
+/// Rest of a segment by rounding, s: its end belongs to the scan that reached it.
 const RESIDUE_S: f64 = 1e-9;
 
 /// A part of a plan at constant acceleration.
@@ -22,7 +22,7 @@ struct Segment {
     end_speed_mps: f64,
 }
 
-/// What the wheel is about to do; when no segment is left it keeps its speed.
+/// Segments that the wheel still has to do; without one the wheel keeps its speed.
 #[derive(Clone, Copy, Debug)]
 struct Plan {
     segments: [Segment; 3],
@@ -224,12 +224,12 @@ impl Wheel {
         self.plan.next >= self.plan.segments.len()
     }
 
-    /// It does not turn and is not about to.
+    /// The wheel does not turn and is not about to.
     pub fn standing(&self) -> bool {
         self.speed_mps == 0.0 && self.settled()
     }
 
-    /// It turns backward, or would.
+    /// The wheel turns backward, or would.
     pub fn backward(&self) -> bool {
         self.backward
     }
@@ -239,7 +239,7 @@ impl Wheel {
         Speed::from_mps(self.speed_mps)
     }
 
-    /// Its speed, m/s, forward positive.
+    /// Speed at the rim, m/s, forward positive.
     pub fn velocity_mps(&self) -> f64 {
         if self.backward {
             -self.speed_mps

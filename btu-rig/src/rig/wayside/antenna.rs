@@ -15,11 +15,11 @@ pub const MAX_RATE_HZ: f64 = 655.0;
 /// Time from one frame that tells of a second code to the next.
 const CROSSTALK_PERIOD: Duration = Duration::from_ms(50);
 
-/// What is put into the antenna, and what arrives there.
+/// Signals put into the antenna, and signals that arrive there.
 #[derive(Debug)]
 pub struct Antenna {
     wanted: AntennaCommand,
-    /// That of a neighbouring track circuit.
+    /// Signal of a neighbouring track circuit.
     second: Second,
     sensors: Sensors,
     random: Random,
@@ -42,7 +42,7 @@ struct AntennaCommand {
 #[derive(Debug, Default)]
 struct Second {
     signal: AntennaCommand,
-    /// It was sent, and its end was not.
+    /// The signal was sent, and its end was not.
     told: bool,
     due: Instant,
 }
@@ -114,7 +114,7 @@ impl Antenna {
         })
     }
 
-    /// What arrives of both signals: carrier, Hz, code rate, Hz, level, mV.
+    /// Both signals as they arrive: carrier, Hz, code rate, Hz, level, mV.
     pub fn arriving(&self) -> [(f64, f64, f64); 2] {
         [&self.wanted, &self.second.signal].map(|signal| {
             (
@@ -186,7 +186,7 @@ pub fn antenna_signal(carrier: f64, rate: f64, level: f64) -> Result<(f64, f64, 
     ))
 }
 
-/// A frequency that is there is off by so much; one that is not stays away.
+/// Adds to a frequency that is there; one that is not stays away.
 fn off_by(hz: f64, off_hz: f64) -> f64 {
     if hz > 0.0 { hz + off_hz } else { 0.0 }
 }

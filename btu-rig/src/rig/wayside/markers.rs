@@ -17,14 +17,14 @@ const MAX_PENDING: usize = 8;
 pub struct Markers {
     /// Markers along the way, by position on the rig's own scale.
     along_m: [Option<f64>; 4],
-    /// How far from there each really lies.
+    /// Distance of each marker from its place.
     offsets_m: [f64; 4],
     /// Marker and age at the coming stamp, µs, and whether it was asked for instead of passed.
     pending: VecDeque<(u8, f64, bool)>,
     last: u8,
     edges: u8,
     age_us: f64,
-    /// What was asked for and pulses in this scan.
+    /// Marker that was asked for and pulses in this scan.
     asked: Option<u8>,
 }
 
@@ -64,7 +64,7 @@ impl Markers {
             .map(|at| Some(position_m + at - section.start_m));
     }
 
-    /// Moves one of the markers along the way by so many metres, or takes it away.
+    /// Moves one of the markers along the way by this number of metres, or takes it away.
     ///
     /// # Errors
     /// When it does not lie along the way.

@@ -1,4 +1,4 @@
-//! What the way gives the unit: speed codes in its antenna, markers, the section, station data and orders.
+//! Wayside inputs of the unit: speed codes in its antenna, markers, the section, station data and orders.
 
 mod antenna;
 mod markers;

@@ -5,7 +5,7 @@ use protocol::line::Section;
 
 use super::step_profile::StepProfile;
 
-/// Further behind a section's start than any train reaches, m.
+/// A position farther behind a section's start than any train reaches, m.
 const FAR_BEHIND_M: f64 = -1e4;
 
 /// A section laid along the track ahead of the rig.
@@ -14,15 +14,15 @@ pub struct Track {
     section: Section,
     /// Position of the section's start on the rig's own scale, m.
     starts_at_m: f64,
-    /// Gradient, ‰, uphill positive; level before the first that is listed.
+    /// Gradient, ‰, uphill positive; level before the first listed gradient.
     gradient: StepProfile,
     /// Curvature, 1/m.
     curvature: StepProfile,
-    /// 1 in the open air; none of it where no tunnels are listed.
+    /// 1 in the open air, 0 in a tunnel; 0 everywhere on a section without a list of tunnels.
     open_air: StepProfile,
 }
 
-/// What lies under the train, mean over its weight.
+/// Track under the train, mean over its weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct UnderTrain {
     /// Gradient, ‰, uphill positive.
@@ -63,13 +63,14 @@ impl Track {
         position_m - self.starts_at_m + self.section.start_m
     }
 
-    /// Distance from there to the stop point, m; negative past it.
+    /// Distance from a position on the rig's own scale to the stop point, m; negative past the stop
+    /// point.
     pub fn to_stop_m(&self, position_m: f64) -> f64 {
         self.section.stop_m - self.in_section_m(position_m)
     }
 
-    /// What lies under a train of these cars, length in m and share of the train's weight, whose
-    /// head is at `position_m`.
+    /// Mean track under a train whose head is at `position_m`; `cars` = length in m and share of
+    /// the train's weight of each car.
     pub fn under(&self, position_m: f64, cars: &[(f64, f64)]) -> UnderTrain {
         let mut under = UnderTrain::default();
         let (mut heights, mut turns) = (self.gradient.descend(), self.curvature.descend());
@@ -97,7 +98,8 @@ impl Track {
         neutral.any(|stretch| (stretch.from_m..stretch.to_m).contains(&at))
     }
 
-    /// Name of the speed code under a head at `position_m`; the first one before it begins.
+    /// Name of the speed code under a head at `position_m`; before the first code begins, the
+    /// first.
     pub fn speed_code(&self, position_m: f64) -> Option<&str> {
         let at = self.in_section_m(position_m);
         let codes = &self.section.speed_codes;

@@ -56,7 +56,7 @@ fn the_other_cars_give_all_of_a_full_train_without_t1() {
     }
 }
 
-/// What an inverter should give by now and does not comes as air, of its own pair.
+/// An effort that an inverter should give by now and does not give comes as air of its own pair.
 #[test]
 fn air_makes_up_for_an_inverter_that_fails_to_brake() {
     let consist = line6(160_000.0);

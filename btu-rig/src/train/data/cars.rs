@@ -25,11 +25,11 @@ pub struct CarsData {
     pub service_brake: AirBrake,
     /// Emergency brake.
     pub emergency_brake: EmergencyBrake,
-    /// What resists motion.
+    /// Resistance to motion.
     pub resistance: Resistance,
     /// Slip, slide and the protection against it.
     pub wheels: Wheels,
-    /// Its doors.
+    /// Doors of the train.
     #[serde(default)]
     pub doors: DoorData,
     /// Times and thresholds of its TCMS.
@@ -92,7 +92,7 @@ impl Traction {
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ElectricBrake {
-    /// Its greatest force over the car's weight [S3 eq. 6].
+    /// Greatest force of the brake over the car's weight [S3 eq. 6].
     pub adhesion_limit: f64,
     /// Speed up to which it is there, km/h; constant power beyond.
     pub full_to_kmh: f64,
@@ -126,7 +126,7 @@ pub struct AirBrake {
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct EmergencyBrake {
-    /// Its deceleration, km/h/s.
+    /// Deceleration, km/h/s.
     pub kmh_per_s: f64,
     /// Opening of the loop to the first force, s.
     pub dead_time_s: f64,
@@ -136,7 +136,7 @@ pub struct EmergencyBrake {
     pub release_s: f64,
 }
 
-/// What resists motion.
+/// Resistance to motion.
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Resistance {
@@ -146,7 +146,7 @@ pub struct Resistance {
     pub starting_kmh: f64,
     /// Rolling resistance, kgf/t.
     pub rolling_kgf_t: f64,
-    /// Its rise with speed, kgf/t per km/h.
+    /// Rise of rolling resistance with speed, kgf/t per km/h.
     pub rolling_kgf_t_per_kmh: f64,
     /// Air resistance of the whole train, kgf per (km/h)².
     pub air_kgf_per_kmh2: f64,
@@ -154,7 +154,7 @@ pub struct Resistance {
     pub tunnel_kgf_t: f64,
     /// Curve resistance times radius, kgf·m/t.
     pub curve_kgf_m_t: f64,
-    /// In place of rolling and air resistance, which are 0 then.
+    /// Davis formula in place of rolling and air resistance, which are 0 then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub davis: Option<Davis>,
 }
@@ -200,7 +200,7 @@ pub struct CarData {
     pub length_m: f64,
     /// Empty mass, kg.
     pub empty_kg: f64,
-    /// Of that its bogies, kg.
+    /// Mass of the bogies within that, kg.
     pub bogies_kg: f64,
     /// Rotating parts as mass, kg.
     pub rotating_kg: f64,
@@ -222,7 +222,7 @@ impl CarData {
     }
 }
 
-/// Whether a car is driven.
+/// Kind of car: with or without motors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -264,7 +264,7 @@ impl CarsData {
         cars
     }
 
-    /// How inverters follow a demand.
+    /// Response of the inverters to a demand.
     pub(crate) fn motor_times(&self) -> Times {
         Times {
             dead_s: self.traction.dead_time_s,

@@ -12,7 +12,7 @@ pub struct DoorData {
     pub closing_s: f64,
 }
 
-/// Those of line 6, for trains without this table.
+/// Doors of line 6, for trains without this table.
 impl Default for DoorData {
     fn default() -> Self {
         Self {

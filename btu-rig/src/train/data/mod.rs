@@ -1,13 +1,10 @@
-//! Train files (`scripts/trains/`): read, checked, and kept as data. A train is a point mass or a train of
-//! cars.
+//! Data of a train, a point mass or a train of cars, as in the files of `scripts/trains/`.
 
 mod cars;
 mod doors;
 
-use protocol::config::ConfigError;
 use serde::{Deserialize, Serialize};
 
-use super::check;
 use crate::tcms::TcmsData;
 
 pub use cars::{
@@ -61,42 +58,14 @@ pub struct IdealData {
     pub parking_share: f64,
     /// Gradients act on it.
     pub gradients: bool,
-    /// Its doors.
+    /// Doors of the train.
     #[serde(default)]
     pub doors: DoorData,
     /// Times and thresholds of its TCMS.
     pub tcms: TcmsData,
 }
 
-/// The one key all models have.
-#[derive(Deserialize, schemars::JsonSchema)]
-struct Kind {
-    model: String,
-}
-
 impl TrainData {
-    /// Reads and checks a train file.
-    ///
-    /// # Errors
-    /// The first thing wrong: syntax with line and column, or a train that cannot be.
-    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
-        let Kind { model } = parse(text)?;
-        let data = match model.as_str() {
-            "ideal" => Self::Ideal(parse(text)?),
-            "cars" => Self::Cars(parse(text)?),
-            _ => {
-                return Err(ConfigError::Conflict(format!(
-                    "model \"{model}\" must be ideal or cars"
-                )));
-            }
-        };
-        match &data {
-            Self::Ideal(ideal) => check::ideal(ideal)?,
-            Self::Cars(cars) => check::cars(cars)?,
-        }
-        Ok(data)
-    }
-
     /// The train of eight cars of line 6 (S3).
     ///
     /// # Panics
@@ -129,7 +98,7 @@ impl TrainData {
         }
     }
 
-    /// Its full service brake, km/h/s.
+    /// Deceleration of the full service brake, km/h/s.
     pub fn service_kmh_per_s(&self) -> f64 {
         match self {
             Self::Ideal(data) => data.service_kmh_per_s,
@@ -137,7 +106,6 @@ impl TrainData {
         }
     }
 
-    /// Its doors.
     pub fn doors(&self) -> &DoorData {
         match self {
             Self::Ideal(data) => &data.doors,
@@ -165,10 +133,6 @@ impl TrainData {
             }
         }
     }
-}
-
-fn parse<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ConfigError> {
-    toml::from_str(text).map_err(|e| ConfigError::Syntax(e.to_string()))
 }
 
 fn built_in(text: &str) -> TrainData {

@@ -87,7 +87,7 @@ fn a_step_that_continues_is_repeated_with_those_it_continues_from() {
     assert_eq!(outcome.fake.applied, [ON, OFF, OFF, ON, OFF, OFF]);
 }
 
-/// What a step shows when it is run again is not hidden.
+/// A failure of a step that is run again is not hidden.
 #[test]
 fn a_step_that_fails_when_it_is_run_again_is_told() {
     let script = format!(
@@ -232,7 +232,8 @@ fn what_comes_of_a_pause_of_both_is_not_held_against_the_unit() {
     assert_eq!(overall(&outcome), Verdict::Failed);
 }
 
-/// What the unit did before the computer stood still fails the procedure, and is reported, although the step is repeated.
+/// A failure of the unit before the computer stood still fails the procedure, and is reported, although the step is
+/// repeated.
 #[test]
 fn what_came_before_the_pause_counts_and_is_told() {
     let script = format!("{HEAD}look('b', do = wait(s(2)))");

@@ -88,7 +88,7 @@ impl Driver for Fake {
     }
 }
 
-/// What a test may change before each scan.
+/// State that a test may change before each scan.
 pub struct World<'a> {
     pub scan: u32,
     pub sample: Sample,
@@ -217,7 +217,7 @@ pub const HEAD: &str =
 pub const ON: Stimulus = Stimulus::MaintenanceKey { on: true };
 pub const OFF: Stimulus = Stimulus::MaintenanceKey { on: false };
 
-/// As the English text that tests compare.
+/// Findings as the English text that tests compare.
 fn told(findings: &Findings) -> &'static str {
     findings.to_string().leak()
 }

@@ -112,7 +112,8 @@ fn motion_that_does_not_end_is_an_error() {
     );
 }
 
-/// What is left is neither run nor reported, clean-up is, and the verdict is that of what was run.
+/// The rest is neither run nor reported; clean-up is run, and the verdict covers the steps that
+/// were run.
 #[test]
 fn a_procedure_can_be_left_between_two_steps() {
     let script = format!(

@@ -1,4 +1,5 @@
-//! What the runner may not judge: a lost link, a stalled tester, an unread log, lost frames.
+//! Situations that the runner may not judge: a lost link, a stalled tester, an unread log, lost
+//! frames.
 
 use btu_rig::procedure::link_trouble::LinkTrouble;
 use btu_rig::procedure::{Finding, LogState, RunEvent, Verdict};

@@ -30,7 +30,7 @@ fn per_car() -> BoxedStrategy<PerCar> {
     prop_oneof![Just([0.0; MAX_CARS]), prop::array::uniform12(number())].boxed()
 }
 
-/// More often sound than not, so that it comes to power at all.
+/// A condition that holds seldom, so that the train comes to power at all.
 fn seldom() -> impl Strategy<Value = bool> {
     prop::bool::weighted(0.05)
 }

@@ -75,7 +75,7 @@ impl Bench {
         }
     }
 
-    /// The same in automatic, under an order of ATO.
+    /// A bench in automatic, under an order of ATO.
     pub fn automatic(bits: AtcToTcmsBits, effort: i16) -> Self {
         let mut bench = Self::new();
         bench.inputs.cabs[0].mode_switch = ModeSwitch::Automatic;

@@ -7,7 +7,8 @@ use protocol::message::{AtcToTcmsBits, ModeSwitch, Outputs};
 
 use super::bench::{Bench, order};
 
-/// It masks P, value and electric brake; cut out, it masks itself and nothing else.
+/// The emergency brake masks P, value and electric brake; cut out, it masks itself and nothing
+/// else.
 #[test]
 fn the_emergency_brake_masks_power_and_value_unless_cut_out() {
     for lever in [Lever::Power(4), Lever::Brake(4)] {
@@ -69,7 +70,7 @@ fn a_brake_at_speed_never_becomes_the_holding_brake() {
     assert!(!bench.view().holding);
 }
 
-/// By message or by contact; P is masked for as long.
+/// ATO asks for the holding brake by message or by contact; P is masked for as long.
 #[test]
 fn ato_asks_for_it_and_is_refused_power_meanwhile() {
     let asks = AtcToTcmsBits::POWER | AtcToTcmsBits::HOLDING_BRAKE;

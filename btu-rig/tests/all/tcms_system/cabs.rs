@@ -101,7 +101,7 @@ fn the_dead_man_acts_after_its_time_and_only_by_hand() {
     bench.inputs.cabs[0].dead_man = false;
     bench.run(10_000);
     assert!(!bench.full_service() && bench.events().is_empty());
-    // Who takes the train over has the whole time to reach for it.
+    // The cab that takes the train over has the whole time for the dead man.
     bench.inputs.cabs[0].mode_switch = ModeSwitch::Manual;
     bench.run(2400);
     assert!(!bench.full_service());

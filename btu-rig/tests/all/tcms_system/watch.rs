@@ -1,4 +1,4 @@
-//! What TCMS finds wrong with the equipment, and how that ends.
+//! Failures of the equipment that TCMS finds, and their end.
 
 use btu_rig::lever::Lever;
 use btu_rig::tcms::{Lamps, PowerCuts};

@@ -57,7 +57,7 @@ pub struct MergeCounts {
     pub refused: Refusals,
 }
 
-/// How another file is a copy.
+/// Relation of a copy to the other file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CopyOf {
     /// The file id that both have.
@@ -79,7 +79,7 @@ struct Merge<'a> {
     of_nothing: BTreeSet<i64>,
     /// Runs of theirs that are refused, with all that belongs to them.
     refused_runs: BTreeSet<i64>,
-    /// What is known of faults of theirs.
+    /// State here of the other file's faults.
     faults_here: BTreeMap<i64, LocalFault>,
     /// Ids of their runs, events and notes that are left out.
     left_out: BTreeSet<Vec<u8>>,
@@ -379,7 +379,7 @@ fn fits(of: TableId, entry: &Entry, why: Option<String>) -> SqlResult<()> {
     }
 }
 
-/// What becomes of a fault of theirs.
+/// State here of a fault of the other file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum LocalFault {
     Known,

@@ -21,9 +21,9 @@ struct Last {
 }
 
 impl Merge<'_> {
-    /// Adds their entries. Where a copy of the file forked, ours stay and theirs are left out from there on,
-    /// because they would not fit. The same holds from an entry on whose row was refused, or whose content
-    /// differs from what is stored here.
+    /// Adds the entries of the other file's chains. Where a copy of the file forked, the entries here stay
+    /// and those of the other file are left out from there on, because they would not fit. The same holds
+    /// from an entry on whose row was refused, or whose content differs from what is stored here.
     pub(super) fn seals(&mut self) -> SqlResult<()> {
         let mut insert = self
             .conn

@@ -1,5 +1,5 @@
-//! Which runs of a file to be merged are accepted: those that match their seals, refer to rows that are there, and are
-//! the same as here.
+//! Acceptance of runs from a file to be merged: a run must match its seals, refer to existing rows, and equal the
+//! run here.
 
 use super::{Entry, Merge};
 use crate::backend::{Backend, SqlError, SqlResult, values};
@@ -53,7 +53,7 @@ pub(super) fn is_unwritten_remainder(theirs: &Backend, run: i64) -> SqlResult<bo
     Ok(theirs.first(rest, &values![run], |_| Ok(()))?.is_some())
 }
 
-/// How a run differs from its seals, if it does.
+/// Difference between a run and its seals, if there is one.
 pub(super) fn seal_mismatch(theirs: &Backend, run: i64) -> SqlResult<Option<String>> {
     let is_over = "SELECT 1 FROM run WHERE seq = ?1 AND verdict IS NOT NULL";
     let is_over = theirs.first(is_over, &values![run], |_| Ok(()))?.is_some();
@@ -76,7 +76,7 @@ pub(super) fn seal_mismatch(theirs: &Backend, run: i64) -> SqlResult<Option<Stri
     Ok(Some(reason.to_owned()))
 }
 
-/// Why a row that does not fit its seal is refused.
+/// Reason for refusing a row that does not fit its seal.
 const CHANGED: &str = "it was changed after it was sealed";
 
 /// Why an event of theirs is not taken, if it does not fit a seal that it has there.
@@ -90,7 +90,7 @@ pub(super) fn event_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Optio
     Ok(None)
 }
 
-/// The same of a note on a run.
+/// Why a note of the other file is not taken, if the note does not fit a seal there.
 pub(super) fn note_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option<String>> {
     for (payload, digest) in seals_of(theirs, "note", &entry.id)? {
         if note_digest(theirs, entry.seq, &payload)? != digest[..] {
@@ -100,7 +100,8 @@ pub(super) fn note_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option
     Ok(None)
 }
 
-/// The same of a trace, whose digest the seal of its run has.
+/// Why a trace of the other file is not taken, if its digest differs from the one in the seal of
+/// its run.
 pub(super) fn trace_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option<String>> {
     let (seq, run) = (entry.seq, entry.parent);
     let read = "SELECT id, recording FROM trace WHERE seq = ?1";
@@ -125,7 +126,7 @@ pub(super) fn trace_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Optio
     Ok(None)
 }
 
-/// The same of the recordings of a run, which come together.
+/// Why the recordings of a run, which come together, are not taken, if one differs from its seal.
 pub(super) fn recordings_mismatch(theirs: &Backend, run: i64) -> SqlResult<Option<String>> {
     let sealed = payloads(theirs, run)?;
     for ordinal in trace::recordings(theirs, run)? {
@@ -140,7 +141,7 @@ pub(super) fn recordings_mismatch(theirs: &Backend, run: i64) -> SqlResult<Optio
     Ok(None)
 }
 
-/// What the seals of a run say of its traces and recordings.
+/// Traces and recordings that the seals of a run list.
 fn payloads(theirs: &Backend, run: i64) -> SqlResult<Vec<RunPayload>> {
     let sealed = seals(theirs, run)?;
     let payloads = sealed

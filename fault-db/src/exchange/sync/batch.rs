@@ -18,7 +18,7 @@ pub(super) struct Entry {
     row: i64,
     /// `None` if it was pruned since.
     id: Option<Vec<u8>>,
-    /// Of a run the digests of its seals, of a trace its checksum.
+    /// Digests of the seals of a run; checksum of a trace.
     digests: BTreeSet<Vec<u8>>,
 }
 
@@ -66,10 +66,10 @@ pub(super) fn last(file: &Backend) -> SqlResult<i64> {
     Ok(file.first(last, &[], |row| row.get(0))?.unwrap_or_default())
 }
 
-/// What the server has of a run or trace.
+/// Copy of a run or trace on the server.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ServerCopy {
-    /// The same, complete.
+    /// The server has the whole of it.
     Whole,
     /// Part of it, or unknown.
     Perhaps,
@@ -189,7 +189,7 @@ impl Batch {
     }
 }
 
-/// What the server has of the entries' runs and traces. A sealed run was sent complete.
+/// Copies on the server of the entries' runs and traces. A sealed run was sent complete.
 fn known(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Vec<u8>, ServerCopy>> {
     let ours: BTreeMap<&[u8], &BTreeSet<Vec<u8>>> = (entries.iter())
         .filter(|entry| matches!(entry.of, TableId::Run | TableId::Trace))

@@ -109,7 +109,7 @@ impl Cursors {
         }
     }
 
-    /// What both sides have stored.
+    /// Cursors of what both sides have stored.
     pub fn minimum(self, other: Self) -> Self {
         cursors(
             self.sent.min(other.sent),

@@ -66,7 +66,7 @@ pub struct SyncOutcome {
     pub bytes: u64,
     /// Entries that wait for the next sync.
     pub waiting: u64,
-    /// How far the laptop's clock is ahead of the server's, µs.
+    /// Time by which the laptop's clock is ahead of the server's, µs.
     pub clock_offset_us: i64,
     /// Rows with the same id and different content on both sides; both were left as they are.
     pub different: Vec<Difference>,
@@ -77,7 +77,7 @@ pub struct SyncOutcome {
     pub refused: Refusals,
     /// Faults of the file in conflict.
     pub conflicts: Vec<StateConflict>,
-    /// Whether the caller stopped it.
+    /// Whether the caller stopped the sync.
     pub stopped: bool,
 }
 
@@ -86,7 +86,7 @@ pub struct SyncOutcome {
 pub struct Difference {
     /// run, trace or chain.
     pub what: &'static str,
-    /// Its id; of a chain of seals that of its file.
+    /// Id of the row; for a chain of seals the id of its file.
     pub id: Id,
 }
 

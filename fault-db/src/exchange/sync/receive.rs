@@ -20,7 +20,7 @@ pub(super) struct PullScope {
     pub until: i64,
     /// Only of faults that are new to the laptop, however old the event.
     pub fresh: bool,
-    /// Also those that the laptop sent itself: its file was restored from a backup.
+    /// Rows that the laptop sent itself are received, too: its file was restored from a backup.
     pub own_events: bool,
 }
 
@@ -89,7 +89,7 @@ pub(super) fn add(file: &Backend, conn: &Connection, set: &ChangeSet) -> SqlResu
     let last = "SELECT coalesce(max(seq), 0) FROM outbox";
     let last: Option<i64> = file.first(last, &[], |row| row.get(0))?;
     let mut applier = FileApplier::begin(file, conn)?;
-    // It may have been restored from a backup.
+    // The file may have been restored from a backup.
     applier.is_older = true;
     applier.apply(set)?;
     // As they came: the server compares these seals with its own events.

@@ -1,5 +1,5 @@
-//! What each operating system does in a way of its own, under the same names: who may read a file, what a file is, and
-//! where libpq has its things.
+//! Functions that differ by operating system, under one name for all: rights and identity of a file, and the places
+//! of libpq's files.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ pub(crate) use system::{
     special_kind,
 };
 
-/// Which file it is, whatever it is called.
+/// Identity of a file, whatever its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Identity {
     device: u64,
@@ -27,7 +27,8 @@ pub(crate) struct Identity {
 }
 
 impl Identity {
-    /// Of the file that a name leads to; none if there is no such file, or the system does not number files.
+    /// Identity of the file that a name leads to; none if there is no such file, or the system does not
+    /// number files.
     pub(crate) fn at(path: &Path) -> Option<Self> {
         system::identity(&std::fs::metadata(path).ok()?)
     }

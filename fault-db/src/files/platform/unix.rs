@@ -46,7 +46,7 @@ pub(crate) fn is_open_to_others(about: &Metadata) -> bool {
     about.permissions().mode() & 0o077 != 0
 }
 
-/// What a file is that is neither regular nor a folder.
+/// Kind of a file that is neither regular nor a folder.
 pub(crate) fn special_kind(kind: FileType) -> Option<&'static str> {
     let kinds = [
         (kind.is_fifo(), "a pipe"),

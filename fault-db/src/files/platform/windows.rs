@@ -26,17 +26,17 @@ pub(crate) fn for_all(_: &File) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Not told. A file that is open can be neither removed nor replaced here.
+/// Windows tells no identity here: an open file can be neither removed nor replaced.
 pub(crate) fn identity(_: &Metadata) -> Option<Identity> {
     None
 }
 
-/// Not asked: rights are lists here. libpq does not ask either.
+/// Rights are not looked at: they are lists on Windows. libpq does not look at them either.
 pub(crate) fn is_open_to_others(_: &Metadata) -> bool {
     false
 }
 
-/// What a file is that is neither regular nor a folder: Windows does not say.
+/// Kind of a file that is neither regular nor a folder: Windows does not say.
 pub(crate) fn special_kind(_: FileType) -> Option<&'static str> {
     None
 }

@@ -14,7 +14,7 @@ use crate::seal::{
 };
 use crate::signature::{SIGNATURE, read_signature};
 
-/// What is collected while the chains are read.
+/// Data collected while the chains are read.
 #[derive(Default)]
 pub(super) struct ChainSummary {
     /// Seals of runs.
@@ -23,11 +23,11 @@ pub(super) struct ChainSummary {
     found: u32,
     /// Traces and recordings named in a run's seal that do not exist, and whether another file made the seal.
     missing: BTreeMap<(Id, Option<i64>), bool>,
-    /// Those deleted by a prune, with their digests.
+    /// Traces and recordings deleted by a prune, with their digests.
     pruned: BTreeSet<(Id, Option<i64>, String)>,
     /// Whether the file's own chain has its first entry.
     is_begun: bool,
-    /// Who signed.
+    /// Keys that signed entries.
     keys: KeyUses,
 }
 

@@ -1,4 +1,4 @@
-//! What a check can find and what to do about it, as data. The texts are for a terminal and for JSON.
+//! Findings of a check and their remedies, as data. The texts are for a terminal and for JSON.
 
 use std::fmt;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub enum Damage {
     /// The words of SQLite or of a decoder.
     #[error("{0}")]
     Told(String),
-    /// More of the same kind are not listed.
+    /// Further findings of a kind, which are not listed.
     #[error("and {0} more of this kind")]
     More(u32),
     /// Reading broke off.
@@ -47,7 +47,7 @@ pub enum Damage {
     /// A seal and what it covers do not follow from the seal before.
     #[error("{0} ({1} {2}) does not fit the one before: it was changed")]
     Unchained(SealPlace, String, Id),
-    /// What a seal covers is not there: run, event or note.
+    /// A run, event or note that a seal covers is missing.
     #[error("{0}: its {1} was taken out")]
     Unsealed(SealPlace, String),
     /// A statement of a seal was changed.
@@ -102,10 +102,10 @@ pub enum Damage {
     /// A sealed run has no verdict.
     #[error("run {0} has a seal and no verdict: the verdict was taken away")]
     NoVerdict(Id),
-    /// So many runs are not there.
+    /// Number of runs that are not there.
     #[error("{0} runs that were recorded here are not there any more")]
     NoRuns(i64),
-    /// So many rows of a derived table differ.
+    /// Number of differing rows in a derived table.
     #[error("{0} {1} are not what the history says")]
     Miscounted(i64, Derived),
     /// No occurrence says what a fault is.
@@ -128,22 +128,22 @@ pub enum Damage {
     NoGuard(String, String),
 }
 
-/// How a signature does not hold.
+/// Reason for which a signature does not hold.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WrongSignature {
-    /// It is none, or does not fit its document.
+    /// The signature cannot be read, or does not fit its document.
     #[error(transparent)]
     Document(SignatureError),
-    /// It signs something else than a seal.
+    /// The signature is on something else than a statement about a seal.
     #[error("it is no statement about a seal")]
     NoStatement,
-    /// It says of no seal.
+    /// The statement names no seal.
     #[error("it names no seal")]
     NoSeal,
-    /// It hangs on another thing than it signs: what, and its id.
+    /// The signature is stored with another thing than it signs: kind and id of that thing.
     #[error("it is of another: it signs {0} {1}")]
     Other(String, Id),
-    /// Such a thing is not signed.
+    /// A thing of this kind is not signed there.
     #[error("a \"{0}\" is not signed there")]
     NotThere(String),
     /// The seal is gone: of what, and its id.
@@ -179,7 +179,7 @@ text_enum! {
 }
 
 text_enum! {
-    /// What follows from the other rows and is counted.
+    /// Derived tables: they follow from the other rows and are counted.
     Derived {
         /// Repairs.
         Repairs = "rows of the table of repairs",
@@ -219,9 +219,9 @@ text_enum! {
 /// A table, index, view or trigger.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SchemaObject {
-    /// Which of these, as SQLite says.
+    /// Kind of the object, as SQLite says.
     pub kind: String,
-    /// Its name.
+    /// Name of the object.
     pub name: String,
     /// The table it is of, unless it is itself.
     pub on: Option<String>,

@@ -5,7 +5,7 @@ use rusqlite::Connection;
 use super::{Advice, Damage, Findings, Problem, ProblemKind};
 use crate::history::graph_sql::RECOMPUTE_FAULT;
 
-/// What is wrong with the row of an id.
+/// Damage of the row with an id.
 type Contradiction = fn(String) -> Damage;
 
 /// Queries for contradictions that no sequence of operations explains.

@@ -44,7 +44,7 @@ pub struct CheckReport {
     pub remarks: Vec<String>,
     /// The last entry of the file's chain of seals, for comparison with values known elsewhere.
     pub head: Option<SealHead>,
-    /// Who signed what is in it.
+    /// Keys that signed what the file holds.
     pub signed: Vec<KeyUse>,
 }
 

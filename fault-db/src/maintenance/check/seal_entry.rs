@@ -36,11 +36,11 @@ pub(super) fn position_error(seal: &Seal, before: Option<&Seal>) -> Option<Damag
     (hash != seal.hash[..]).then(|| Damage::Unchained(seal.place(), seal.what.clone(), seal.id))
 }
 
-/// Times of one clock may differ by so much from the order in which they are sealed, µs.
+/// Tolerance between times of one clock and the order in which they are sealed, µs.
 const IN_ORDER_US: i64 = 60_000_000;
 
-/// How the clock went backward between a run or note and the one sealed before it in the same chain. What was sealed as found
-/// has times of another clock, as has what was read from a unit's log.
+/// Error of a clock that went backward between a run or note and the one sealed before it in the same chain. Entries
+/// sealed as found, and entries of a unit's log, have times of another clock.
 pub(super) fn clock_error(
     backend: &Backend,
     origin: Id,

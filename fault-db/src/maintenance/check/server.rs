@@ -1,5 +1,5 @@
-//! What can be checked of a server from a client: the seals of its runs, and the triggers that make its
-//! tables append-only.
+//! Checks of a server from a client: the seals of its runs, and the triggers that make its tables
+//! append-only.
 
 use super::{Advice, CheckReport, Damage, Findings, ProblemKind, chain};
 use crate::backend::SqlResult;

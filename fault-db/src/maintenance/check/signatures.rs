@@ -6,14 +6,14 @@ use serde::Serialize;
 
 use crate::signature::Statement;
 
-/// What one key has signed.
+/// Uses of one key.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct KeyUse {
     /// The public key.
     pub key: String,
-    /// Who it says to be.
+    /// Name that the key's signatures give.
     pub who: String,
-    /// Whose key it is: of a technician or a bench.
+    /// Kind of the key's owner: technician or bench.
     pub kind: String,
     /// Runs that it signed.
     pub runs: u32,

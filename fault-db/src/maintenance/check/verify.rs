@@ -16,22 +16,22 @@ use crate::seal::{RunSealed, chained, hex, run, sealed_as, statement_digest};
 use crate::signature::{SIGNATURE, Statement, changed_places, read_signature, signatures_of};
 use crate::store::Store;
 
-/// What a look at a run's seals and signatures shows.
+/// Result of looking at a run's seals and signatures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verification {
     /// The run.
     pub run: Id,
-    /// Its seal; `None` before its end.
+    /// Seal of the run; `None` before its end.
     pub seal: Option<RunSealed>,
     /// Signatures of the run, of notes on it and of events of its faults, each of which holds.
     pub signatures: Vec<Statement>,
-    /// What was changed, and where.
+    /// Changes that were found, with their places.
     pub changes: Vec<String>,
     /// Traces and recordings that were pruned.
     pub pruned: Vec<String>,
     /// Notes on it that nobody has signed, and in whose name they are.
     pub unsigned_notes: Vec<(Id, String)>,
-    /// What is to be known besides: a clock that went backward.
+    /// Remarks besides, such as a clock that went backward.
     pub remarks: Vec<String>,
 }
 
@@ -68,7 +68,7 @@ impl Store {
     /// Signatures of a run and of the notes on it that hold, as they are stored: signed documents.
     ///
     /// # Errors
-    /// They cannot be read.
+    /// The database cannot be read.
     pub fn signatures(&self, run: Id) -> Result<Vec<String>, StoreError> {
         let read = signatures_of(self.backend(), run);
         let read = read.map_err(|error| self.failed("reading signatures", error))?;

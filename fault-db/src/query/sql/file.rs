@@ -111,7 +111,8 @@ fn read(
     let mut bytes = 0;
     let mut rows = statement.query([])?;
     while let Some(row) = rows.next()? {
-        // Its length before it is copied: one value may be as long as memory is large.
+        // The length is read before the value is copied: one value may be as long as memory is
+        // large.
         let lengths = (0..width).map(|column| row.get_ref(column).map(length));
         bytes += lengths.sum::<rusqlite::Result<usize>>()?;
         if bytes > MOST_RESULT_BYTES && found.is_empty() {

@@ -76,8 +76,8 @@ impl Store {
         self.query_within(sql, bounds, || true)
     }
 
-    /// The same within limits. On a file the query runs while `goes_on` returns true; it is called frequently,
-    /// but not within one SQL function. Sorting and intermediate tables use the disk.
+    /// Runs one `SELECT` within limits. On a file the query runs while `goes_on` returns true; it is called
+    /// frequently, but not within one SQL function. Sorting and intermediate tables use the disk.
     ///
     /// # Errors
     /// [`StoreError::QueryExceeds`] if a limit is exceeded; of the query, the file or the server.

@@ -2,9 +2,28 @@
 
 use std::collections::BTreeMap;
 
-use super::HOUR_US;
 use crate::backend::Field;
 use crate::schema::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
+
+/// Microseconds of an hour.
+const HOUR_US: f64 = 3.6e9;
+
+/// The key by which faults are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StatKey {
+    /// The fault's number.
+    Code,
+    /// The part it points at.
+    Lru,
+    /// The part it comes from; what one part explains is one case, and counted once.
+    Cause,
+    /// The unit that had it.
+    Unit,
+    /// The line its unit was on.
+    Line,
+    /// No key: all faults in one count.
+    All,
+}
 
 /// The key of a count: a code or unit by its number, a part or line by its name; empty for all faults.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

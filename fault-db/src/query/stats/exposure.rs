@@ -1,8 +1,7 @@
 //! Observation time of units, from a unit's first run, within a span.
 
 use super::super::fault_filter::Resolved;
-use super::StatKey;
-use super::counts::{Bins, Key};
+use super::counts::{Bins, Key, StatKey};
 use crate::backend::values;
 use crate::error::StoreError;
 use crate::schema::sql_functions::DAY_US;

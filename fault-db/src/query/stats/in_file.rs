@@ -47,16 +47,16 @@ struct Counting<'a> {
     unit: Option<i64>,
     codes: Option<&'a [i64]>,
     lrus: Option<&'a [String]>,
-    /// With the words and the part's serial number asked for.
+    /// Faults with the words and the part's serial number asked for.
     faults: Option<HashSet<i64>>,
-    /// Of the train asked for, or the one run.
+    /// Runs of the train asked for, or the one run.
     runs: Option<HashSet<i64>>,
     by: StatKey,
     times: RepairTimes,
     spans: Vec<Span>,
     /// Where the counts of each key begin.
     places: HashMap<Key, usize>,
-    /// Of each key in each span.
+    /// Counts of each key in each span.
     counts: Vec<Counts>,
     /// Faults that are attributed to a part, if cases are counted.
     attributed: Vec<Case>,
@@ -89,10 +89,11 @@ impl Span {
     }
 }
 
-/// What of a block's texts is asked for, and where the keys among them are counted; by code in their column.
+/// Texts of a block that are asked for, and the places where the keys among them are counted; by code in
+/// their column.
 struct Texts {
     lru: Vec<bool>,
-    /// As `cause_places`.
+    /// Texts of causes, placed as `cause_places` says.
     cause: [Vec<bool>; 2],
     severity: Vec<bool>,
     state: Vec<bool>,
@@ -100,7 +101,7 @@ struct Texts {
     line: Vec<bool>,
     procedure: Vec<bool>,
     lru_places: Vec<usize>,
-    /// By the code of the cause; by that of the part where there is none.
+    /// Places by the code of the cause; by the code of the part where no cause is known.
     cause_places: [Vec<usize>; 2],
     fault_line_places: Vec<usize>,
     line_places: Vec<usize>,

@@ -13,6 +13,7 @@ mod on_server;
 use serde::Serialize;
 
 pub(crate) use counts::Bins;
+pub use counts::StatKey;
 use counts::{Counts, CountsByKey, Key};
 use exposure::{Exposure, Observed};
 
@@ -21,32 +22,12 @@ use crate::backend::{Backend, values};
 use crate::error::StoreError;
 use crate::store::Store;
 
-/// Microseconds of an hour.
-const HOUR_US: f64 = 3.6e9;
-
-/// The key by which faults are counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum StatKey {
-    /// The fault's number.
-    Code,
-    /// The part it points at.
-    Lru,
-    /// The part it comes from; what one part explains is one case, and counted once.
-    Cause,
-    /// The unit that had it.
-    Unit,
-    /// The line its unit was on.
-    Line,
-    /// No key: all faults in one count.
-    All,
-}
-
 /// Selects the faults to count.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatQuery {
     /// The key.
     pub by: StatKey,
-    /// Which faults, and the span of time.
+    /// Filter of the faults, and the span of time.
     pub filter: FaultFilter,
     /// The present time, µs since 1970: the end of the observation.
     pub now_us: i64,
@@ -73,7 +54,7 @@ pub struct FaultStat {
     pub last_at_us: Option<i64>,
     /// Faults closed.
     pub closed: u32,
-    /// Of these, closed without a repair (no fault found).
+    /// Faults closed without a repair (no fault found).
     pub no_fault_found: u32,
     /// Number of repairs.
     pub repairs: u32,
@@ -108,7 +89,7 @@ impl Store {
         Ok(self.count_and_total(query, false)?.0)
     }
 
-    /// The same, and the counts of all keys together.
+    /// Counts as [`Store::stats`], and the counts of all keys together.
     ///
     /// # Errors
     /// The filter names what is not there, or the file or server cannot be read.
@@ -226,7 +207,7 @@ impl Store {
     /// history.
     ///
     /// # Errors
-    /// Of the file or server.
+    /// The file or server cannot be read.
     pub fn history_span(&self) -> Result<Option<(i64, i64)>, StoreError> {
         // Each time by its own index: two in one query would use none.
         let found = self.first(

@@ -30,7 +30,7 @@ impl StatKey {
         match self {
             Self::Code => "x.code",
             Self::Lru => "x.lru",
-            // Of occurrences; a fault's own row is not asked by cause.
+            // Cause of an occurrence; a fault's own row is not asked by cause.
             Self::Cause => "(SELECT coalesce(f.cause, f.lru) FROM fault f WHERE f.seq = x.fault)",
             Self::Unit => "x.unit",
             Self::Line => "x.line",

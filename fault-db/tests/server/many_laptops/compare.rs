@@ -8,7 +8,7 @@ use postgres::Client;
 use crate::counts;
 use crate::laptop::{Laptop, open_faults, read_only};
 
-/// What is the same in all files and on the server.
+/// Content that all files and the server share.
 pub struct Same {
     pub rows: usize,
     pub faults: usize,

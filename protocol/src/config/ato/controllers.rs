@@ -45,7 +45,8 @@ pub struct ObserverConfig {
     /// Greatest error taken for one of the model when wheels turn faster than a braked train by it, or
     /// slower than a powered one, m/s.
     pub against_mps: f64,
-    /// The same for slower than a braked train or faster than a powered one: wheels that slide or slip.
+    /// Greatest error taken for one of the model, m/s, when wheels turn slower than a braked train or
+    /// faster than a powered one: wheels that slide or slip.
     pub along_mps: f64,
     /// Greatest acceleration the model may lack, m/s².
     pub missing_mps2: f64,

@@ -115,7 +115,7 @@ pub struct JogConfig {
 }
 
 impl Default for JogConfig {
-    /// That of `sg100`, for configurations without it.
+    /// Values of `sg100`, for configurations without the table.
     fn default() -> Self {
         Self {
             max_m: 5.0,
@@ -166,7 +166,7 @@ pub struct AtoConfig {
     pub watch: AtoWatchConfig,
 }
 
-/// That of `sg100`, for configurations without it.
+/// Value of `sg100`, for configurations without the key.
 const fn slow_kmh() -> f64 {
     25.0
 }

@@ -1,4 +1,4 @@
-//! What the tests of the wire share: the vector files, and a seeded generator.
+//! Parts shared by the tests of the wire: the vector files, and a seeded generator.
 #![allow(dead_code)]
 
 use std::fs;
@@ -49,7 +49,6 @@ pub fn only_frame(stream: &[u8]) -> (Header, Vec<u8>) {
     (header, payload)
 }
 
-/// The end that receives a message.
 pub fn receiver(spec: &MessageSpec) -> End {
     if spec.sent_by_unit() {
         End::Bench
@@ -58,7 +57,6 @@ pub fn receiver(spec: &MessageSpec) -> End {
     }
 }
 
-/// The end that sends a message.
 pub fn sender(spec: &MessageSpec) -> End {
     if spec.sent_by_unit() {
         End::Unit

@@ -1,4 +1,4 @@
-//! What reports say of a run in words: how it ended, on which train and bench, under which conditions.
+//! Sentences of reports on a run: its end, on which train and bench, under which conditions.
 
 use btu_rig::conditions::{Conditions, Disturbance};
 use btu_rig::drive::Outcome;
@@ -27,7 +27,7 @@ pub fn stop(trial: &Trial) -> String {
     }
 }
 
-/// How a run ended, for people.
+/// Sentence that says how a drive ended.
 pub fn ending(run: &Driven) -> String {
     let tolerance_cm = run.case.tolerance_m() * 100.0;
     let Outcome {

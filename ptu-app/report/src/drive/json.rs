@@ -69,7 +69,7 @@ fn events_json(landmarks: &[Landmark]) -> Value {
     json!({"events": landmarks.iter().map(event).collect::<Vec<_>>()})
 }
 
-/// What a case is, whatever is drawn.
+/// JSON of a case, without drawn values.
 fn case_json(case: &Case) -> Value {
     object([
         place_json(&case.bench, &case.plan.section),

@@ -20,17 +20,17 @@ use ptu_runs::drive::Driven;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 use ptu_runs::failure::{Asked, Failure};
 
-/// What was driven, and how JSON tells it.
+/// Drives, and their form in JSON.
 pub struct Results {
     pub outcomes: Outcomes,
     /// Several were asked for, so that there is a list even of one.
     pub list: bool,
-    /// By which command the report was made, and when; the window says neither.
+    /// Command that made the report, and time; the window says neither.
     pub made: Option<String>,
 }
 
 impl Results {
-    /// Of automatic runs; those of one section stand side by side.
+    /// Results of automatic runs; runs of one section stand side by side.
     pub fn of_runs(runs: Vec<Driven>) -> Self {
         Self {
             outcomes: Outcomes::Single(runs),

@@ -86,7 +86,7 @@ fn of_section(runs: &[Driven], words: &Words) -> Vec<Block> {
     blocks
 }
 
-/// How a run ended, and where the train stands.
+/// Sentences on the end of a run and the place of the train.
 fn verdict(run: &Driven, alone: bool, words: &Words) -> Block {
     let mut ending = sentence(&words.ending(&run.outcome.ending));
     if !alone {

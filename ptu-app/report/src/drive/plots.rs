@@ -4,7 +4,7 @@ use btu_rig::drive::{Mark, Row, ScatterDraw};
 use protocol::signal::Signal;
 
 use super::facts::off;
-use crate::plot::{Place, Plot, Series, Style};
+use crate::plot::{AxisMark, Plot, Series, Style};
 use ptu_runs::drive::Driven;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 
@@ -19,7 +19,7 @@ const BARS: usize = 60;
 /// Dots of a scatter plot at most: more hide each other.
 const MOST_DOTS: usize = 2_000;
 
-/// What a curve shows of a row.
+/// Value of a row that a curve shows.
 type Of = fn(&Row) -> f64;
 
 const TIME: Of = |row| row.t_s;
@@ -164,7 +164,7 @@ fn last_metres(runs: &[Driven]) -> Option<Plot> {
     let past = errors
         .clone()
         .fold(PAST_M, |most, error| most.max(error + 0.5));
-    let at = |(x, name): (f64, String)| Place { x, name };
+    let at = |(x, name): (f64, String)| AxisMark { x, name };
     let psm4 = (-(stop_m - section.markers_m[3]), "PSM4".into());
     Some(Plot {
         title: "The last metres".into(),
@@ -191,14 +191,14 @@ fn range(runs: &[Driven], x: Of) -> (f64, f64) {
 }
 
 /// Markers and stop point: by place, or by the time of the only run.
-fn places(runs: &[Driven], by_time: bool) -> Vec<Place> {
+fn places(runs: &[Driven], by_time: bool) -> Vec<AxisMark> {
     let Some(run) = runs.first() else {
         return Vec::new();
     };
     if by_time {
         let marks = run.outcome.landmarks.iter().filter(|_| runs.len() == 1);
         let marks = marks.filter(|mark| matches!(mark.what, Mark::Psm(_) | Mark::Stop));
-        let place = |mark: &btu_rig::drive::Landmark| Place {
+        let place = |mark: &btu_rig::drive::Landmark| AxisMark {
             x: mark.t_s,
             name: match mark.what {
                 Mark::Psm(psm) => format!("PSM{psm}"),
@@ -212,10 +212,10 @@ fn places(runs: &[Driven], by_time: bool) -> Vec<Place> {
         .zip(section.markers_m)
         .map(|(i, x)| (x, format!("PSM{i}")));
     let all = markers.chain([(section.stop_m, "stop".into())]);
-    all.map(|(x, name)| Place { x, name }).collect()
+    all.map(|(x, name)| AxisMark { x, name }).collect()
 }
 
-/// How stop errors lie, and what they go with.
+/// Plots of the stop errors, and of values that go with them.
 pub fn plots_of_many(many: &MonteCarlo) -> Vec<Plot> {
     /// A number of what is drawn.
     type Drawn = fn(&ScatterDraw) -> f64;
@@ -277,7 +277,7 @@ fn histogram(many: &MonteCarlo) -> Plot {
     }
     let bar = |(i, count): (usize, f64)| ((low + (i as f64 + 0.5) * width) * 100.0, count);
     let tolerance_cm = many.case.tolerance_m() * 100.0;
-    let place = |x: f64| Place {
+    let place = |x: f64| AxisMark {
         x,
         name: format!("{x:+.0} cm"),
     };

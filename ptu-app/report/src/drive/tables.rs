@@ -13,7 +13,7 @@ use ptu_runs::table;
 const PERCENTILES: [f64; 5] = [0.1, 2.5, 50.0, 97.5, 99.9];
 /// Letters for which a printed column has room at least.
 const SHORTEST: usize = 8;
-/// What stands for a value that is not known.
+/// Sign in place of an unknown value.
 const UNKNOWN: &str = "–";
 
 pub struct Table {
@@ -47,7 +47,7 @@ impl Table {
         table.render()
     }
 
-    /// For printed pages, in one language.
+    /// The table for printed pages, in one language.
     pub fn printed(&self, words: &Words) -> block::Table {
         let columns = self.headings.len();
         let said = |text: &String| words.content(text).into_owned();
@@ -119,7 +119,7 @@ pub fn of_runs(runs: &[Driven]) -> Table {
     table
 }
 
-/// How figures of many runs lie.
+/// Percentiles of the figures of many runs.
 pub fn of_many(many: &MonteCarlo) -> Table {
     let row = |name: String, values: &[f64], shown: &dyn Fn(f64) -> String| {
         let cell = |percent| percentile(values, percent).map_or("-".into(), shown);
@@ -168,7 +168,7 @@ pub fn worst(many: &MonteCarlo) -> Table {
     table
 }
 
-/// What happened on the way.
+/// Table of the events of a drive.
 pub fn events(landmarks: &[Landmark], words: &Words) -> Table {
     let headings = [
         ("TIME s", "Time s"),

@@ -23,7 +23,8 @@ use ptu_runs::failure::{Failure, FileTrouble, Why};
 use ptu_runs::new_file::kind;
 use views::{VIEWS, View};
 
-/// What is in a folder's partitions, so that the next export need not read them.
+/// File that lists the content of a folder's partitions, so that the next export need not read
+/// them.
 const KNOWN: &str = "export.json";
 /// Name of each partition's file.
 const PART: &str = "part.parquet";

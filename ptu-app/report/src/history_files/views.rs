@@ -10,9 +10,9 @@ pub(super) enum Kind {
 
 pub(super) struct View {
     pub name: &'static str,
-    /// Its time, µs since 1970; absent where its rows have no time.
+    /// Column of the time, µs since 1970; absent where the rows have no time.
     pub time: Option<&'static str>,
-    /// The same time as text, of which the month is taken.
+    /// Column of the time as text, of which the month is taken.
     pub label: &'static str,
     /// Order of its rows, complete; the first column tells the rows of one history from those of another.
     pub order: &'static str,

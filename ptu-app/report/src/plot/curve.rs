@@ -43,7 +43,7 @@ pub fn drawn(series: &Series, x: &Scale, y: &Scale) -> Vec<Mark> {
     }
 }
 
-/// What a curve's marks are.
+/// Role of a curve's marks.
 pub fn role(series: &Series) -> Role {
     let colour = series.colour % 6;
     match series.style {

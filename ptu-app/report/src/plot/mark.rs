@@ -1,6 +1,6 @@
 //! The marks a plot consists of, for every output medium.
 
-/// What a mark is there for; how it looks follows from that.
+/// Purpose of a mark; its look follows from the purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Name of the plot.
@@ -11,8 +11,8 @@ pub enum Role {
     Tick,
     /// Name of a curve.
     Legend,
-    Place,
-    /// What a curve says at a point.
+    AxisMark,
+    /// Note on a curve at a point.
     Note,
     /// Line of the grid.
     Grid,
@@ -31,7 +31,7 @@ pub enum Role {
     Bars(usize),
 }
 
-/// Which point of a text its place is.
+/// Point of a text that lies at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     Start,
@@ -58,7 +58,7 @@ pub enum Mark {
         role: Role,
         /// Where, on the base line.
         at: (f64, f64),
-        /// Which of its points is there.
+        /// Point of the text that lies there.
         anchor: Anchor,
         /// Runs upwards.
         turned: bool,

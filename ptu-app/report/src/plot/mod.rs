@@ -18,7 +18,7 @@ use scale::Scale;
 /// Size of the drawing in a page, in its own units.
 const WIDTH: f64 = 1000.0;
 const HEIGHT: f64 = 300.0;
-/// What is left around the plot: room for labels.
+/// Width left beside the plot for labels.
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 46.0;
@@ -35,7 +35,6 @@ const BESIDE_TICKS: f64 = 26.0;
 const SAMPLE: f64 = 20.0;
 const SAMPLE_ROOM: f64 = 34.0;
 
-/// How a curve is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
     Line,
@@ -51,24 +50,23 @@ pub struct Series {
     pub name: String,
     /// Colour, 0 to 5.
     pub colour: usize,
-    /// How it is drawn.
     pub style: Style,
-    /// Its points; those that are not numbers interrupt it.
+    /// Points of the curve; a point that is not a number interrupts it.
     pub points: Vec<(f64, f64)>,
 }
 
 /// A place on the horizontal axis.
 #[derive(Clone, Debug)]
-pub struct Place {
+pub struct AxisMark {
     pub x: f64,
     pub name: String,
 }
 
-/// What a curve says at a point.
+/// Note on a curve at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
     pub at: (f64, f64),
-    /// It is written if it ends before here.
+    /// The note is written if it ends before this x.
     pub until: f64,
     pub text: String,
 }
@@ -88,7 +86,7 @@ pub struct Plot {
     pub raster: Option<Raster>,
     /// Curves, the last on top.
     pub series: Vec<Series>,
-    pub places: Vec<Place>,
+    pub places: Vec<AxisMark>,
     /// Stretches of the horizontal axis that are shaded, each from its first end to its second.
     pub shaded: Vec<(f64, f64)>,
     /// Names at the vertical axis instead of values, each where it stands.
@@ -133,7 +131,7 @@ impl Plot {
         (width, self.height.unwrap_or(HEIGHT))
     }
 
-    /// What is left beside it: room for the names of its lanes.
+    /// Width left beside the plot for the names of its lanes.
     pub fn left(&self) -> f64 {
         let names = self.names.iter().map(|name| room(&name.1) + BESIDE_TICKS);
         names.fold(self.beside.unwrap_or(LEFT), f64::max)
@@ -184,7 +182,7 @@ impl Plot {
             .unwrap_or_else(|| extent(points.map(|point| point.0)))
     }
 
-    /// Of what is to be seen.
+    /// Range of the y axis over the x values in view.
     fn y_extent(&self, x: &Scale) -> (f64, f64) {
         let points = self.series.iter().flat_map(|series| &series.points);
         let seen = points.filter(|point| x.holds(point.0)).map(|point| point.1);
@@ -235,14 +233,14 @@ impl Plot {
         let mut marks = Vec::new();
         for place in self.places.iter().filter(|place| x.holds(place.x)) {
             let at = x.at(place.x);
-            marks.push(line(Role::Place, (at, edges.top), (at, edges.bottom)));
+            marks.push(line(Role::AxisMark, (at, edges.top), (at, edges.bottom)));
             let long = room(&place.name) + 4.0;
             // Within the drawing, also where a long name belongs to its edge.
             let begin = (at - long / 2.0).min(width - long).max(edges.left);
             if let Some(row) = ends.iter().position(|end| begin > *end) {
                 ends[row] = begin + long;
                 let above = edges.top - 4.0 - row as f64 * ROW;
-                marks.push(text(Role::Place, (begin, above), &place.name));
+                marks.push(text(Role::AxisMark, (begin, above), &place.name));
             }
         }
         marks

@@ -62,7 +62,7 @@ fn class(role: Role) -> String {
         Role::Label => "label".into(),
         Role::Tick => "tick".into(),
         Role::Legend => "legend".into(),
-        Role::Place => "place".into(),
+        Role::AxisMark => "place".into(),
         Role::Note => "note".into(),
         Role::Grid => "grid".into(),
         Role::Zero => "zero".into(),

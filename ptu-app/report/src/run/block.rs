@@ -4,7 +4,7 @@ use super::code::Code;
 use crate::limits::places;
 use crate::plot::Plot;
 
-/// How good news is. Always beside words: colour alone says nothing on a copy.
+/// How good news is. A tone always stands beside words: colour alone says nothing on a copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tone {
     /// Neither.
@@ -31,7 +31,7 @@ pub enum Block {
     Text(Tone, String),
     Table(Table),
     Plot(Box<Plot>),
-    /// What follows begins a page.
+    /// The next block begins a page.
     NewPage,
     /// A code for a scanner, and what is done with it.
     Code(Box<Code>, String),
@@ -43,7 +43,7 @@ pub enum Block {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
     Left,
-    /// At its right: numbers.
+    /// Numbers, at the right end of the cell.
     Right,
 }
 
@@ -73,7 +73,7 @@ pub enum RowKind {
 #[derive(Clone, Debug)]
 pub struct Row {
     pub kind: RowKind,
-    /// Its cells, each with the number of columns it covers.
+    /// Cells of the row, each with the number of columns it covers.
     pub cells: Vec<(Cell, usize)>,
 }
 
@@ -109,7 +109,6 @@ impl Gauge {
 }
 
 impl Table {
-    /// Whether any column has a name.
     pub fn has_headings(&self) -> bool {
         self.columns.iter().any(|column| !column.name.is_empty())
     }

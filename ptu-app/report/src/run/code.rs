@@ -10,7 +10,7 @@ const QUIET: usize = 4;
 /// A QR code.
 #[derive(Clone, Debug)]
 pub struct Code {
-    /// What a scanner reads, as `ptu verify` takes it.
+    /// Text for a scanner, as `ptu verify` takes it.
     pub text: String,
     /// Dots of an edge, with what is free around it.
     pub width: usize,
@@ -46,7 +46,7 @@ impl Code {
         })
     }
 
-    /// As a drawing, dark on light also where the page is dark.
+    /// Drawing of the code, dark on light also where the page is dark.
     pub fn svg(&self) -> Markup {
         let stretch =
             |(x, y, length): &(usize, usize, usize)| format!("M{x} {y}h{length}v1h-{length}z");

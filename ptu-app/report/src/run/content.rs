@@ -1,5 +1,5 @@
-//! What a test sheet says, block after block: verdict, notes and failures first, then all that was run,
-//! with what and by whom.
+//! Content of a test sheet, block after block: verdict, notes and failures first, then all that was
+//! run, with what and by whom.
 
 use fault_db::{FaultState, RunState, RunSummary, StepCounts, StepRecord, Verdict};
 
@@ -245,7 +245,6 @@ fn faults(sheet: &Sheet, words: &Words) -> Vec<Block> {
     blocks
 }
 
-/// What was said about the run.
 fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let report = &words.report;
     if sheet.run.notes.is_empty() {
@@ -269,7 +268,7 @@ fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
     ]
 }
 
-/// Who tested what with what.
+/// The run: tester, unit, bench and times.
 fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let (run, report) = (&sheet.run.run, &words.report);
     let seconds =
@@ -337,7 +336,7 @@ fn seal(sheet: &Sheet, words: &Words) -> String {
     }
 }
 
-/// How right the computer's clock was.
+/// Accuracy of the computer's clock, as text.
 fn clock(sheet: &Sheet, words: &Words) -> String {
     let report = &words.report;
     let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);
@@ -352,7 +351,7 @@ fn clock(sheet: &Sheet, words: &Words) -> String {
     }
 }
 
-/// How a value is held against its limits.
+/// Rule by which a value is held against its limits.
 fn decision_rule(sheet: &Sheet, words: &Words) -> &'static str {
     let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);
     match evidence.is_some_and(|evidence| evidence.guard_banded) {
@@ -361,7 +360,7 @@ fn decision_rule(sheet: &Sheet, words: &Words) -> &'static str {
     }
 }
 
-/// With what was measured, and whether its calibration held.
+/// Instruments that measured, and whether their calibration was valid.
 fn instruments(sheet: &Sheet, words: &Words) -> String {
     let report = &words.report;
     let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);
@@ -388,7 +387,7 @@ fn instruments(sheet: &Sheet, words: &Words) -> String {
     }
 }
 
-/// Who signed the run, by which `ptu verify` can be held against a list of keys.
+/// Signature of the run, by which `ptu verify` can be held against a list of keys.
 fn signed_by(sheet: &Sheet, words: &Words) -> String {
     let report = &words.report;
     let Some(signed) = &sheet.run.signature else {

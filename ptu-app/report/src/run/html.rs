@@ -110,7 +110,7 @@ fn content(cell: &Cell) -> Markup {
     }
 }
 
-/// What is allowed as a band, the value as a mark: a disc inside, a square outside.
+/// Bar with the limits as a band, and the value as a mark: a disc inside, a square outside.
 fn bar(gauge: &Gauge) -> Markup {
     let at = |share: f64| format!("{:.1}", 3.0 + 94.0 * share);
     let (from, to) = gauge.band;

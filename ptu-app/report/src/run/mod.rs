@@ -45,7 +45,7 @@ pub struct Sheet {
     pub traces: Vec<SheetTrace>,
     /// Traces of the run beyond those.
     pub more_traces: usize,
-    /// What the run says about the unit's parts, or why nothing.
+    /// Diagnosis of the unit's parts, or why there is none.
     pub diagnosis: Result<Answer, Trouble>,
     /// Names of parts in English and Korean, by their short name.
     pub parts: BTreeMap<String, [String; 2]>,

@@ -1,20 +1,20 @@
-//! What is printed, of a run or of a case: blocks, and what stands around them on every page. The HTML page, the PDF
-//! and the window are made from it.
+//! Printed document of a run or of a case: blocks, and the frame of every page. The HTML page, the PDF and the
+//! window are made from it.
 
 use super::Sheet;
 use super::block::Block;
 use super::content;
 use crate::words::Words;
 
-/// What is printed, in one language.
+/// A printed document, in one language.
 pub struct Paper {
-    /// What it is, as its head and its margin say.
+    /// Kind of document, for its head and its margin.
     pub(crate) name: &'static str,
     /// Serial number of the unit.
     pub(crate) unit: String,
-    /// What tells it from others of its kind, for the title of a window or a file.
+    /// Short name for the title of a window or a file.
     pub(crate) short: String,
-    /// Its number, below each page.
+    /// Number of the paper, below each page.
     pub(crate) number: String,
     /// Version of the program that tested.
     pub(crate) program: String,
@@ -26,11 +26,11 @@ pub struct Paper {
 }
 
 pub trait Printed {
-    /// It, in one language.
+    /// The paper in one language.
     fn paper(&self, words: &Words) -> Paper;
 }
 
-/// What stands across the pages of practice.
+/// Text across the pages of practice.
 pub(super) fn across(words: &Words) -> String {
     words.report.simulated.to_uppercase()
 }

@@ -133,7 +133,7 @@ fn words(text: &Text, surface: &mut Surface<'_>, font: &Font, letters: &FontMetr
     }
 }
 
-/// What has no extent draws nothing.
+/// Draws a path; an empty one draws nothing.
 fn put(surface: &mut Surface<'_>, path: Option<Path>) {
     if let Some(path) = path {
         surface.draw_path(&path);

@@ -1,10 +1,10 @@
-//! What is drawn of a trace: speeds, and the switched signals that changed nearest to the trigger.
+//! Plots of a trace: speeds, and the switched signals that changed nearest to the trigger.
 
 use std::collections::BTreeMap;
 
 use fault_db::{Channel, ChannelKind, TraceData};
 
-use crate::plot::{Note, Place, Plot, Series, Style};
+use crate::plot::{AxisMark, Note, Plot, Series, Style};
 use crate::words::Words;
 
 /// Speeds, as they are recorded, each with its colour; what is not known all the time is left out.
@@ -16,13 +16,13 @@ const SPEEDS: [(&str, usize, Style); 4] = [
 ];
 /// Switched signals drawn below each other, at most.
 const LANES: usize = 8;
-/// How far from the trigger a close-up reaches, and its lanes at most.
+/// Reach of a close-up on each side of the trigger, and its greatest number of lanes.
 const CLOSE_US: i64 = 2_000_000;
 const CLOSE_LANES: usize = 5;
 /// Height of a lane, and of all that is around them, in units of the drawing.
 const LANE: f64 = 26.0;
 const AROUND: f64 = 96.0;
-/// How far a switched signal goes up in its lane.
+/// Height of a switched signal in its lane.
 const SWING: f64 = 0.62;
 /// Height of words in a lane, as a share of that.
 const WORDS: f64 = 0.24;
@@ -34,7 +34,7 @@ pub fn drawn_channels(trace: TraceData) -> TraceData {
     with_lanes(trace, LANES)
 }
 
-/// What changed close to the trigger, or else the speeds there.
+/// Plot of the signals that changed close to the trigger, or else of the speeds there.
 pub fn close_up(trace: &TraceData, words: &Words) -> Option<Plot> {
     let trigger = trace.trigger_row.unwrap_or(0) as usize;
     let reach = usize::try_from(CLOSE_US / trace.period_us.max(1)).unwrap_or(usize::MAX);
@@ -101,7 +101,7 @@ pub fn plots(trace: &TraceData, words: &Words) -> Vec<Plot> {
         x_label: report.from_trigger.into(),
         y_label: y_label.to_owned(),
         x_range: Some((time(0), time(rows - 1))),
-        places: vec![Place {
+        places: vec![AxisMark {
             x: 0.0,
             name: report.trigger.into(),
         }],

@@ -1,4 +1,4 @@
-//! What a run that passed has settled: the faults whose repair it proves.
+//! Faults that a passed run has settled, as it proves their repair.
 
 use fault_db::{RepairRecord, SettledFault};
 

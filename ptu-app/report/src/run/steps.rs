@@ -120,13 +120,13 @@ fn measured(
     }
 }
 
-/// What is stored beside a measurement as its uncertainty.
+/// Uncertainty stored beside a measurement.
 fn uncertainty(measurement: &MeasurementRecord, all: &[MeasurementRecord]) -> Option<f64> {
     let name = uncertainty_of(&measurement.name);
     all.iter().find(|other| other.name == name)?.value
 }
 
-/// It is shown with the measurement it belongs to.
+/// The measurement is the uncertainty of another one, with which it is shown.
 fn is_uncertainty(measurement: &MeasurementRecord, all: &[MeasurementRecord]) -> bool {
     all.iter()
         .any(|other| uncertainty_of(&other.name) == measurement.name)
@@ -136,7 +136,6 @@ pub fn verdict(verdict: Verdict, words: &Words) -> Cell {
     Cell::Verdict(tone(verdict), words.common.stored_verdict(verdict).into())
 }
 
-/// How good news a verdict is.
 pub fn tone(verdict: Verdict) -> Tone {
     match verdict {
         Verdict::Passed => Tone::Good,
@@ -145,7 +144,7 @@ pub fn tone(verdict: Verdict) -> Tone {
     }
 }
 
-/// Nothing is to be said against it.
+/// Whether the verdict says nothing against the unit.
 pub fn passed(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::Passed | Verdict::Skipped)
 }

@@ -15,7 +15,6 @@ pub struct TraceInfo {
     pub trace_id: String,
     /// The run it was recorded in.
     pub run_id: String,
-    /// Serial number of the unit.
     pub unit_serial: String,
     /// UTC of the first row, for people.
     pub t0: String,
@@ -28,7 +27,7 @@ pub struct TraceInfo {
     pub rows: usize,
     /// The row of the trigger, which has the time 0; of a part it may be before or after all rows.
     pub trigger_row: Option<i64>,
-    /// It ends before its window did.
+    /// The trace ends before its window did.
     pub partial: bool,
     /// Some samples are missing.
     pub gaps: bool,
@@ -40,7 +39,7 @@ pub struct TraceInfo {
 }
 
 impl TraceInfo {
-    /// Of the rows from `first` on.
+    /// Head of a part of a trace: `rows` rows from `first` on.
     pub fn part(head: &TraceHead, channels: Vec<Channel>, first: usize, rows: usize) -> Self {
         let later_us = (first as i64).saturating_mul(head.period_us);
         let t0_us = head.t0_us.saturating_add(later_us);
@@ -66,7 +65,7 @@ impl TraceInfo {
         (row as i64 - self.trigger_row.unwrap_or(0)).saturating_mul(self.period_us)
     }
 
-    /// As one line of JSON.
+    /// Head of the trace as one line of JSON.
     pub fn json(&self) -> String {
         // Texts, whole numbers and finite steps: there is nothing JSON cannot say.
         serde_json::to_string(self).unwrap_or_default()

@@ -8,7 +8,7 @@ use fault_db::TraceData;
 use super::series::Import;
 use ptu_runs::failure::{Asked, Failure};
 
-/// How much sooner than a row a sample's time may be rounded, microseconds.
+/// Greatest rounding of a sample's time to before or after its row, µs.
 const ROUNDING_US: i64 = 1;
 
 /// A file's signals at a trace's rows, and the trace with nothing known where the file says nothing.
@@ -33,7 +33,7 @@ pub struct Aligned {
 /// sample that came until then. A file with dates of another time begins with the trace.
 ///
 /// # Errors
-/// They have no time in common, or one signal comes twice.
+/// File and trace have no time in common, or one signal comes twice.
 pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Aligned, Failure> {
     let trigger = i64::from(trace.trigger_row.unwrap_or(0));
     let period_us = trace.period_us.max(1);
@@ -106,7 +106,7 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
     })
 }
 
-/// Which of a table's rows stands at each row of a trace.
+/// Row of a table that stands at each row of a trace.
 struct RowAlignment {
     places: Vec<Option<usize>>,
     /// Rows of the trace from the first to the last that has one.

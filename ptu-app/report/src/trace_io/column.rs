@@ -1,4 +1,4 @@
-//! What a signal is called in files, and how its samples are written: the same in every format.
+//! Name of a signal in files, and form of its samples: the same in every format.
 
 use fault_db::{Channel, ChannelKind};
 

@@ -51,7 +51,7 @@ pub fn put_time(out: &mut impl Write, time_us: i64, period_us: i64) -> io::Resul
     write!(out, "{:.digits$}", time_us as f64 / 1e6)
 }
 
-/// Goes on with a sample of this signal.
+/// Writes a further sample of this signal.
 ///
 /// # Errors
 /// `out` fails.

@@ -47,7 +47,7 @@ pub(super) fn read(file: &Path, known: &[Channel], asked: &Columns) -> Result<Im
     })
 }
 
-/// What stands in the description beside, if there is one.
+/// Content of the description beside the file, if there is one.
 fn about(file: &Path) -> Result<Option<TraceInfo>, Failure> {
     let beside = beside(file);
     let text = match read_regular_file(&beside, LONGEST_FILE) {
@@ -153,7 +153,7 @@ impl<'f, R: BufRead> Records<'f, R> {
         self.separator != b','
     }
 
-    /// What is wrong with what is read now.
+    /// Failure in the record that is read now.
     fn unread(&self, what: &str) -> Failure {
         wrong(self.file, &format!("after line {}: {what}", self.line))
     }
@@ -169,7 +169,7 @@ impl<'f, R: BufRead> Records<'f, R> {
     }
 }
 
-/// What stands above the rows, of which the first was read then.
+/// Headings above the rows, of which the first has been read.
 struct Above {
     headings: Vec<String>,
     time: usize,
@@ -358,7 +358,7 @@ fn separator(begin: &str) -> u8 {
         let same = |one: &usize| counts.iter().filter(|other| *other == one).count();
         counts.iter().map(same).max().unwrap_or(0)
     };
-    // Of equals the last is taken: a comma may be a decimal one.
+    // Of separators equally frequent the last is taken: a comma may be a decimal one.
     [b',', b'\t', b';']
         .into_iter()
         .max_by_key(alike)

@@ -9,7 +9,7 @@ use super::{mcap_write, parquet};
 use ptu_runs::failure::{Asked, Failure};
 use ptu_runs::new_file::{NewFile, cannot_write, kind};
 
-/// What a trace is written as.
+/// File format of a trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Comma-separated values, with a description beside.
@@ -21,7 +21,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// By the ending of a file's name.
+    /// Format by the ending of a file's name.
     ///
     /// # Errors
     /// There is no such format.

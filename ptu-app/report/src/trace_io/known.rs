@@ -22,7 +22,6 @@ pub(super) struct Known {
     is_of_a_trace: bool,
 }
 
-/// Signals by their names.
 #[derive(Default)]
 pub(super) struct KnownSignals {
     signals: Vec<Known>,
@@ -56,7 +55,7 @@ impl Known {
         self.words.get(word).copied()
     }
 
-    /// What a cell says: a number, with a decimal comma if there may be one, or a word of this signal.
+    /// Sample of a cell: a number, with a decimal comma if there may be one, or a word of this signal.
     pub fn sample(&self, cell: &str, comma: bool) -> Result<f64, String> {
         if cell.is_empty() {
             return Ok(f64::NAN);
@@ -80,7 +79,8 @@ impl Known {
 }
 
 impl KnownSignals {
-    /// Of these lists, of which the first counts that has a name; `called` has what a file calls one of them.
+    /// Signals of these lists, in which the first signal of a name counts; `called` has what a file calls a
+    /// signal.
     pub fn of(lists: &[&[Channel]], called: &[(String, String)]) -> Self {
         let mut all = Self::default();
         for channel in lists.iter().copied().flatten() {
@@ -110,7 +110,7 @@ impl KnownSignals {
         self.places.get(name).map(|place| &self.signals[*place])
     }
 
-    /// The same; else a number of this name.
+    /// The signal of this name; else a number of this name.
     pub fn signal(&self, name: &str) -> Known {
         let known = self.named(name).cloned();
         let own = || match self.replaced.contains(name) {

@@ -22,7 +22,7 @@ use ptu_runs::failure::{Failure, FileTrouble};
 const MAX_RECORD: usize = 32 << 20;
 /// All records together, unpacked: several times what the samples allowed take as text.
 const MAX_BYTES: usize = 512 << 20;
-/// What a record takes beside its content.
+/// Bytes of a record beside its content.
 const RECORD: usize = 64;
 /// Longest message of signals, bytes; a longer one is refused.
 const MAX_MESSAGE: usize = 1 << 20;
@@ -41,7 +41,7 @@ struct Topic {
     table: Table,
     /// Place of a field's column, by its path.
     places: BTreeMap<String, usize>,
-    /// So many names of signals are known to be short enough.
+    /// Number of signal names known to be short enough.
     checked: usize,
 }
 
@@ -137,7 +137,7 @@ fn text(data: &[u8]) -> Option<(&[u8], &[u8])> {
     rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)
 }
 
-/// What is wrong, with the reason of the library's reason.
+/// Sentence on an error, with the reason of its cause.
 fn told(error: &McapError) -> String {
     match error {
         McapError::UnsupportedCompression(name) => {
@@ -153,7 +153,7 @@ struct Reading<'a> {
     known: &'a [Channel],
     asked: &'a Columns,
     names: KnownSignals,
-    /// By the number of the file's channel.
+    /// Topics by the number of the file's channel.
     topics: BTreeMap<u16, Topic>,
     /// Encodings of messages that are passed over.
     others: BTreeSet<String>,

@@ -72,7 +72,7 @@ pub(super) fn put(
     Ok(())
 }
 
-/// How every file of ours is packed.
+/// Packing of every file that this program writes.
 pub(super) fn options() -> WriteOptions {
     WriteOptions::new()
         .library("ptu")
@@ -114,7 +114,7 @@ fn number(sample: f64) -> Value {
     }
 }
 
-/// What a message looks like, as JSON Schema.
+/// Form of a message, as JSON Schema.
 pub(super) fn schema(channels: &[Channel]) -> Value {
     let properties: Map<String, Value> = channels
         .iter()

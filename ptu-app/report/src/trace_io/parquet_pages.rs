@@ -1,4 +1,4 @@
-//! What the pages of a Parquet file unpack to, by their headers: a page is unpacked at once, however long it says it is.
+//! Unpacked pages of a Parquet file, by their headers: a page is unpacked at once, however long it says it is.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek as _, SeekFrom};
@@ -9,7 +9,7 @@ use parquet::file::metadata::ColumnChunkMetaData;
 const MAX_PAGE: u64 = 96 << 20;
 /// Longest page whose values take several times as much memory: a dictionary, and texts that repeat the text before.
 const MAX_REPEATING: u64 = 4 << 20;
-/// What a page takes beside its content.
+/// Bytes of a page beside its content.
 const PAGE: u64 = 64;
 /// Longest description of a file.
 const MAX_FOOTER: u32 = 4 << 20;
@@ -20,7 +20,7 @@ const DEPTH: u32 = 4;
 const DICTIONARY: i64 = 2;
 const DELTA_BYTE_ARRAY: i64 = 7;
 
-/// Why a file is not read.
+/// Sentence that says why a file is not read.
 type Refused = String;
 
 /// Refuses a description that takes more memory than a trace's.
@@ -81,7 +81,7 @@ pub(super) fn check_pages(
     Ok(())
 }
 
-/// What a page's header says.
+/// Header of a page.
 #[derive(Default)]
 struct Header {
     kind: i64,

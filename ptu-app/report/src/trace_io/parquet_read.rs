@@ -31,7 +31,7 @@ const AT_ONCE: usize = 16;
 struct Signal {
     place: usize,
     known: Known,
-    /// What its values mean; `None` if they cannot be read, and then no trace has the signal.
+    /// Conversion of the values; `None` if they cannot be read, and then no trace has the signal.
     values: Option<Values>,
 }
 
@@ -97,7 +97,7 @@ fn read_table(
     })
 }
 
-/// What our own exports say of themselves.
+/// Description in a file exported by this program.
 fn about(metadata: &ParquetMetaData) -> Option<TraceInfo> {
     let pairs = metadata.file_metadata().key_value_metadata()?;
     let about = pairs.iter().find(|pair| pair.key == NAME)?;
@@ -245,7 +245,7 @@ fn samples(
     }
 }
 
-/// What is wrong with a row, which a person counts from 1 at the file's beginning.
+/// Sentence on an error in a row, which a person counts from 1 at the file's beginning.
 fn at_row(row: usize, what: &str) -> String {
     format!("row {}: {what}", row + 1)
 }

@@ -1,4 +1,4 @@
-//! What the values of a Parquet column mean: its logical type, or the older converted one.
+//! Meaning of the values in a Parquet column: its logical type, or the older converted one.
 
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit as Parquet, Type as Physical};
 use parquet::schema::types::ColumnDescriptor;
@@ -8,7 +8,7 @@ use super::times::TimeUnit;
 /// Longest number of a decimal column, bytes.
 const LONGEST: usize = 16;
 
-/// How values become numbers.
+/// Conversion of stored values to numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Values {
     Numbers(Numbers),
@@ -34,10 +34,10 @@ pub(super) enum Numbers {
 impl Values {
     pub const PLAIN: Self = Self::Numbers(Numbers::Plain);
 
-    /// What a column says of its values.
+    /// Conversion of the values of a column.
     ///
     /// # Errors
-    /// Why they are no samples.
+    /// The reason for which they are no samples.
     pub fn of(column: &ColumnDescriptor) -> Result<Self, String> {
         if column.max_rep_level() > 0 || column.max_def_level() > 1 {
             return Err("it has lists or parts, not one value a row".to_owned());
@@ -100,7 +100,7 @@ impl Values {
     /// A number of several bytes, the highest first, or a half float.
     ///
     /// # Errors
-    /// It is longer than any number here, or none.
+    /// The bytes are longer than any number here, or no number.
     pub fn of_bytes(self, bytes: &[u8]) -> Result<f64, String> {
         match (self, bytes) {
             (Self::Numbers(Numbers::Half), [low, high]) => {

@@ -83,7 +83,7 @@ pub struct TracePart<'s> {
 }
 
 impl<'s> TracePart<'s> {
-    /// Of these signals, or of all where none is named, the rows in the span.
+    /// The rows in the span of these signals, or of all signals where none is named.
     ///
     /// # Errors
     /// There is no such signal, or no row.

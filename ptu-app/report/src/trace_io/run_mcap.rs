@@ -48,7 +48,7 @@ impl<W: Write + Seek> RunMcap<W> {
     /// Begins the file; the run begins at `t0_us`, microseconds since 1970.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn begin(out: W, t0_us: i64) -> Result<Self, McapError> {
         let mut file = options().create(out)?;
         let channels: Vec<_> = Signal::ALL.iter().map(|signal| channel(*signal)).collect();
@@ -79,7 +79,7 @@ impl<W: Write + Seek> RunMcap<W> {
     /// Adds an event, or rows.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn event(&mut self, procedure: &Procedure, event: &SessionEvent) -> Result<(), McapError> {
         if let SessionEvent::Rows(rows) = event {
             let mut message = Vec::new();

@@ -29,7 +29,7 @@ pub struct Import {
     pub tables: Vec<Table>,
     /// Times are since 1970, UTC; otherwise from the trigger.
     pub is_utc: bool,
-    /// What it is, if one of our own exports.
+    /// Description of the trace, in a file exported by this program.
     pub about: Option<TraceInfo>,
 }
 
@@ -106,7 +106,6 @@ pub(super) fn plain(name: &str) -> Channel {
     }
 }
 
-/// The failure of a file that is wrong.
 pub(super) fn wrong(file: &Path, what: &str) -> Failure {
     Failure::usage(FileTrouble::wrong(file.display(), what))
 }

@@ -1,11 +1,11 @@
-//! Which column of a table has the times, in which unit, and what a cell of it says.
+//! Column of a table with the times, its unit, and the times of its cells.
 
 use std::str::FromStr;
 
 use chrono::{DateTime, NaiveDateTime};
 use ptu_runs::failure::did_you_mean;
 
-/// What a person says of a table's columns.
+/// Columns of a table, as a person describes them.
 #[derive(Clone, Debug, Default)]
 pub struct Columns {
     /// Headings, and the signals that they stand for.
@@ -36,7 +36,7 @@ pub(super) struct Time {
     pub is_utc: bool,
 }
 
-/// What begins the heading of a column of times.
+/// Beginnings of the heading of a column of times.
 const HEADINGS: [&str; 9] = [
     "time",
     "t",
@@ -64,7 +64,7 @@ impl Columns {
         }
     }
 
-    /// That none of these is the column of times that was named.
+    /// Sentence which says that no column has the name given for the times.
     pub(super) fn no_time<'a>(time: &str, headings: impl Iterator<Item = &'a str>) -> String {
         let near = did_you_mean(time, headings);
         format!("no column is called \"{time}\"{near}")
@@ -90,7 +90,7 @@ impl TimeUnit {
         (us.abs() < 9e18).then(|| us.round() as i64)
     }
 
-    /// What a cell says: a number of this unit, or a date.
+    /// Time of a cell: a number of this unit, or a date.
     pub(super) fn time(self, cell: &str, comma: bool) -> Option<Time> {
         if let Some(number) = number(cell, comma) {
             let is_utc = false;

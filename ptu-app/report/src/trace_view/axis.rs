@@ -26,7 +26,6 @@ pub enum Axis {
         zero_row: i64,
         /// Time from row to row.
         period_us: i64,
-        /// Rows there are.
         rows: usize,
     },
     /// Metres in the direction the train went over all.
@@ -35,7 +34,7 @@ pub enum Axis {
         at_m: Vec<f64>,
         /// Rows at which the train was behind the farthest point: they lie at that point.
         rows_back: usize,
-        /// How far it was behind at most, m.
+        /// Greatest distance by which the train was behind, m.
         back_m: f64,
     },
 }
@@ -97,7 +96,6 @@ impl Axis {
         }
     }
 
-    /// Rows there are.
     pub fn rows(&self) -> usize {
         match self {
             Self::Time { rows, .. } => *rows,
@@ -152,7 +150,7 @@ impl Axis {
         }
     }
 
-    /// What is less than that is no distance between two places.
+    /// Smallest distance between two places; less is none.
     fn crumb(&self) -> f64 {
         match self {
             Self::Time { period_us, .. } => *period_us as f64 * 1e-9,

@@ -2,7 +2,7 @@
 
 use super::Window;
 
-/// What one column of pixels shows of a quantity: all its values from the least to the greatest.
+/// Content of one column of pixels for a quantity: all its values from the least to the greatest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Column {
     /// Least value; NaN where nothing is known.

@@ -22,31 +22,31 @@ pub struct ListedRun {
     pub unit: String,
     /// When it began, local time.
     pub began: String,
-    /// How it came out; none before its end.
+    /// Verdict of the run; none before its end.
     pub verdict: Option<Verdict>,
     /// Faults injected on purpose.
     pub injected: Option<String>,
-    /// Its traces, in order.
+    /// Traces of the run, in order.
     pub traces: Vec<ListedTrace>,
 }
 
 #[derive(Clone, Debug)]
 pub struct ListedTrace {
     pub id: Id,
-    /// Its length, s.
+    /// Length of the trace, s.
     pub length_s: f64,
     /// Faults it shows, each once.
     pub faults: Vec<ListedFault>,
-    /// What a filter looks in, in small letters.
+    /// Text in which a filter looks, in small letters.
     text: String,
 }
 
 /// A fault that a trace shows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ListedFault {
-    /// As `9000 check_failed eb_relay`.
+    /// Code, name and part, as `9000 check_failed eb_relay`.
     pub code: String,
-    /// What people call it, in each language.
+    /// Name of the fault for people, in each language.
     said: [String; 2],
 }
 
@@ -71,7 +71,7 @@ impl ListedFault {
 }
 
 impl ListedTrace {
-    /// What it shows, in one line; empty where no fault is in it.
+    /// Faults of the trace in one line; empty where it has none.
     pub fn said(&self, language: Language) -> String {
         let said: Vec<_> = self
             .faults
@@ -87,14 +87,14 @@ impl ListedTrace {
 pub struct Event {
     /// Row at which it happened.
     pub row: usize,
-    /// What it was; none = the trigger.
+    /// Fault at this place; none = the trigger.
     pub fault: Option<ListedFault>,
 }
 
 #[derive(Debug)]
 pub struct OpenTrace {
     pub id: Id,
-    /// Its run, as far as it is known.
+    /// Run of the trace, as far as it is known.
     pub run: Option<Id>,
     pub view: TraceView,
     /// The trigger and the faults found in its window, in order.
@@ -171,7 +171,7 @@ impl ListedTrace {
 /// Reads a trace of this run; where no run is named, of the one its recording names.
 ///
 /// # Errors
-/// It is gone or damaged, or the database fails.
+/// The trace is gone or damaged, or the database fails.
 pub fn open(
     store: &Store,
     parts: &PartNames,

@@ -13,7 +13,7 @@ pub struct MinMaxIndex {
 }
 
 impl MinMaxIndex {
-    /// Of a column of samples; those that are not known (NaN) count for nothing.
+    /// Index of a column of samples; unknown samples (NaN) count for nothing.
     pub fn of(samples: &[f64]) -> Self {
         let mut levels: Vec<Vec<Column>> = Vec::new();
         let first = samples.chunks(FAN).map(|rows| {
@@ -62,7 +62,8 @@ impl MinMaxIndex {
         all
     }
 
-    /// What each column of pixels shows: its rows, and the value that still holds when it begins.
+    /// Fills in what each column of pixels shows: its rows, and the value that still holds when it
+    /// begins.
     pub fn columns(&self, samples: &[f64], edges: &Edges, columns: &mut Vec<Column>) {
         columns.clear();
         columns.extend(edges.rows.windows(2).enumerate().map(|(place, rows)| {

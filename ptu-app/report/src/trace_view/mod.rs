@@ -36,7 +36,7 @@ pub use trace_plot::{Cursor, Lane, OverlayTrace, TracePlot, bare, toggled};
 pub use view::{Summary, TraceView};
 pub use visible_range::VisibleRange;
 
-/// What part of an axis is in view, in the axis' unit: s or m.
+/// Part of an axis in view, in the axis' unit: s or m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// Left edge.

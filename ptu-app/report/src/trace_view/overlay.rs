@@ -1,4 +1,5 @@
-//! Another trace, or that of a good unit, behind a trace, and where the two first differ.
+//! A trace of another run or of a good unit behind a trace, and the place where the two first
+//! differ.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -13,10 +14,10 @@ use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::replay::{Comparison, Deviation, Original, Rule, compare, good_twin, rule_between};
 
-/// What a trace is compared with.
+/// A trace that another is compared with.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OverlaySource {
-    /// The same stimuli on a sound unit.
+    /// The trace of a sound unit under the same stimuli.
     Twin,
     /// Another trace.
     Trace(Id),
@@ -24,7 +25,7 @@ pub enum OverlaySource {
     File(Arc<Path>),
 }
 
-/// Which trace is shown behind another.
+/// A trace that is shown behind another one.
 #[derive(Debug)]
 pub struct Overlay {
     pub against: OverlaySource,
@@ -43,7 +44,7 @@ pub struct FirstDifference {
     pub stretches: BTreeMap<String, Vec<Range<usize>>>,
     /// The first signal that differs.
     pub first: Option<Deviation>,
-    /// Why it could not be told.
+    /// Why the comparison failed.
     pub trouble: Option<Trouble>,
 }
 

@@ -16,7 +16,7 @@ pub struct Runs {
 }
 
 impl Runs {
-    /// Of a column of samples.
+    /// Runs of equal values in a column of samples.
     pub fn of(samples: &[f64]) -> Self {
         let mut runs: Vec<(u32, f64)> = Vec::new();
         for (row, value) in samples.iter().enumerate() {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::view::{Summary, TraceView};
 
-/// What a signal did over a stretch of rows.
+/// Statistics of a signal over a stretch of rows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Statistics {
     Quantity {
@@ -17,18 +17,18 @@ pub enum Statistics {
         /// Root of the mean square of what rows differ from the mean by.
         rms: f64,
     },
-    /// Of a choice or a bit.
+    /// Statistics of a choice or a bit.
     States {
         /// Changes from one known value to another.
         changes: usize,
         /// Share of the known rows per value, the longest first, 0 to 1.
         shares: Vec<(f64, f64)>,
     },
-    /// Not one row is known.
+    /// No row has a known value.
     Unknown,
 }
 
-/// Of a signal at this place over these rows.
+/// Statistics of the signal at this place over these rows.
 pub fn over(view: &TraceView, place: usize, rows: Range<usize>) -> Statistics {
     match view.summary(place) {
         Summary::Quantity(_) => quantity(view.samples(place).get(rows).unwrap_or_default()),

@@ -34,7 +34,7 @@ pub struct Lane {
     pub place: Option<usize>,
     /// Size it was given, 1 = as usual.
     pub stretch: f32,
-    /// It is to be drawn in the lane of the signal above it.
+    /// The signal is drawn in the lane of the signal above it.
     pub joined: bool,
 }
 
@@ -64,9 +64,9 @@ pub struct TracePlot {
     cursors: [Option<usize>; 2],
     close: bool,
     behind: Option<OverlayTrace>,
-    /// What was in view before each zoom, the latest last.
+    /// Views before each zoom, the latest last.
     before: Vec<Window>,
-    /// What is said of these rows, by lane; empty until asked for.
+    /// Statistics of these rows, by lane; empty until asked for.
     said: (Range<usize>, Vec<Option<Statistics>>),
 }
 
@@ -109,7 +109,7 @@ impl TracePlot {
         self.camera.window()
     }
 
-    /// Its lanes from top to bottom.
+    /// Lanes from top to bottom.
     pub fn lanes(&self) -> &[Lane] {
         &self.lanes
     }
@@ -215,7 +215,7 @@ impl TracePlot {
         self.before.push(self.window());
     }
 
-    /// Has in view what was before the last zoom; false when there was none.
+    /// Restores the view before the last zoom; false when there was none.
     pub fn zoom_back(&mut self) -> bool {
         let before = self.before.pop();
         if let Some(window) = before {
@@ -224,7 +224,7 @@ impl TracePlot {
         before.is_some()
     }
 
-    /// There is a zoom to undo.
+    /// Whether a zoom can be undone.
     pub fn can_zoom_back(&self) -> bool {
         !self.before.is_empty()
     }
@@ -299,7 +299,7 @@ impl TracePlot {
         self.view().samples(place).get(row).copied()
     }
 
-    /// How much a quantity is greater under B than under A.
+    /// Increase of a quantity from A to B.
     pub fn difference(&self, place: usize) -> Option<f64> {
         let Summary::Quantity(_) = self.view().summary(place) else {
             return None;
@@ -337,7 +337,7 @@ fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
     VisibleRange::new(axis.whole(), least)
 }
 
-/// Its axis, with 0 this many rows before the trigger.
+/// Axis of a trace, with 0 this many rows before the trigger.
 fn axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Option<Axis> {
     let zero_row = (view.trigger_row() as i64).saturating_sub(shift_rows);
     match kind {

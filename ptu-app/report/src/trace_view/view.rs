@@ -16,7 +16,7 @@ pub struct TraceView {
     summaries: Vec<Summary>,
 }
 
-/// What a signal is, and its samples in short.
+/// Kind of a signal, and its samples in short.
 #[derive(Debug)]
 pub enum Summary {
     /// A number that is measured or counted.
@@ -25,7 +25,7 @@ pub enum Summary {
     Choice(Runs),
     /// On or off.
     Bit(Runs),
-    /// Not one sample is known.
+    /// No sample is known.
     Unknown,
 }
 
@@ -73,7 +73,7 @@ impl TraceView {
         self.extent_of(place, 0..self.data.rows())
     }
 
-    /// The same over some rows.
+    /// Extent of the signal at this place over some rows.
     pub fn extent_of(&self, place: usize, rows: Range<usize>) -> Option<(f64, f64)> {
         let Summary::Quantity(pyramid) = self.summary(place) else {
             return None;

@@ -5,7 +5,7 @@ use super::Window;
 /// Part of the whole by which it may be left at either end.
 const BEYOND: f64 = 0.02;
 
-/// Which part of the axis is in view, and how far it may go.
+/// Part of the axis in view, and its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibleRange {
     window: Window,
@@ -43,7 +43,7 @@ impl VisibleRange {
         self.set(fixed - share * length, length);
     }
 
-    /// What was in view before.
+    /// Brings back an earlier range.
     pub fn restore(&mut self, window: Window) {
         let length = window.length().clamp(self.least, self.whole.length());
         self.set(window.from, length);
@@ -55,13 +55,13 @@ impl VisibleRange {
         self.set(self.window.from + share * length, length);
     }
 
-    /// Has a place in the middle.
+    /// Puts this place in the middle of the view.
     pub fn centre(&mut self, place: f64) {
         let length = self.window.length();
         self.set(place - length / 2.0, length);
     }
 
-    /// Has a stretch in view, with some room around it.
+    /// Shows a stretch, with some room around it.
     pub fn show(&mut self, from: f64, to: f64) {
         let length = ((to - from) * 1.2).clamp(self.least, self.whole.length());
         self.set(f64::midpoint(from, to) - length / 2.0, length);

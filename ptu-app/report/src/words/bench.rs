@@ -347,7 +347,7 @@ wordings! {
 }
 
 impl Bench {
-    /// Why something cannot be done now.
+    /// Reason for which an act is refused now.
     pub fn refusal(&self, why: Refused) -> &'static str {
         match why {
             Refused::NotConnected => self.no_unit,

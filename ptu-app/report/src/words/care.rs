@@ -68,7 +68,6 @@ wordings! {
 }
 
 impl Care {
-    /// How far a sync is.
     pub fn phase(&self, phase: SyncPhase) -> &'static str {
         match phase {
             SyncPhase::Sending => self.sending,

@@ -67,7 +67,6 @@ wordings! {
 }
 
 impl Common {
-    /// A verdict.
     pub fn verdict(&self, verdict: Verdict) -> &'static str {
         match verdict {
             Verdict::Passed => self.passed,
@@ -79,7 +78,6 @@ impl Common {
         }
     }
 
-    /// A stored verdict.
     pub fn stored_verdict(&self, verdict: fault_db::Verdict) -> &'static str {
         self.verdict(from_stored(verdict))
     }

@@ -1,8 +1,9 @@
-//! What scripts and catalogues say, in Korean: names of steps, measurements, fault modes, signals, reasons of limits.
+//! Texts of scripts and catalogues in Korean: names of steps, measurements, fault modes, signals, reasons of limits.
 //!
-//! They are written in English; `scripts/korean.toml` has the Korean beside the scripts it belongs to. A text is looked up with
-//! its numbers as `#`, so that `code 25 gives 25 km/h` and the same step of every other code are one entry, unless it has its own. A depot's own `korean.toml`
-//! beside its procedures is looked in first. What is in neither is shown as it was written.
+//! Scripts are written in English; `scripts/korean.toml` beside them has the Korean. A text is looked up with its
+//! numbers as `#`, so that `code 25 gives 25 km/h` and the same step of every other code are one entry, unless it
+//! has its own. A depot's own `korean.toml` beside its procedures is looked in first. A text that neither file has
+//! is shown as written.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -21,7 +22,7 @@ const JOINED: &str = "; ";
 static CONTENT: LazyLock<Content> =
     LazyLock::new(|| Content::read(KOREAN).expect("a test reads the file that is built in"));
 
-/// Those of the user and of the depot, the ones that count most first.
+/// Korean contents of the user and of the depot, those that take precedence first.
 static OWN: OnceLock<Vec<Content>> = OnceLock::new();
 const FILE: &str = "korean.toml";
 
@@ -69,8 +70,8 @@ fn said(text: &str) -> Option<String> {
     Some(said.collect::<Vec<_>>().join(JOINED))
 }
 
-/// What a measurement is called in Korean, by the name that its script gives it; `None` where there is none. A number at the end of
-/// a name is that of a pair, an input or a speed.
+/// Korean name of a measurement, by the name in its script; `None` where there is none. A number at the end of a
+/// name is that of a pair, an input or a speed.
 pub(super) fn measurement(name: &str) -> Option<String> {
     let named = |key: &str| contents().find_map(|content| content.measurements.get(key));
     if let Some(korean) = named(name) {
@@ -127,7 +128,8 @@ fn without_numbers(text: &str) -> (String, Vec<&str>) {
     without(text, |_| 0)
 }
 
-/// How long the name of a code is that the text begins with, as `L5`: letters and digits that begin with a capital or a digit.
+/// Length of the name of a code at the beginning of the text, as `L5`: letters and digits that begin with a capital
+/// or a digit.
 fn code_name_length(text: &str) -> usize {
     let name = text.split([' ', ',', ':']).next().unwrap_or_default();
     let is_name = name.starts_with(|c: char| c.is_ascii_uppercase() || c.is_ascii_digit())
@@ -161,7 +163,7 @@ fn without(text: &str, name_length: fn(&str) -> usize) -> (String, Vec<&str>) {
     (key, numbers)
 }
 
-/// How long the number is that the text begins with; 0 without one, or where a letter follows it.
+/// Length of the number at the beginning of the text; 0 without one, or where a letter follows it.
 fn number_length(text: &str) -> usize {
     let digits =
         |text: &str| text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();

@@ -92,7 +92,7 @@ impl Words {
 }
 
 impl Counts {
-    /// What of a process chance does not explain.
+    /// Text of a sign in a process that chance does not explain.
     pub fn sign(&self, kind: &str) -> &'static str {
         match kind {
             "beyond_control" => self.beyond_control,

@@ -1,4 +1,6 @@
-//! What this computer lacks for testing units, and how to get it.
+//! Needs of this computer for testing units, and how to meet them.
+
+use btu_rig::rig::InstrumentFault;
 
 use super::wordings;
 
@@ -60,8 +62,42 @@ wordings! {
         instrument_late: "{name} {serial}: {does} within {took} ms, and the bench file states {stated} ms", "{name} {serial}: {does} {took} ms, 시험대 파일에는 {stated} ms";
         state_more: "state more in uncertainty_ms: limits become as much wider", "uncertainty_ms를 늘리십시오. 한계가 그만큼 넓어집니다";
         instrument_wrong: "{name} {serial}: {why}", "{name} (일련번호 {serial}): {why}";
-        check_instrument: "check power, network and address of the instrument; docs/bench.md says more", "계측기의 전원, 네트워크, 주소를 확인하십시오. 자세한 내용: docs/bench.md";
+        not_calibrated: "state its calibration with `ptu instrument calibrate {serial}`: until then runs need --uncalibrated", "교정 등록: `ptu instrument calibrate {serial}`. 그 전에는 시험에 --uncalibrated가 필요합니다";
+        reach_it: "check its supply, the network or cable, and `at` in the bench file", "전원, 네트워크 또는 케이블, 시험대 파일의 at을 확인하십시오";
+        wake_it: "switch it off and on, and close menus on it; another computer may have it", "계측기를 껐다 켜고 열린 메뉴를 닫으십시오. 다른 컴퓨터가 사용 중일 수 있습니다";
+        right_model: "correct `at` in the bench file if addresses are mixed up; else `idn` of its driver", "주소가 뒤바뀌었으면 시험대 파일의 at을, 아니면 드라이버의 idn을 고치십시오";
+        right_serial: "put the number that it answers into `serial` of the bench file, if it was exchanged", "계측기를 교체했으면 응답한 일련번호를 시험대 파일의 serial에 적으십시오";
+        leave_it: "end that program, or wait for its end", "그 프로그램을 끝내거나 끝날 때까지 기다리십시오";
+        right_commands: "hold the commands of its driver against its programming manual", "드라이버의 명령을 계측기의 프로그래밍 설명서와 비교하십시오";
+        empty_queue: "switch it off and on: errors before filled it", "계측기를 껐다 켜십시오. 이전 오류로 가득 찼습니다";
+        right_range: "correct `[ranges]` of its driver, or the value in the bench file or the unit configuration", "드라이버의 [ranges] 또는 시험대 파일·장치 구성의 값을 고치십시오";
+        mend_relay: "check the relay, its supply, and the contact that proves it", "릴레이, 릴레이 전원, 확인 접점을 점검하십시오";
+        right_sound: "check the sound card, its volume and `ptu signal devices`", "음향 장치와 음량, `ptu signal devices`를 확인하십시오";
         answers: "{server} answers", "{server} 응답함";
         recorded_here: "runs are recorded here all the same; sync them when it answers", "시험은 이 컴퓨터에 기록됨. 서버가 응답하면 동기화하십시오";
+    }
+}
+
+impl Doctor {
+    /// What to do about an instrument that does not do its part.
+    pub fn remedy(&self, fault: &InstrumentFault) -> &'static str {
+        use InstrumentFault as F;
+        match fault {
+            F::NotThere { .. } | F::Disconnected(_) | F::Closed => self.reach_it,
+            F::Silent(_) => self.wake_it,
+            F::Slow { .. } => self.state_more,
+            F::OtherModel { .. } => self.right_model,
+            F::OtherSerial { .. } => self.right_serial,
+            F::Taken => self.leave_it,
+            F::Refused { .. } | F::NoAnswer { .. } | F::NoUnmodulated => self.right_commands,
+            F::QueueFull(_) => self.empty_queue,
+            F::OutOfRange { .. } => self.right_range,
+            F::Stuck { .. } => self.mend_relay,
+            F::TooLoud
+            | F::TakesNoSamples
+            | F::NoPlayer { .. }
+            | F::PlayerEnded
+            | F::NotHeard(_) => self.right_sound,
+        }
     }
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ENGLISH, KOREAN, Words};
 
-/// What the user of this process prefers, if that is known.
+/// Language that the user of this process prefers, if it is known.
 static PREFERRED: OnceLock<Language> = OnceLock::new();
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -21,7 +21,6 @@ pub enum Language {
 impl Language {
     pub const ALL: [Self; 2] = [Self::English, Self::Korean];
 
-    /// Name of the language, in the language.
     pub fn name(self) -> &'static str {
         match self {
             Self::English => "English",
@@ -29,7 +28,7 @@ impl Language {
         }
     }
 
-    /// Its code as web pages have it (BCP 47).
+    /// Code of the language on web pages (BCP 47).
     pub fn code(self) -> &'static str {
         match self {
             Self::English => "en",

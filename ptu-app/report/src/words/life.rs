@@ -37,7 +37,7 @@ wordings! {
 }
 
 impl Life {
-    /// What has the serial number.
+    /// Kind of thing that has the serial number.
     pub fn of(&self, of: LifeOf) -> &'static str {
         match of {
             LifeOf::Unit => self.unit,

@@ -1,9 +1,9 @@
-//! What a unit has stored, read by a button.
+//! Stored memory of a unit, read by a button.
 
 use super::wordings;
 
 wordings! {
-    /// What a unit has stored.
+    /// Stored memory of a unit.
     Memory {
         title: "Records kept in the unit", "장치에 저장된 기록";
         import: "Import the unit's log", "장치 기록 가져오기";

@@ -1,4 +1,4 @@
-//! What people read, in their language: the one catalogue of the window and of printed reports.
+//! Texts that people read, in both languages: the one catalogue of the window and of printed reports.
 //!
 //! A missing wording does not compile. Technical words (ATP, EB, FSB, PSM1, signal names …) stay as
 //! technicians write them. What scripts, catalogues and the runner say is looked up by [`Words::content`].
@@ -80,7 +80,6 @@ use wordings;
 /// All wordings in one language.
 #[derive(Debug)]
 pub struct Words {
-    /// Whose.
     pub language: Language,
     /// Verdicts, states, units and what every page says.
     pub common: Common,
@@ -104,7 +103,7 @@ pub struct Words {
     pub care: Care,
     /// Life by serial number.
     pub life: Life,
-    /// What a unit has stored.
+    /// Stored memory of a unit.
     pub memory: Memory,
     /// Parts to replace.
     pub diagnosis: Diagnosis,
@@ -116,7 +115,7 @@ pub struct Words {
     pub terminal: Terminal,
     /// Counts, trends and records in them.
     pub counts: Counts,
-    /// What this computer lacks for testing units.
+    /// Needs of this computer for testing units.
     pub doctor: Doctor,
     /// Signatures and changes that a verification found.
     pub verify: Verify,
@@ -137,7 +136,7 @@ impl Words {
         }
     }
 
-    /// What a procedure checks, in this language if the script says it.
+    /// Title of a procedure, in this language if the script has it.
     pub fn title<'a>(&self, procedure: &'a Procedure) -> &'a str {
         match (self.language, &procedure.title_ko) {
             (Language::Korean, Some(korean)) => korean,
@@ -145,7 +144,7 @@ impl Words {
         }
     }
 
-    /// What a recorded signal is called in few words; in English by its name, as scripts and tables have it.
+    /// Name of a recorded signal in few words; in English its name in scripts and tables.
     pub fn signal<'a>(&self, name: &'a str) -> Cow<'a, str> {
         let said = match self.language {
             Language::English => None,
@@ -154,7 +153,7 @@ impl Words {
         said.map_or(Cow::Borrowed(name), Cow::Owned)
     }
 
-    /// What a part of the catalogue is called.
+    /// Name of a part of the catalogue.
     pub fn part<'a>(&self, id: &'a str) -> &'a str {
         match self.language {
             Language::English => names::english_part(id),
@@ -264,7 +263,7 @@ mod tests {
         .concat()
     }
 
-    /// With what is refused, and what the command line answers.
+    /// All wordings, with those of refusals and of the command line.
     fn all_told() -> Vec<(&'static str, &'static str, &'static str)> {
         let refused = ptu_runs::words::all().map(|[key, english, korean]| (key, english, korean));
         let answers = [Terminal::all(), Counts::all(), Doctor::all(), Verify::all()].concat();
@@ -279,7 +278,7 @@ mod tests {
         }
     }
 
-    /// Who reads the window or a sheet has no command line before them.
+    /// Readers of the window or of a sheet have no command line before them.
     #[test]
     fn no_wording_speaks_of_the_command_line() {
         for (key, english, korean) in all() {

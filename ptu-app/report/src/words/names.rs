@@ -1,4 +1,4 @@
-//! What parts are called.
+//! Names of parts.
 
 use std::sync::LazyLock;
 
@@ -14,12 +14,10 @@ fn part(id: &str) -> Option<&'static Lru> {
     PARTS.iter().find(|part| part.id == id)
 }
 
-/// What a part is called in English.
 pub(super) fn english_part(id: &str) -> &str {
     part(id).map_or(id, |part| &part.name)
 }
 
-/// What a part is called in Korean.
 pub(super) fn korean_part(id: &str) -> &str {
     part(id).map_or(id, |part| &part.name_ko)
 }

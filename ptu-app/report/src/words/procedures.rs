@@ -68,7 +68,7 @@ wordings! {
 }
 
 impl Procedures {
-    /// What the procedures of a folder check; an own folder is called as it is.
+    /// Purpose of a folder's procedures; an own folder keeps its name.
     pub fn folder<'a>(&self, name: &'a str) -> &'a str {
         match name {
             "ato" => self.of_ato,

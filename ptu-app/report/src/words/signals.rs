@@ -48,7 +48,7 @@ wordings! {
         waveform: "Waveform", "파형";
         spectrogram: "Spectrum over time, lighter is stronger: {low} to {high} dB over 1 mV", "시간별 스펙트럼, 밝을수록 강함: 1 mV 기준 {low} ~ {high} dB";
         spectrum: "Mean spectrum", "평균 스펙트럼";
-        envelope: "Envelope of the carrier", "반송파 포락선";
+        envelope: "Level at the {hz} Hz of the code's carrier", "코드 반송파 {hz} Hz의 레벨";
         eye: "Eye of the TWC bits", "TWC 비트 아이 패턴";
         time: "time, s", "시간, s";
         frequency: "frequency, Hz", "주파수, Hz";

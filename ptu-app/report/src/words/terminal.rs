@@ -151,7 +151,7 @@ wordings! {
 }
 
 impl Words {
-    /// That which the terminal of this process shows.
+    /// Words in the language that the terminal of this process shows.
     pub fn shown() -> &'static Self {
         Language::shown().words()
     }
@@ -180,7 +180,7 @@ impl Words {
         self.choose([state.as_str(), fault_state(state)])
     }
 
-    /// What happened to a fault; a kind of another program stays as it is.
+    /// Kind of an event of a fault, as text; an unknown kind stays as it is.
     pub fn event_kind<'a>(&self, kind: &'a str) -> &'a str {
         self.choose([kind, event_kind(kind)])
     }
@@ -193,7 +193,7 @@ impl Words {
         }
     }
 
-    /// What was found in a step, in tables of a terminal: in English by the names that scripts give.
+    /// Findings of a step, in tables of a terminal: in English by the names in scripts.
     pub fn found_in<'a>(&self, step: &'a StepRecord) -> Cow<'a, str> {
         match self.language {
             Language::English => Cow::Borrowed(&step.message),
@@ -209,7 +209,7 @@ impl Words {
         }
     }
 
-    /// What an action waits for, in the same words.
+    /// Condition that an action waits for, in the same words.
     pub fn awaited_briefly(&self, action: &Action) -> String {
         match self.language {
             Language::English => action.to_string(),

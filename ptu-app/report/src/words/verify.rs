@@ -1,4 +1,4 @@
-//! What a verification says of signatures and changes.
+//! Texts of a verification on signatures and changes.
 
 use super::{Words, wordings};
 
@@ -35,6 +35,7 @@ wordings! {
         steps_not_run: "{n} of its {of} steps were not run", "단계 {of}개 중 {n}개 미실행";
         is_part: "only a part of it was run", "일부만 시험함";
         with_faults: "with injected faults {faults}", "고장 주입: {faults}";
+        of_simulated: "of a simulated unit", "모의 장치의 시험임";
         no_pass: "it did not come to a pass", "합격에 이르지 못함";
         departure_unsigned: "nobody signed it", "서명 없음";
         departure_unverified: "what it says is not verified", "내용이 검증되지 않음";
@@ -65,7 +66,7 @@ wordings! {
 }
 
 impl Words {
-    /// What is signed or verified, by its name in statements.
+    /// Name of a signed or verified thing, by its name in statements.
     pub fn signed_thing<'a>(&self, what: &'a str) -> &'a str {
         match what {
             "run" => self.common.run,

@@ -75,7 +75,7 @@ impl UnitAboard {
         aboard
     }
 
-    /// Gives the unit the flash that it had before; no scan may have been made yet.
+    /// Gives the unit the flash that the unit had before; no scan may have been made yet.
     pub fn set_flash(&mut self, flash: Box<dyn BlockDevice>) {
         self.train.link_mut().set_flash(flash);
     }
@@ -101,10 +101,10 @@ impl UnitAboard {
         self.apply(&Stimulus::Wayside(WaysideCondition::Good))
     }
 
-    /// Does something to train or track, from the next scan on.
+    /// Applies a stimulus to train or track, from the next scan on.
     ///
     /// # Errors
-    /// What the train cannot do, and what only a tester does.
+    /// The stimulus is impossible for the train, or is for a tester alone.
     pub fn apply(&mut self, stimulus: &Stimulus) -> Result<(), Refusal> {
         let now = self.train.now();
         self.train.rig_mut().apply(now, stimulus)
@@ -147,7 +147,7 @@ impl UnitAboard {
         self.train.link().powered()
     }
 
-    /// What is around the unit, to be looked at: true motion, contacts, mode.
+    /// The rig around the unit, for looking at true motion, contacts and mode.
     pub fn rig(&self) -> &Rig {
         self.train.rig()
     }
@@ -193,7 +193,7 @@ impl UnitLink for UnitAboard {
     }
 }
 
-/// What a standing train can always do.
+/// Applies a stimulus that is always possible on a standing train.
 fn must(done: Result<(), Refusal>) {
     debug_assert!(done.is_ok(), "{done:?}");
 }

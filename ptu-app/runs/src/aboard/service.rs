@@ -17,19 +17,18 @@ const STANDS_WITHIN: Duration = Duration::from_ms(30_000);
 /// A button is pressed and what follows it has come.
 const SETTLES: Duration = Duration::from_ms(1_500);
 
-/// What the doors did at a station.
+/// Doors at a station.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doors {
-    /// They were opened and closed.
+    /// The doors were opened and closed.
     Opened,
-    /// They stayed closed: the unit enabled neither side.
+    /// The doors stayed closed: the unit enabled neither side.
     NotEnabled,
 }
 
-/// How a section of a service ended.
+/// End of a section of a service.
 #[derive(Clone, Debug)]
 pub struct Arrival {
-    /// Number of the section.
     pub section: u16,
     pub outcome: Outcome,
     /// The doors at its end.

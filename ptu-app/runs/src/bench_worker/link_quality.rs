@@ -6,9 +6,9 @@ use protocol::link::Counters;
 use protocol::message::Channel;
 use protocol::{Duration, Instant};
 
-/// What is looked back on.
+/// Time over which the quality of the link is judged.
 const SPAN: Duration = Duration::from_ms(10_000);
-/// How often counts are kept.
+/// Interval at which counts are kept.
 const EVERY: Duration = Duration::from_ms(500);
 
 /// Counts of the last seconds.

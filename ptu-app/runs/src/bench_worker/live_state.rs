@@ -20,7 +20,6 @@ use crate::run::RunControl;
 /// Rows are kept for this long.
 pub const HISTORY: Duration = Duration::from_ms(120_000);
 
-/// What the bench thread does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phase {
     /// No unit is connected.
@@ -39,7 +38,6 @@ pub enum Phase {
 /// The bench after its latest cycle.
 #[derive(Debug, Default)]
 pub struct LiveData {
-    /// What the bench thread does.
     pub phase: Phase,
     /// Bench time.
     pub now: Instant,
@@ -51,7 +49,7 @@ pub struct LiveData {
     pub connection: Option<Connection>,
     /// Share of frames received over the last seconds.
     pub link: LinkQuality,
-    /// What the last self-test asked for found, as far as it came.
+    /// Results of the last requested self-test, as far as they came.
     pub self_test: Vec<SelfTestItem>,
     /// Restarts of the unit since it was connected.
     pub restarts: u32,
@@ -100,7 +98,7 @@ impl LiveState {
         }
     }
 
-    /// What the window shows: a change of anything else does not wake it.
+    /// Names what the window shows: a change of anything else does not wake the window.
     pub fn watch(&self, watched: Watched) {
         self.watched.store(watched as usize, Ordering::Relaxed);
     }
@@ -122,7 +120,6 @@ impl LiveState {
         requests.single_steps = 0;
     }
 
-    /// Whether the run is to pause.
     pub fn paused(&self) -> bool {
         held(&self.requests).paused
     }

@@ -62,7 +62,7 @@ pub struct BenchWorker {
     orders: Option<Sender<Order>>,
     live_state: Arc<LiveState>,
     events: Receiver<BenchEvent>,
-    /// Of what was ordered last.
+    /// Stops the run that was ordered last.
     stop: Stop,
     thread: Option<JoinHandle<()>>,
 }
@@ -105,10 +105,10 @@ impl BenchWorker {
         self.send(Order::Disconnect);
     }
 
-    /// Does something to the unit by hand.
+    /// Applies a stimulus by hand.
     ///
     /// # Errors
-    /// It is not possible now, or not with this connection; see [`permit`].
+    /// The stimulus is not possible now, or not with this connection; see [`permit`].
     pub fn apply(&self, stimulus: Stimulus) -> Result<(), Refused> {
         self.permits(&stimulus)?;
         let bench_epoch = self.live_state.read().bench_epoch;
@@ -122,10 +122,10 @@ impl BenchWorker {
         self.send(Order::Arm(bench_epoch));
     }
 
-    /// Whether something can be done to the unit by hand now.
+    /// Whether `stimulus` can be given by hand now.
     ///
     /// # Errors
-    /// Why not.
+    /// The reason why it cannot.
     pub fn permits(&self, stimulus: &Stimulus) -> Result<(), Refused> {
         permit(stimulus, &self.live_state.read())
     }
@@ -155,7 +155,7 @@ impl BenchWorker {
         self.stop.presses()
     }
 
-    /// What the run's operator does: pause, single step, answers.
+    /// State of the run that the operator acts on: pause, single step, answers.
     pub fn live_state(&self) -> &Arc<LiveState> {
         &self.live_state
     }
@@ -165,7 +165,7 @@ impl BenchWorker {
         self.live_state.read()
     }
 
-    /// What happened since the last call.
+    /// Events since the last call.
     pub fn events(&self) -> impl Iterator<Item = BenchEvent> + '_ {
         self.events.try_iter()
     }

@@ -13,7 +13,7 @@ pub enum Refused {
     NotConnected,
     /// A run has the bench.
     Running,
-    /// It needs the bench harness, and only the maintenance port is connected.
+    /// The act needs the bench harness; only the maintenance port is connected.
     NeedsHarness,
     /// A person in the cab does it: only the maintenance port is connected.
     InCab,
@@ -28,7 +28,7 @@ pub enum Refused {
 /// Stimuli of the TEST board act on an armed unit only; all others go through the bench harness.
 ///
 /// # Errors
-/// Why not.
+/// The reason why it cannot.
 pub fn permit(stimulus: &Stimulus, live: &LiveData) -> Result<(), Refused> {
     match live.phase {
         Phase::Idle => {}
@@ -54,7 +54,7 @@ pub fn permit(stimulus: &Stimulus, live: &LiveData) -> Result<(), Refused> {
 mod tests {
     use super::*;
 
-    /// Which way a stimulus takes, and with that what it needs.
+    /// Way of a stimulus, and with that its needs.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum Needs {
         Harness,

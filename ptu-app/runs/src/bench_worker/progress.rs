@@ -1,4 +1,4 @@
-//! How far a run has come, computed from its events.
+//! Progress of a run, computed from its events.
 
 use std::sync::Arc;
 use std::time;
@@ -23,7 +23,6 @@ const KEPT: usize = 5_000;
 /// A run's procedures, steps, measurements and faults so far.
 #[derive(Debug)]
 pub struct Progress {
-    /// Unit it is run on.
     pub unit: String,
     /// SHA-256 over the scripts it is of.
     pub scripts_sha256: String,
@@ -31,7 +30,7 @@ pub struct Progress {
     pub procedures: Vec<ProcedureProgress>,
     /// Steps in all, repetitions counted: how long it takes.
     steps: usize,
-    /// Of these, steps that are over.
+    /// Steps that are over, repetitions counted.
     done: usize,
     /// Results, and entries outside steps, that neither passed nor were skipped.
     pub not_passed: usize,
@@ -51,7 +50,6 @@ pub struct Progress {
     worst_left: Duration,
 }
 
-/// A procedure of a run.
 #[derive(Debug)]
 pub struct ProcedureProgress {
     pub procedure: Arc<Procedure>,
@@ -59,9 +57,9 @@ pub struct ProcedureProgress {
     pub chosen: Vec<usize>,
     /// Results of its steps, in the order in which they ran, and what failed outside them: [`outside_place`].
     pub results: Vec<StepResult>,
-    /// Its verdict, once it has ended.
+    /// Verdict of the procedure once it has ended.
     pub verdict: Option<Verdict>,
-    /// What went wrong outside its steps.
+    /// Findings outside the procedure's steps.
     pub findings: Findings,
 }
 
@@ -74,11 +72,11 @@ pub struct RunPosition {
     pub step: Option<usize>,
     /// The step's name.
     pub name: String,
-    /// Which repetition of it, from 1, of so many.
+    /// Number of the repetition of the step, from 1, and number of repetitions.
     pub turn: [u32; 2],
-    /// What is waited for, and until when.
+    /// Condition that is waited for, and until when.
     pub waiting: Option<Waiting<Action>>,
-    /// What the operator is asked, and until when.
+    /// Question to the operator, and until when.
     pub prompt: Option<Waiting<String>>,
     /// Paused, before this step.
     pub paused: Option<String>,
@@ -117,7 +115,7 @@ impl Progress {
         self.counter.counts(self.planned)
     }
 
-    /// How much of what was due was run.
+    /// Coverage: the share of due steps that were run.
     pub fn coverage(&self) -> Coverage {
         let on_bench = self.procedures.iter().flat_map(|progress| {
             let results = progress.results.iter();
@@ -128,7 +126,7 @@ impl Progress {
         Coverage::of(self.counts(), on_bench)
     }
 
-    /// Of a plan that has not begun, on this unit.
+    /// Progress of a plan that has not begun, on this unit.
     pub fn new(plan: &RunPlan, unit: String) -> Self {
         let procedure = |task: &crate::run::Task| {
             ProcedureProgress::of(task.procedure.clone(), task.options.chosen.clone())
@@ -195,7 +193,7 @@ impl Progress {
         self.ended.is_none()
     }
 
-    /// Its id, once it is over and recorded.
+    /// The run's id once it is over and recorded.
     pub fn id(&self) -> Option<fault_db::Id> {
         self.ended.as_ref()?.as_ref().map(|outcome| outcome.id)
     }
@@ -341,7 +339,8 @@ pub fn outside_place(result: &StepResult) -> Option<Outside> {
 const OUTSIDE: usize = usize::MAX;
 
 impl ProcedureProgress {
-    /// Of a procedure that has not begun, with these of its steps or all.
+    /// Progress of a procedure that has not begun; `chosen` = places of its steps that run, none =
+    /// all.
     fn of(procedure: Arc<Procedure>, chosen: Option<Vec<usize>>) -> Self {
         Self {
             chosen: chosen.unwrap_or_else(|| (0..procedure.steps.len()).collect()),

@@ -25,10 +25,10 @@ const COUNTS: [Signal; 5] = [
 /// What the connection bar shows, whatever page is in front.
 const ALWAYS_SHOWN: [Signal; 2] = [Signal::Armed, Signal::MaintenanceKey];
 
-/// What the window shows of the signals.
+/// Signals that the window shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Watched {
-    /// What the connection bar does.
+    /// Work of the connection bar.
     Bar,
     Curves,
     /// All of them as in the cab.

@@ -33,9 +33,9 @@ pub use redundant::{Redundancy, redundancy};
 pub use samples::{Purpose, Sample, samples};
 pub use suite::{Suite, SuiteRun};
 
+use crate::batch::{self, BatchResult, Head, Keep, Plan};
 use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, Unknown, did_you_mean};
-use crate::kept::{self, Head, Keep, Made, Plan};
 use crate::run_diagnosis::basis;
 use crate::stop::Stop;
 use crate::structure::OffWay;
@@ -166,13 +166,13 @@ pub fn run(
         seeds: None,
     };
     let head = Head::new(&basis.sha256, plan);
-    let made = kept::make(&asked.keep, head, (asked.jobs, stop), tell, |i| {
+    let made = batch::make(&asked.keep, head, (asked.jobs, stop), tell, |i| {
         suite.run(&samples[i], stop)
     })?;
     let runs = match made {
-        Made::All(runs) => runs,
-        Made::Part(runs) => return Ok(Ran::Part(runs)),
-        Made::Stopped(_) => return Ok(Ran::Stopped),
+        BatchResult::All(runs) => runs,
+        BatchResult::Part(runs) => return Ok(Ran::Part(runs)),
+        BatchResult::Stopped(_) => return Ok(Ran::Stopped),
     };
     let evidence = Evidence {
         basis: &basis,

@@ -10,8 +10,8 @@ use fault_db::{IdSource, OpenOptions};
 
 pub use span::{Span, months};
 
-/// A time that a unit is sent may be wrong by so much, ms, a value of this program: a laptop that is set by the network now and then,
-/// and the way to the unit.
+/// Greatest error of a time that a unit is sent, ms, a value of this program: a laptop that is set by the network
+/// now and then, and the way to the unit.
 pub const UNCERTAINTY_MS: u16 = 500;
 /// The uncertainty of a time whose error is unknown.
 pub const NOT_KNOWN_MS: u16 = u16::MAX;
@@ -22,7 +22,7 @@ const TIMESYNC: &str = "/run/systemd/timesync";
 /// Whether the computer's clock is kept right by others, as its system says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClockState {
-    /// It was set by the network since the computer was started.
+    /// The network has set the clock since the computer was started.
     Synchronised,
     NotSynchronised,
     /// The system does not say.
@@ -30,7 +30,7 @@ pub enum ClockState {
 }
 
 impl ClockState {
-    /// As the system says it now.
+    /// State of the system's clock now.
     pub fn now() -> Self {
         Self::said_in(Path::new(TIMESYNC))
     }
@@ -43,7 +43,7 @@ impl ClockState {
         }
     }
 
-    /// How far a time of this clock may be wrong, ms.
+    /// Greatest error of a time of this clock, ms.
     pub fn uncertainty_ms(self) -> u16 {
         match self {
             Self::Synchronised => UNCERTAINTY_MS,

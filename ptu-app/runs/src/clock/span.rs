@@ -21,7 +21,7 @@ pub struct Span {
 /// One of its ends, as it was written: a stretch of time of its own.
 struct SpanEnd {
     since_us: i64,
-    /// None of a time ago: it lasts until now.
+    /// End of the span; none for a span that lasts until now.
     until_us: Option<i64>,
 }
 

@@ -11,14 +11,13 @@ use super::Setting;
 use crate::data::DataFile;
 use crate::link::{SIM_SERIAL, SimLink};
 
-/// What the bench of a run is made of.
+/// Material of the bench of a drive.
 #[derive(Clone)]
 pub struct DriveBench {
-    /// Unit configuration.
     pub config: DataFile<UnitConfig>,
     /// Track database.
     pub line: DataFile<Line>,
-    /// What was changed in the configuration's file.
+    /// Changes to the configuration's file.
     pub settings: Vec<Setting>,
 }
 

@@ -25,7 +25,7 @@ const DEFAULT_SECTION: SectionChoice = SectionChoice::One(61);
 pub struct Request {
     /// Line, `lines/NAME.toml`; none = line8.
     pub line: Option<String>,
-    /// Its sections; none = 61.
+    /// Sections of the line; none = 61.
     pub sections: Option<SectionChoice>,
     /// Controllers; none = the configuration's.
     pub controllers: Vec<ControllerKind>,
@@ -35,7 +35,7 @@ pub struct Request {
     pub mass_kg: Option<f64>,
     /// Passengers.
     pub load: Option<Load>,
-    /// What is other than nominal.
+    /// Values that are held, other than nominal.
     pub fixed: Fixed,
     /// Code from start to end, in place of the line's.
     pub code: Option<String>,
@@ -53,7 +53,7 @@ pub struct Case {
     /// Unit configuration and line.
     pub bench: Arc<DriveBench>,
     pub plan: DrivePlan,
-    /// What is held fixed where the rest is drawn.
+    /// Values that are held where the rest is drawn.
     pub fixed: Fixed,
     pub seed: u64,
 }
@@ -72,7 +72,7 @@ impl Request {
     pub fn cases(&self, directory: &ScriptsDirectory) -> Result<Vec<Case>, Failure> {
         self.fixed.check()?;
         self.one_controller_setting()?;
-        let mut train = train::train(directory, &self.train)?;
+        let mut train = directory.train(&self.train)?;
         train::check_acts(&train, &self.fixed)?;
         let load_kg = train::load(&mut train, self.mass_kg, self.load)?;
         let fixed = Fixed {
@@ -152,7 +152,7 @@ impl Request {
 }
 
 impl Case {
-    /// The same with train and day drawn by `seed`, but for what is held fixed.
+    /// This case with load and conditions drawn by `seed`; what is held fixed keeps its value.
     pub fn drawn(&self, scatter: &Scatter, seed: u64) -> Self {
         let drawn = scatter.draw(seed, self.plan.train.full_load_kg());
         let (load_kg, conditions) = self.fixed.hold(

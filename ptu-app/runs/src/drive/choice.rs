@@ -94,7 +94,7 @@ pub fn disturbance(text: &str) -> Result<Disturbance, String> {
     })
 }
 
-/// What is as the command says, also where the rest is drawn.
+/// Values given on the command line, held where the rest is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fixed {
     /// Passengers, kg.

@@ -5,8 +5,8 @@ use btu_rig::drive::{Ending, Metrics, Scatter, ScatterDraw};
 use serde::{Deserialize, Serialize};
 
 use super::Case;
+use crate::batch::{self, BatchResult, Head, Keep, Plan};
 use crate::failure::Failure;
-use crate::kept::{self, Head, Keep, Made, Plan};
 use crate::progress::Progress;
 use crate::stop::Stop;
 
@@ -19,7 +19,7 @@ const NEVER_PAST_M: f64 = 1.0;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
-    /// Its own seed: `--scattered --seed` repeats it.
+    /// Seed of this run: `--scattered --seed` repeats the run.
     pub seed: u64,
     pub drawn: ScatterDraw,
     pub ending: Ending,
@@ -31,15 +31,14 @@ pub struct Trial {
 
 /// The results of many runs.
 pub struct MonteCarlo {
-    /// What was run, nominally.
+    /// The case, with nominal values.
     pub case: Case,
-    /// Runs asked for.
     pub asked: usize,
-    /// Those done, by seed.
+    /// Runs that were made, by seed.
     pub trials: Vec<Trial>,
 }
 
-/// What of a trial is kept: the rest is drawn by its seed again.
+/// The part of a run that a file keeps; the rest is drawn again from its seed.
 #[derive(Serialize, Deserialize)]
 struct KeptTrial {
     ending: Ending,
@@ -47,7 +46,7 @@ struct KeptTrial {
     metrics: Option<Metrics>,
 }
 
-/// What came of many runs.
+/// Outcome of the runs of a shard or of all.
 pub enum Ran {
     /// The results of each case; fewer than were asked for after a stop.
     All(Vec<MonteCarlo>),
@@ -91,7 +90,7 @@ pub fn run(
     };
     let ours = keep.ours(plan.len()).count();
     let mut progress = Progress::new(ours, plan.names.join(", "));
-    let made = kept::make(
+    let made = batch::make(
         keep,
         head,
         (jobs, stop),
@@ -99,9 +98,9 @@ pub fn run(
         one,
     )?;
     let trials: Vec<Option<KeptTrial>> = match made {
-        Made::All(trials) => trials.into_iter().map(Some).collect(),
-        Made::Part(runs) => return Ok(Ran::Part(runs)),
-        Made::Stopped(trials) => trials,
+        BatchResult::All(trials) => trials.into_iter().map(Some).collect(),
+        BatchResult::Part(runs) => return Ok(Ran::Part(runs)),
+        BatchResult::Stopped(trials) => trials,
     };
     let trial = |(i, trial): (usize, Option<KeptTrial>)| {
         let (trial, drawn) = (trial?, drawn(i));
@@ -125,7 +124,7 @@ pub fn run(
     Ok(Ran::All(cases.into_iter().map(of_case).collect()))
 }
 
-/// What decides these runs, and their names.
+/// Head of these runs: all that decides them, and their names.
 fn head(cases: &[Case], count: usize, scatter: &Scatter) -> Head {
     let mut made_by = format!("{scatter:?}\n");
     for case in cases {
@@ -158,7 +157,7 @@ impl Trial {
         self.ending == Ending::Stopped
     }
 
-    /// How far off it stopped, m; infinitely if it did not.
+    /// Distance from the stop point, m; infinite if the train did not stop.
     fn off_m(&self) -> f64 {
         let error = self.stop_error_m.filter(|_| self.stopped());
         error.map_or(f64::INFINITY, f64::abs)
@@ -206,7 +205,7 @@ impl MonteCarlo {
         trials
     }
 
-    /// At least 99.9 % within the door tolerance, none far past the stop point.
+    /// Whether at least 99.9 % stopped within the door tolerance, and none far past the stop point.
     pub fn passed(&self) -> bool {
         self.within(self.case.tolerance_m()) >= ENOUGH && self.past_1m() == 0
     }
@@ -230,7 +229,7 @@ pub fn percentile(sorted: &[f64], percent: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Of 0, 10, 20, 30, 40 the median is 20; 2.5 % of the four gaps is a tenth of the first.
+    /// Median of 0, 10, 20, 30, 40: 20. 2.5 % of the four gaps is a tenth of the first.
     #[test]
     fn percentiles_lie_between_values() {
         let values = [0.0, 10.0, 20.0, 30.0, 40.0];

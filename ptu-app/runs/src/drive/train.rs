@@ -1,15 +1,12 @@
 //! The train of a run: its file, its mass, and the parameters the unit is given for it.
 
-use std::path::Path;
-
 use btu_rig::conditions::Conditions;
 use btu_rig::drive::Load;
 use btu_rig::train::{IdealData, TrainData};
 use protocol::config::UnitConfig;
 
 use super::{Fixed, Setting};
-use crate::data::{ScriptsDirectory, read};
-use crate::failure::{DriveTrouble, Failure, FileTrouble};
+use crate::failure::{DriveTrouble, Failure};
 
 /// Least and greatest mass of an ideal train, kg.
 const IDEAL_KG: (f64, f64) = (1e4, 2e6);
@@ -18,22 +15,8 @@ const NO_BASE_SPEED_KMH: f64 = 130.0;
 /// Highest jerk a unit can be given, m/s³: none at all.
 const NO_JERK_LIMIT_MPS3: f64 = 100.0;
 
-/// The train called `name` in `trains/`, or of a file.
-///
-/// # Errors
-/// There is none, or it is wrong.
-pub fn train(directory: &ScriptsDirectory, name: &str) -> Result<TrainData, Failure> {
-    if !name.ends_with(".toml") {
-        return Ok(directory
-            .load("trains", name, "train", TrainData::from_toml)?
-            .content);
-    }
-    TrainData::from_toml(&read(Path::new(name))?)
-        .map_err(|error| Failure::usage(FileTrouble::wrong(name, error)))
-}
-
-/// Gives the train a total mass: an ideal train is built so heavy, a train of cars is loaded so
-/// far. The passengers aboard come back, if anything was said of them.
+/// Gives the train a total mass: an ideal train is built to it, a train of cars is loaded to it.
+/// Returns the passengers aboard, kg; none if neither mass nor load was given.
 ///
 /// # Errors
 /// The train cannot be so heavy, so light or so full.
@@ -75,8 +58,8 @@ pub fn load(
     }
 }
 
-/// What the unit's configuration must say so that it knows its train. A train of cars is the one
-/// the configuration is made for; the papers' ideal train is another, and their controller knew it.
+/// Settings by which the unit's configuration fits the train. A train of cars is the one the
+/// configuration is made for; the papers' ideal train is another, and their controller knew it.
 pub fn told(train: &TrainData) -> Vec<Setting> {
     match train {
         TrainData::Cars(_) => Vec::new(),
@@ -108,7 +91,7 @@ fn told_ideal(ideal: &IdealData) -> Vec<Setting> {
     .into()
 }
 
-/// What is to be said of a train whose service brake gives less than ATO counts on.
+/// Warning of a train whose service brake gives less than ATO counts on.
 pub fn brakes_less(train: &TrainData, config: &UnitConfig) -> Option<DriveTrouble> {
     let (brakes, counts_on) = (train.service_kmh_per_s(), config.ato.decel_kmh_per_s);
     (brakes < counts_on)
@@ -135,7 +118,8 @@ pub fn check_acts(train: &TrainData, fixed: &Fixed) -> Result<(), Failure> {
     Ok(())
 }
 
-/// `drawn` with what does not act on this train as usual, so that no report says it did.
+/// `drawn` with nominal values for conditions that do not act on this train, so that no report
+/// names them.
 pub fn acting(train: &TrainData, drawn: Conditions) -> Conditions {
     let usual = Conditions::default();
     match train {

@@ -28,8 +28,9 @@ pub fn did_you_mean<'a>(asked: &str, known: impl IntoIterator<Item = &'a str>) -
     Near(near.map(|(_, name)| name.to_owned()))
 }
 
-/// The same for serial numbers: those of a fleet are all alike, and one with another digit is another
-/// unit's. What is near differs in capitals or signs, or is a slip of one key.
+/// The serial number nearest to the one asked for. Serial numbers of a fleet are alike, and a number
+/// with another digit belongs to another unit: a near one differs in capitals or signs, or by a slip
+/// of one key.
 pub fn did_you_mean_number<'a>(asked: &str, known: impl IntoIterator<Item = &'a str>) -> Near {
     let plain = |text: &str| -> String {
         let letters = text.chars().filter(|letter| letter.is_alphanumeric());

@@ -18,7 +18,7 @@ use crate::new_file::{NewFile, cannot_write, kind};
 const SHORTEST_PIN: usize = 6;
 /// Longest file that is read, bytes.
 const LONGEST: u64 = 64 << 10;
-/// What stands before the 32 bytes of an Ed25519 key in PKCS#8 (RFC 8410).
+/// Bytes before the 32 bytes of an Ed25519 key in PKCS#8 (RFC 8410).
 const HEAD: [u8; 16] = [
     0x30, 0x2e, 0x02, 0x01, 0x00, 0x30, 0x05, 0x06, 0x03, 0x2b, 0x65, 0x70, 0x04, 0x22, 0x04, 0x20,
 ];

@@ -44,30 +44,30 @@ pub struct KeyList {
     pub keys: Vec<KeyEntry>,
 }
 
-/// How a key stood at a time.
+/// Standing of a key at a time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// It is in the list under this name and held then.
+    /// The list has the key under this name, and the key was valid then.
     Held,
-    /// It is not in the list.
+    /// The list does not have the key.
     Unknown,
-    /// It is in the list under another name, or as another kind of key.
+    /// The list has the key under another name, or as another kind of key.
     OtherName(String),
-    /// Its time had not begun; the day from which on it holds.
+    /// The key was not valid yet; the day from which on it is.
     NotYet(String),
-    /// Its time was over; the day from which on.
+    /// The key had expired; the day from which on.
     Expired(String),
-    /// It was revoked; the day from which on.
+    /// The key was revoked; the day from which on.
     Revoked(String),
 }
 
 impl Standing {
-    /// It is in the list and held then.
+    /// The list has the key, valid then.
     pub fn is_good(&self) -> bool {
         *self == Self::Held
     }
 
-    /// In words, after "the key".
+    /// Standing in words, after "the key".
     pub fn text(&self) -> String {
         match self {
             Self::Held => "is in the list and was valid then".to_owned(),
@@ -173,10 +173,10 @@ impl KeyList {
         text
     }
 
-    /// Adds a key; of one that is there already the narrowest days hold. What it is then.
+    /// Adds a key, and returns its entry: a key known before is then valid only on days that both entries allow.
     ///
     /// # Errors
-    /// It is there as another's.
+    /// The list has the key under another name.
     pub fn add(&mut self, entry: KeyEntry) -> Result<KeyEntry, KeyTrouble> {
         let Some(known) = self.keys.iter_mut().find(|known| known.key == entry.key) else {
             self.keys.push(entry.clone());
@@ -206,7 +206,7 @@ impl KeyList {
         (self.keys.iter()).filter(move |entry| entry.who == asked || by_key(entry))
     }
 
-    /// How a key stood at a time under a name, as that of a technician or a bench.
+    /// Standing of a key at a time under a name, as the key of a technician or a bench.
     pub fn standing(&self, key: &str, who: &str, kind: &str, at_us: i64) -> Standing {
         match self.find(key) {
             None => Standing::Unknown,
@@ -224,7 +224,7 @@ impl KeyEntry {
         self.key.get(..16).unwrap_or(&self.key)
     }
 
-    /// How it stood at a time.
+    /// State of the key at this time, µs UTC.
     pub fn standing(&self, at_us: i64) -> Standing {
         let day = day_of(at_us);
         let is_from = |start: &&String| ***start <= *day;
@@ -236,15 +236,15 @@ impl KeyEntry {
         }
     }
 
-    /// Whose it is, in words.
+    /// Owner of the key, in words.
     pub fn name(&self) -> String {
         format!("{} ({})", self.who, self.kind)
     }
 
-    /// Looks whether it can be one.
+    /// Checks the name, the digits of the key and the days.
     ///
     /// # Errors
-    /// Why not.
+    /// One of them has another form, in words.
     pub fn check(&self) -> Result<(), String> {
         name_argument(&self.who)?;
         let hex = self
@@ -267,10 +267,10 @@ impl KeyEntry {
     }
 }
 
-/// A name that a key signs by: composed (NFC), and without what cannot be seen.
+/// Name of a key's owner: composed (NFC), and without invisible characters.
 ///
 /// # Errors
-/// It is empty or in another form.
+/// The name is empty or in another form.
 pub fn name_argument(text: &str) -> Result<String, String> {
     let hidden = |c: char| {
         (c != ' ' && c.is_whitespace()) || matches!(c, '\u{fe00}'..='\u{fe0f}' | '\u{2800}')
@@ -288,7 +288,7 @@ pub fn name_argument(text: &str) -> Result<String, String> {
 /// A day, as 2026-11-26.
 ///
 /// # Errors
-/// It is none.
+/// The text is no day.
 pub fn day_argument(text: &str) -> Result<String, String> {
     let day = NaiveDate::parse_from_str(text, DAY)
         .ok()

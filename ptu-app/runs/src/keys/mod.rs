@@ -50,10 +50,10 @@ fn own_of(named: &Path) -> Option<PathBuf> {
 /// The list in the folder of one's own keys.
 pub const TRUSTED: &str = "trusted.keys";
 
-/// The key in this file, if it holds today by itself and by the list of this computer.
+/// The key in this file, if it is valid today by itself and by the list of this computer.
 ///
 /// # Errors
-/// It is not there, can be read by others, or holds no longer.
+/// The file is missing or readable by others, or the key is no longer valid.
 pub fn usable(path: &Path) -> Result<KeyFile, Failure> {
     let file = KeyFile::read(path)?;
     owner_only::refuse_shared(&located(path))?;
@@ -61,7 +61,7 @@ pub fn usable(path: &Path) -> Result<KeyFile, Failure> {
     Ok(file)
 }
 
-/// What signs with the key in this file.
+/// Signer with the key in this file.
 ///
 /// # Errors
 /// As [`usable`], or its PIN is wrong.

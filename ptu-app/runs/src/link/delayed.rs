@@ -54,7 +54,7 @@ struct Direction {
     takes: Duration,
     late_share: f64,
     random: Random,
-    /// What is on its way: when it arrives, and the bytes. Never longer than the scans it takes.
+    /// Bytes on their way with their times of arrival; never longer than the scans the way takes.
     under_way: VecDeque<(Instant, Vec<u8>)>,
 }
 

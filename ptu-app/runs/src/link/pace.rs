@@ -20,7 +20,7 @@ impl Pace {
         Self::slower(1)
     }
 
-    /// So many times slower than the clock, beginning now.
+    /// A pace `slower` times slower than the clock, beginning now.
     pub fn slower(slower: u32) -> Self {
         Self::Real {
             began: WallClock::now(),
@@ -36,14 +36,14 @@ impl Pace {
         }
     }
 
-    /// The next scans are due so many µs of the bench later, or earlier.
+    /// Moves the deadlines of the next scans by this number of µs of the bench, later or earlier.
     pub fn shift(&mut self, later_us: i64) {
         if let Self::Real { deadlines, .. } = self {
             deadlines.shift(later_us);
         }
     }
 
-    /// How far the last scan, or what came after it, is behind its time, in the time of the bench.
+    /// Lag of the last scan, or of what came after it, in the time of the bench.
     pub fn behind(&self) -> Duration {
         match self {
             Self::Virtual => Duration::ZERO,

@@ -10,7 +10,8 @@ use crate::platform;
 /// Opens a port and keeps it to this program until it is closed.
 ///
 /// # Errors
-/// It is not there, or another program holds it, which is named where the system tells.
+/// The port is missing, or another program holds it; the error names that program where the system
+/// tells.
 pub(crate) fn open_port(
     path: &str,
     baud: u32,

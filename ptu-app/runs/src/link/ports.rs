@@ -14,7 +14,7 @@ pub struct PortFound {
     pub kind: &'static str,
 }
 
-/// Those found; a pseudo-terminal is not among them but can be named.
+/// The serial ports found. A pseudo-terminal is not among them but can be named.
 ///
 /// # Errors
 /// The system does not tell.

@@ -20,9 +20,9 @@ pub struct SimLink {
     /// Earliest time at which it comes back.
     may_power_at: Instant,
     unit: Option<Unit>,
-    /// Its flash while it is without supply; `None` = a new one.
+    /// Flash of the unit while the unit is without supply; `None` = a new one.
     flash: Option<Box<dyn BlockDevice>>,
-    /// What arm challenges are drawn from; `None` = the seed.
+    /// Seed of the arm challenges; `None` = the link's seed.
     challenges: Option<u64>,
 }
 
@@ -51,7 +51,7 @@ impl SimLink {
     }
 
     /// Switches the supply off, or on if it was off: the unit is powered up again then.
-    pub(crate) fn set_power(&mut self, now: Instant, on: bool) {
+    pub fn set_power(&mut self, now: Instant, on: bool) {
         match (on, self.power_at) {
             (false, Some(_)) => {
                 self.power_at = None;

@@ -29,9 +29,8 @@ pub enum Endpoint {
     Sim,
     /// A serial port.
     Serial {
-        /// Its path.
         path: String,
-        /// Its rate.
+        /// Baud rate.
         baud: u32,
     },
     /// A TCP socket, `HOST:PORT`.
@@ -41,7 +40,8 @@ pub enum Endpoint {
 }
 
 impl Endpoint {
-    /// How a bench with this unit keeps its time, so many times slower than the clock where it goes by it.
+    /// Pace of a bench with this unit, `slower` times slower than the clock where the bench follows the
+    /// clock.
     pub fn pace(&self, slower: u32) -> Pace {
         match self {
             Self::LockStep(_) => Pace::Virtual,
@@ -113,10 +113,10 @@ pub struct WireLink {
     began: Option<(std::time::Instant, Instant)>,
     read: Vec<u8>,
     backlog: Backlog,
-    /// How long both ends stood still.
+    /// Time for which both ends stood still.
     pause: BenchDuration,
     placed: Option<Placed>,
-    /// What leaves and what came, before instruments took and gave their part.
+    /// Bytes sent and received, before instruments took and gave their part.
     to_wire: Vec<u8>,
     from_wire: Vec<u8>,
 }
@@ -155,19 +155,19 @@ impl WireLink {
         })
     }
 
-    /// To a unit that goes so many times slower than the clock.
+    /// Sets the pace of a unit that goes `slower` times slower than the clock.
     pub fn slower(mut self, slower: u32) -> Self {
         self.slower = slower;
         self
     }
 
-    /// With instruments that take a part of the stimuli and give a part of the readings.
+    /// Adds instruments, which take a part of the stimuli and give a part of the readings.
     pub fn with_instruments(mut self, placed: Placed) -> Self {
         self.placed = Some(placed);
         self
     }
 
-    /// How far the bench is behind the clock; in lock step there is none.
+    /// Lag of the bench behind the clock; in lock step there is none.
     fn behind(&mut self, now: Instant) -> BenchDuration {
         if matches!(self.port, Port::LockStep(_)) {
             return BenchDuration::ZERO;

@@ -1,13 +1,25 @@
 //! Waveforms that a sound card carries in place of frames.
 
-use std::time::Duration;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
 
 use btu_rig::rig::{InstrumentFault, LinkTrouble};
 use protocol::message::{COIL_PART, COIL_SAMPLES, COIL_STEP_MV, Coil, CoilSamples};
 
 use super::file::Places;
 use super::placed::trouble;
-use crate::sound::Stream;
+use crate::signal::FULL_SCALE_MV;
+use crate::sound::{Stream, record};
+use crate::stop::Stop;
+
+/// A scan.
+const SCAN: Duration = Duration::from_millis(10);
+/// Scans of a beep, and of the silence around it, in which what was heard before is over.
+const BEEP: u32 = 5;
+const QUIET: u32 = 40;
+/// Level of a beep, mV, and by how much it is louder than the silence before it.
+const BEEP_MV: f32 = 500.0;
+const LOUDER: f32 = 4.0;
 
 /// The sound card at work.
 pub(super) struct BySound {
@@ -72,13 +84,70 @@ impl BySound {
     }
 }
 
-/// How long sound is on its way, ms: half a second of silence is played, as fast as it comes.
-pub(super) fn try_sound(stream: &Stream) -> Result<f64, InstrumentFault> {
+/// How long sound is on its way, ms: of beeps to where they are heard; else half a second of silence is played, as fast as
+/// it comes.
+pub(super) fn try_sound(places: &Places, name: &str, rounds: u32) -> Result<f64, InstrumentFault> {
+    let entry = &places.instruments[name];
+    let stream = Stream::start(&entry.reach().to_string(), places.full_scale_mv)?;
+    if let Some(at) = &entry.heard_at {
+        return hear_beeps(&stream, at, rounds);
+    }
     let mut takes_ms = 0;
     for _ in 0..50 {
         stream.feed(&[[0.0; 2]; COIL_SAMPLES]);
-        std::thread::sleep(Duration::from_millis(10));
+        std::thread::sleep(SCAN);
         takes_ms = takes_ms.max(stream.takes_ms());
     }
     stream.clipped().map(|_| takes_ms as f64)
+}
+
+/// The longest of so many beeps, with the time in which the input hands them on.
+fn hear_beeps(stream: &Stream, at: &str, rounds: u32) -> Result<f64, InstrumentFault> {
+    let stop = Stop::default();
+    let (told, heard) = channel();
+    std::thread::scope(|scope| {
+        let recorder = scope.spawn(|| {
+            let loudest = |most: f32, mv: &f32| most.max(mv.abs());
+            record((at, [FULL_SCALE_MV; 2]), None, &stop, &mut |block| {
+                let _ = told.send((Instant::now(), block[0].iter().fold(0.0, loudest)));
+                Ok(())
+            })
+        });
+        let rounds = (0..rounds).try_fold(0.0f64, |longest, _| {
+            Some(longest.max(beep(stream, &heard)?.as_secs_f64() * 1000.0))
+        });
+        stop.press_once();
+        let recorded = recorder.join();
+        stream.clipped()?;
+        match (rounds, recorded) {
+            (Some(longest_ms), Ok(Ok(_))) => Ok(longest_ms),
+            _ => Err(InstrumentFault::NotHeard(at.to_owned())),
+        }
+    })
+}
+
+/// How long a beep takes from here until it is heard, if it is.
+fn beep(stream: &Stream, heard: &Receiver<(Instant, f32)>) -> Option<Duration> {
+    let mut silence = 1.0f32;
+    let play = |scans: u32, mv: f32| {
+        for _ in 0..scans {
+            // 3 kHz.
+            let sample = |place: usize| if place % 16 < 8 { mv } else { -mv };
+            stream.feed(&std::array::from_fn::<_, COIL_SAMPLES, _>(|place| {
+                [sample(place); 2]
+            }));
+            std::thread::sleep(SCAN);
+        }
+    };
+    play(QUIET, 0.0);
+    heard
+        .try_iter()
+        .for_each(|(_, mv)| silence = silence.max(mv));
+    let began = Instant::now();
+    play(BEEP, BEEP_MV);
+    play(QUIET, 0.0);
+    let loud = heard.try_iter().filter(|(_, mv)| *mv > LOUDER * silence);
+    // All are taken, so that none is silence before the next.
+    let first = loud.map(|(at, _)| at).min();
+    first.map(|at| at.saturating_duration_since(began))
 }

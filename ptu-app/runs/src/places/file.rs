@@ -12,7 +12,7 @@ use toml::Spanned;
 
 use super::instrument::{InstrumentEntry, Kind};
 use super::model::Model;
-use super::points::{UnitInput, check_reading};
+use super::points::{Named, UnitInput, check_reading};
 use crate::signal::FULL_SCALE_MV;
 
 /// Why a bench file or a driver is refused.
@@ -144,6 +144,120 @@ pub struct Written {
     readings: BTreeMap<String, Spanned<Point>>,
 }
 
+/// What is wrong in the part of the text that begins there.
+fn wrong(text: &str, at: &Range<usize>, why: impl Into<String>) -> PlacesError {
+    PlacesError::Wrong {
+        line: 1 + text[..at.start].matches('\n').count(),
+        why: why.into(),
+    }
+}
+
+type Drivers = BTreeMap<String, Arc<Model>>;
+
+impl Written {
+    /// Instruments and their drivers: each is whole, has an address of its own, and is named in `safe`.
+    fn instruments(
+        &self,
+        text: &str,
+        model: &mut impl FnMut(&str) -> Result<Model, String>,
+    ) -> Result<(BTreeMap<String, InstrumentEntry>, Drivers), PlacesError> {
+        let (mut instruments, mut models) = (BTreeMap::new(), Drivers::new());
+        let switches = |name: &str| (self.stimuli.values()).any(|point| point.get_ref().at == name);
+        for (place, (name, entry)) in self.instruments.iter().enumerate() {
+            let refuse =
+                |why: String| wrong(text, &entry.span(), format!("instrument {name}: {why}"));
+            let entry = entry.get_ref();
+            let checked = entry.check(switches(name), self.instruments.len());
+            checked.map_err(refuse)?;
+            if let Some(driver) = &entry.model {
+                models.insert(name.clone(), Arc::new(model(driver).map_err(refuse)?));
+            }
+            let mut before = self.instruments.iter().take(place);
+            if let Some((other, _)) =
+                before.find(|(_, other)| entry.is_in_the_way_of(other.get_ref()))
+            {
+                let why =
+                    format!("{other} is at its address, too, which Modbus modules alone may share");
+                return Err(refuse(why));
+            }
+            instruments.insert(name.clone(), entry.clone());
+        }
+        let ordered = self.safe.get_ref();
+        let missing = instruments.keys().find(|name| !ordered.contains(name));
+        let unknown = ordered.iter().find(|name| !instruments.contains_key(*name));
+        if let Some(name) = missing.or(unknown) {
+            let why = format!(
+                "safe names each instrument once, in the order in which they are switched off: see {name}"
+            );
+            return Err(wrong(text, &self.safe.span(), why));
+        }
+        let cards = instruments
+            .values()
+            .filter(|entry| entry.kind() == Kind::Sound);
+        match cards.count() {
+            0 | 1 => Ok((instruments, models)),
+            _ => Err(wrong(
+                text,
+                &self.safe.span(),
+                "there is one sound card at most",
+            )),
+        }
+    }
+
+    /// Stimuli that are not in the frames.
+    fn stimuli<'a>(
+        &self,
+        text: &str,
+        of: &impl Fn(&str) -> Named<'a>,
+    ) -> Result<BTreeMap<UnitInput, Point>, PlacesError> {
+        let (mut stimuli, mut taken) = (BTreeMap::new(), BTreeSet::new());
+        for (name, point) in &self.stimuli {
+            let refuse =
+                |why: String| wrong(text, &point.span(), format!("stimulus {name}: {why}"));
+            let known = UnitInput::from_name(name);
+            let known = known.ok_or_else(|| refuse("there is no such stimulus".into()))?;
+            let point = point.get_ref();
+            point.check().map_err(refuse)?;
+            known.check(point, of(&point.at)).map_err(refuse)?;
+            if let Place::Instrument(instrument) = point.place() {
+                let mut twice = point
+                    .coils
+                    .iter()
+                    .filter(|coil| !taken.insert((instrument, **coil)));
+                if let Some(coil) = twice.next() {
+                    return Err(refuse(format!("coil {coil} has another use")));
+                }
+            }
+            if point.place() != Place::Frames {
+                stimuli.insert(known, point.clone());
+            }
+        }
+        Ok(stimuli)
+    }
+
+    /// Readings that are not in the frames.
+    fn readings<'a>(
+        &self,
+        text: &str,
+        of: &impl Fn(&str) -> Named<'a>,
+    ) -> Result<BTreeMap<Signal, Point>, PlacesError> {
+        let mut readings = BTreeMap::new();
+        for (name, point) in &self.readings {
+            let refuse = |why: String| wrong(text, &point.span(), format!("reading {name}: {why}"));
+            let known = READINGS.iter().find(|(known, _)| known.name() == name);
+            let (known, contact) =
+                *known.ok_or_else(|| refuse("no contact or display of the unit".into()))?;
+            let point = point.get_ref();
+            point.check().map_err(refuse)?;
+            check_reading(!contact.is_empty(), point, of(&point.at)).map_err(refuse)?;
+            if point.place() != Place::Frames {
+                readings.insert(known, point.clone());
+            }
+        }
+        Ok(readings)
+    }
+}
+
 /// A bench file that was checked.
 #[derive(Clone, Debug)]
 pub struct Places {
@@ -196,101 +310,23 @@ impl Places {
         mut model: impl FnMut(&str) -> Result<Model, String>,
     ) -> Result<Self, PlacesError> {
         let read: Written = toml::from_str(text)?;
-        let wrong = |at: &Range<usize>, why: String| PlacesError::Wrong {
-            line: 1 + text[..at.start].matches('\n').count(),
-            why,
-        };
-        let mut models = BTreeMap::new();
-        let mut instruments = BTreeMap::new();
-        let switches = |name: &str| (read.stimuli.values()).any(|point| point.get_ref().at == name);
-        for (name, entry) in &read.instruments {
-            let refuse = |why| wrong(&entry.span(), format!("instrument {name}: {why}"));
-            let entry = entry.get_ref();
-            entry
-                .check(switches(name), read.instruments.len())
-                .map_err(refuse)?;
-            if let Some(driver) = &entry.model {
-                models.insert(name.clone(), Arc::new(model(driver).map_err(refuse)?));
-            }
-            instruments.insert(name.clone(), entry.clone());
-        }
-        let ordered = read.safe.get_ref();
-        let missing = instruments.keys().find(|name| !ordered.contains(name));
-        let unknown = ordered.iter().find(|name| !instruments.contains_key(*name));
-        if let Some(name) = missing.or(unknown) {
-            let why = format!(
-                "safe names each instrument once, in the order in which they are switched off: see {name}"
-            );
-            return Err(wrong(&read.safe.span(), why));
-        }
-        let cards = instruments
-            .values()
-            .filter(|entry: &&InstrumentEntry| entry.kind() == Kind::Sound);
-        if cards.count() > 1 {
-            return Err(wrong(
-                &read.safe.span(),
-                "there is one sound card at most".into(),
-            ));
-        }
-        for (place, (name, entry)) in read.instruments.iter().enumerate() {
-            let mut before = read.instruments.iter().take(place);
-            if let Some((other, _)) =
-                before.find(|(_, other)| entry.get_ref().is_in_the_way_of(other.get_ref()))
-            {
-                let why = format!(
-                    "instrument {name}: {other} is at its address, too, which Modbus modules alone may share"
-                );
-                return Err(wrong(&entry.span(), why));
-            }
-        }
-        let of = |name: &str| (instruments.get(name), models.get(name).map(|m| &**m));
-        let mut stimuli_at = BTreeMap::new();
-        let mut taken = BTreeSet::new();
-        for (name, point) in &read.stimuli {
-            let refuse = |why| wrong(&point.span(), format!("stimulus {name}: {why}"));
-            let known = UnitInput::from_name(name);
-            let known = known.ok_or_else(|| refuse("there is no such stimulus".into()))?;
-            let place = point.get_ref().place();
-            point.get_ref().check().map_err(refuse)?;
-            known
-                .check(point.get_ref(), of(&point.get_ref().at))
-                .map_err(refuse)?;
-            if let Place::Instrument(instrument) = place {
-                let coils = point.get_ref().coils.iter();
-                let mut twice = coils.filter(|coil| !taken.insert((instrument, **coil)));
-                if let Some(coil) = twice.next() {
-                    return Err(refuse(format!("coil {coil} has another use")));
-                }
-            }
-            if place != Place::Frames {
-                stimuli_at.insert(known, point.get_ref().clone());
-            }
-        }
-        let mut readings_at = BTreeMap::new();
-        for (name, point) in &read.readings {
-            let refuse = |why| wrong(&point.span(), format!("reading {name}: {why}"));
-            let known = READINGS.iter().find(|(known, _)| known.name() == name);
-            let (known, contact) =
-                *known.ok_or_else(|| refuse("no contact or display of the unit".into()))?;
-            point.get_ref().check().map_err(refuse)?;
-            check_reading(
-                !contact.is_empty(),
-                point.get_ref(),
-                of(&point.get_ref().at),
+        let (instruments, models) = read.instruments(text, &mut model)?;
+        let of = |name: &str| {
+            (
+                instruments.get(name),
+                models.get(name).map(|model| &**model),
             )
-            .map_err(refuse)?;
-            if point.get_ref().place() != Place::Frames {
-                readings_at.insert(known, point.get_ref().clone());
-            }
-        }
+        };
+        let stimuli = read.stimuli(text, &of)?;
+        let readings = read.readings(text, &of)?;
         Ok(Self {
             name: String::new(),
             sha256: String::new(),
             instruments,
             models,
-            safe: ordered.clone(),
-            stimuli: stimuli_at,
-            readings: readings_at,
+            safe: read.safe.into_inner(),
+            stimuli,
+            readings,
             full_scale_mv: [FULL_SCALE_MV; 2],
         })
     }

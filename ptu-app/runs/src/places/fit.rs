@@ -5,99 +5,17 @@ use std::sync::Arc;
 
 use btu_rig::procedure::plan::{Action, Condition, Expectation, Procedure, Step};
 use btu_rig::rig::InstrumentFault;
-use btu_rig::stimulus::{DoorLine, Stimulus};
+use btu_rig::stimulus::Stimulus;
 use protocol::Duration;
 use protocol::signal::Signal;
 
 use super::file::{Place, Places, Point};
 use super::instrument::InstrumentEntry;
 use super::model::code_values;
+use super::needs::{DRIVES, FOLLOWS, needs};
 use super::points::UnitInput;
 use super::widen::{Motion, READ_ANY};
 use crate::words::BenchNote;
-
-/// What a stimulus needs.
-fn needs(stimulus: &Stimulus) -> &'static [UnitInput] {
-    use UnitInput as U;
-    match stimulus {
-        Stimulus::Code { .. } | Stimulus::CodeDrift { .. } | Stimulus::CodesAlong { on: true } => {
-            &[U::Code]
-        }
-        Stimulus::Crosstalk { level_mv, .. } if *level_mv > 0.0 => &[U::Crosstalk],
-        Stimulus::Speed { .. }
-        | Stimulus::Travel { .. }
-        | Stimulus::Direction { .. }
-        | Stimulus::TrainDriven { on: true } => &[U::Tacho1, U::Tacho2],
-        Stimulus::Tacho { channel: 1, .. } => &[U::Tacho1],
-        Stimulus::Tacho { .. } => &[U::Tacho2],
-        Stimulus::Marker { .. }
-        | Stimulus::MarkerMoved { .. }
-        | Stimulus::MarkersAlong { section: Some(_) } => &[U::Marker],
-        Stimulus::Station(_) | Stimulus::Orders(Some(_)) | Stimulus::Wayside(_) => &[U::Twc],
-        Stimulus::Doors { .. } | Stimulus::DoorsFollow { .. } => &[
-            U::DoorsClosed,
-            U::LeftClosed,
-            U::LeftLocked,
-            U::RightClosed,
-            U::RightLocked,
-        ],
-        Stimulus::SideDoors { left: true, .. } | Stimulus::DoorObstacle { left: true, .. } => {
-            &[U::DoorsBySide, U::LeftClosed, U::LeftLocked]
-        }
-        Stimulus::SideDoors { .. } | Stimulus::DoorObstacle { .. } => {
-            &[U::DoorsBySide, U::RightClosed, U::RightLocked]
-        }
-        Stimulus::DoorLine { on: Some(_), line } => match line {
-            DoorLine::All => &[U::DoorsClosed],
-            DoorLine::LeftClosed => &[U::LeftClosed],
-            DoorLine::LeftLocked => &[U::LeftLocked],
-            DoorLine::RightClosed => &[U::RightClosed],
-            DoorLine::RightLocked => &[U::RightLocked],
-            DoorLine::BySide => &[U::DoorsBySide],
-        },
-        Stimulus::Hcr { .. } => &[U::Hcr],
-        Stimulus::MaintenanceKey { .. } => &[U::MaintenanceKey],
-        Stimulus::TrainNumber { number: 1.. } => &[U::Entries],
-        Stimulus::WheelDiameter { diameter_mm } if *diameter_mm > 0.0 => &[U::Entries],
-        Stimulus::ModeSwitch(_) => &[U::ModeSwitch],
-        Stimulus::Controller { .. }
-        | Stimulus::ControllerVolts { volts: Some(_) }
-        | Stimulus::ControllerContacts { contacts: Some(_) } => &[U::Controller],
-        Stimulus::Reverser { .. } => &[U::Forward, U::Backward],
-        Stimulus::Acknowledge => &[U::Acknowledge],
-        Stimulus::Start => &[U::Start],
-        Stimulus::Crosstalk { .. }
-        | Stimulus::CodeOff
-        | Stimulus::CodesAlong { on: false }
-        | Stimulus::TrainDriven { on: false }
-        | Stimulus::Adhesion { .. }
-        | Stimulus::MarkersAlong { section: None }
-        | Stimulus::Orders(None)
-        | Stimulus::DoorLine { on: None, .. }
-        | Stimulus::TrainNumber { number: 0 }
-        | Stimulus::WheelDiameter { .. }
-        | Stimulus::ControllerVolts { volts: None }
-        | Stimulus::ControllerContacts { contacts: None }
-        | Stimulus::Switch { .. }
-        | Stimulus::CutOut { .. }
-        | Stimulus::Failure { .. }
-        | Stimulus::Gradient { .. }
-        | Stimulus::Tcms(_)
-        | Stimulus::AtoEnable { .. }
-        | Stimulus::Load { .. }
-        | Stimulus::PtuArm
-        | Stimulus::PtuAskToArm
-        | Stimulus::PtuDisarm
-        | Stimulus::PtuSilent { .. }
-        | Stimulus::PtuCode { .. }
-        | Stimulus::PtuSpeed { .. }
-        | Stimulus::PtuMarker { .. }
-        | Stimulus::PtuTwc(_)
-        | Stimulus::PtuRelease
-        | Stimulus::PtuSelfTest
-        | Stimulus::PtuClearLog => &[],
-    }
-}
 
 /// The action itself, wherever it is done.
 pub(super) fn inner(action: &Action) -> &Action {
@@ -192,7 +110,11 @@ impl Places {
     }
 
     fn unread_note(&self, signal: Signal, tell: &Teller<'_>) -> BenchNote {
-        BenchNote::Unread(self.name.clone(), (tell.signal)(signal))
+        let (bench, what) = (self.name.clone(), (tell.signal)(signal));
+        match self.readings.get(&signal).map(Point::place) {
+            Some(Place::Operator(_)) => BenchNote::TooSlow(bench, what),
+            _ => BenchNote::Unread(bench, what),
+        }
     }
 
     /// Why this bench cannot do the action, if so.
@@ -205,6 +127,10 @@ impl Places {
                     stimulus,
                     Stimulus::Doors { .. } | Stimulus::DoorsFollow { .. }
                 ) && self.is_none(U::DoorsBySide);
+                let drives = matches!(stimulus, Stimulus::TrainDriven { on: true });
+                if let Some(signal) = DRIVES.iter().find(|one| drives && self.unread(**one)) {
+                    return Some(self.unread_note(*signal, tell));
+                }
                 let mut needs = needs(stimulus).iter();
                 let missing = needs
                     .find(|name| self.is_none(**name) && (!of_all || **name == U::DoorsClosed));
@@ -212,7 +138,7 @@ impl Places {
                     .map(|name| BenchNote::NoPlace(self.name.clone(), (tell.text)(name.name())))
                     .or_else(|| self.beyond(stimulus))
             }
-            Action::Until { condition, .. } => {
+            Action::Until { condition, .. } if self.seen(condition).is_none() => {
                 let mut missing = None;
                 condition.for_each_signal(&mut |signal| {
                     if self.unread(signal) {
@@ -232,8 +158,12 @@ impl Places {
 
     /// No instrument and no frame reads it.
     fn unread(&self, signal: Signal) -> bool {
-        let place = self.readings.get(&signal).map(Point::place);
-        matches!(place, Some(Place::None | Place::Operator(_)))
+        let by_itself = |signal: &Signal| {
+            let place = self.readings.get(signal).map(Point::place);
+            matches!(place, Some(Place::None | Place::Operator(_)))
+        };
+        let follows = FOLLOWS.iter().filter(|(of, _)| *of == signal);
+        by_itself(&signal) || follows.flat_map(|(_, from)| *from).any(by_itself)
     }
 
     /// A code that the generator cannot make.
@@ -276,6 +206,7 @@ impl Places {
             let mut seen = step.clone();
             seen.expectations
                 .retain(|expected| self.asked(expected).is_none());
+            seen.actions.retain(|action| !self.is_seen(action));
             seen.for_each_signal(&mut |signal| {
                 if self.unread(signal) {
                     missing.get_or_insert(signal);
@@ -290,6 +221,16 @@ impl Places {
         let Expectation::Becomes { condition, .. } = expected else {
             return None;
         };
+        Some((condition, self.seen(condition)?))
+    }
+
+    /// It waits for what a person sees.
+    fn is_seen(&self, action: &Action) -> bool {
+        matches!(inner(action), Action::Until { condition, .. } if self.seen(condition).is_some())
+    }
+
+    /// The time in which a person says whether this holds, s; none: it is not for a person alone.
+    fn seen(&self, condition: &Condition) -> Option<u64> {
         let (mut all, mut within) = (true, None);
         condition.for_each_signal(
             &mut |signal| match self.readings.get(&signal).map(Point::place) {
@@ -297,7 +238,7 @@ impl Places {
                 _ => all = false,
             },
         );
-        within.filter(|_| all).map(|within| (condition, within))
+        within.filter(|_| all)
     }
 
     /// What a person sees is asked at the end of the actions.
@@ -311,6 +252,8 @@ impl Places {
         step.expectations
             .retain(|expected| self.asked(expected).is_none());
         for (what, within_s) in asked {
+            let note = BenchNote::Looks(self.name.clone(), within_s);
+            step.origin.add((tell.note)(note));
             step.actions.push(Action::Prompt {
                 text: (tell.note)(what),
                 within: Duration::from_ms(within_s * 1000),
@@ -318,9 +261,18 @@ impl Places {
         }
     }
 
-    /// What a person does is asked for before it counts as done.
+    /// What a person does is asked for before it counts as done, and what a person sees in place of waiting for it.
     fn ask_for(&self, actions: &mut Vec<Action>, tell: &Teller<'_>) {
-        let asked = |action: Action| {
+        let asked = |mut action: Action| {
+            let inner_action = inner_mut(&mut action);
+            if let Action::Until { condition, .. } = &*inner_action
+                && let Some(within_s) = self.seen(condition)
+            {
+                *inner_action = Action::Prompt {
+                    text: (tell.note)(BenchNote::See((tell.condition)(condition))),
+                    within: Duration::from_ms(within_s * 1000),
+                };
+            }
             let within = match inner(&action) {
                 Action::Stimulus(stimulus) => {
                     needs(stimulus)

@@ -75,6 +75,8 @@ pub struct InstrumentEntry {
     pub uncertainty_ms: u64,
     /// Register into which a time in ms is written, after which the module drops its outputs by itself.
     pub watchdog: Option<Watchdog>,
+    /// Input at which a sound card is heard, for the time that sound takes.
+    pub heard_at: Option<String>,
     /// What is to be switched off by hand if the program was killed.
     pub by_hand: Option<String>,
 }
@@ -83,7 +85,7 @@ pub struct InstrumentEntry {
 #[derive(Clone, Copy, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Watchdog {
-    /// Its holding register.
+    /// Holding register of the module that sets the watchdog.
     pub register: u16,
     /// What is written there: ms until outputs drop.
     pub ms: u16,
@@ -98,7 +100,7 @@ fn poll_ms() -> u64 {
 }
 
 impl InstrumentEntry {
-    /// Its protocol.
+    /// Protocol by which the instrument is reached.
     pub(super) fn kind(&self) -> Kind {
         match self.at.split_once(':') {
             Some(("modbus", _)) => Kind::Modbus,
@@ -155,6 +157,9 @@ impl InstrumentEntry {
             return Err("the watchdog waits longer than poll_ms".into());
         }
         let is_sound = self.kind() == Kind::Sound;
+        if !is_sound && self.heard_at.is_some() {
+            return Err("heard_at is of a sound card".into());
+        }
         if is_sound && self.uncertainty_ms <= TAKES_MS {
             return Err(format!(
                 "sound is on its way for {TAKES_MS} ms: uncertainty_ms is more"

@@ -4,8 +4,9 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read, Result, Write};
+use std::io::{ErrorKind, Read, Result, Write};
 use std::net::{TcpStream, ToSocketAddrs};
+use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -14,6 +15,7 @@ use serialport::{ClearBuffer, SerialPort};
 
 use super::file::Places;
 use super::instrument::Reach;
+use super::scpi::LONGEST;
 use super::worker::{ANSWERS_WITHIN, span};
 use crate::platform;
 
@@ -23,7 +25,38 @@ pub(super) enum Line {
     /// A serial port, its rate, and when its last byte has passed.
     Serial(Box<dyn SerialPort>, u32, Instant),
     /// What is written to the device is a message, and so is what is read.
-    Usb(File),
+    Usb(File, Reading),
+}
+
+/// Reading of a device whose driver has a time of its own, 5 s as shipped: another thread waits for that.
+#[derive(Default)]
+pub(super) struct Reading {
+    within: Duration,
+    under_way: Option<Receiver<Result<Vec<u8>>>>,
+}
+
+impl Reading {
+    fn read(&mut self, device: &File, into: &mut [u8]) -> Result<usize> {
+        let begin = |mut device: File| {
+            let (came, comes) = channel();
+            std::thread::spawn(move || {
+                let mut bytes = vec![0; LONGEST];
+                let read = device.read(&mut bytes);
+                let _ = came.send(read.map(|count| bytes[..count].to_vec()));
+            });
+            comes
+        };
+        let under_way = match self.under_way.take() {
+            Some(under_way) => under_way,
+            None => begin(device.try_clone()?),
+        };
+        let Ok(came) = under_way.recv_timeout(self.within) else {
+            // What comes later is the answer to a later question.
+            self.under_way = Some(under_way);
+            return Err(ErrorKind::TimedOut.into());
+        };
+        came.and_then(|came| (&came[..]).read(into))
+    }
 }
 
 /// A line of one or several instruments.
@@ -98,7 +131,10 @@ impl Line {
                 let port = platform::open_alone(path, *baud, ANSWERS_WITHIN)?;
                 Self::Serial(port, *baud, Instant::now())
             }
-            Reach::Usb(path) => Self::Usb(OpenOptions::new().read(true).write(true).open(path)?),
+            Reach::Usb(path) => {
+                let device = OpenOptions::new().read(true).write(true).open(path)?;
+                Self::Usb(device, Reading::default())
+            }
         })
     }
 
@@ -116,12 +152,15 @@ impl Line {
         }
     }
 
-    /// How long reading waits; a USB device has its driver's own time.
+    /// How long reading waits.
     pub fn wait_for(&mut self, within: Duration) -> Result<()> {
         match self {
             Self::Tcp(stream) => stream.set_read_timeout(Some(within)),
             Self::Serial(port, ..) => Ok(port.set_timeout(within)?),
-            Self::Usb(_) => Ok(()),
+            Self::Usb(_, reading) => {
+                reading.within = within;
+                Ok(())
+            }
         }
     }
 }
@@ -135,7 +174,7 @@ impl Read for Line {
                 *passed = Instant::now();
                 read
             }
-            Self::Usb(device) => device.read(into),
+            Self::Usb(device, reading) => reading.read(device, into),
         }
     }
 }
@@ -149,7 +188,7 @@ impl Write for Line {
                 *passed = Instant::now() + characters(written as f64, *baud);
                 Ok(written)
             }
-            Self::Usb(device) => device.write(bytes),
+            Self::Usb(device, _) => device.write(bytes),
         }
     }
 
@@ -185,9 +224,10 @@ fn connect(address: &str) -> Result<TcpStream> {
 
 /// What a failed exchange says of an instrument.
 pub(super) fn io_fault(error: &std::io::Error) -> InstrumentFault {
-    use std::io::ErrorKind as E;
     match error.kind() {
-        E::WouldBlock | E::TimedOut => InstrumentFault::Silent(span(ANSWERS_WITHIN)),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut => {
+            InstrumentFault::Silent(span(ANSWERS_WITHIN))
+        }
         _ => InstrumentFault::Disconnected(error.to_string()),
     }
 }
@@ -200,5 +240,27 @@ mod tests {
     fn frames_of_rtu_are_three_and_a_half_characters_apart_and_no_less_than_1_75_ms() {
         let micros = [1_200, 9_600, 115_200].map(|baud| silence(baud).as_micros());
         assert_eq!(micros, [32_083, 4_010, 1_750]);
+    }
+
+    /// Goal: a USB instrument that says nothing costs the time of the question and no more, and what it says then is read.
+    /// Method: a pseudo-terminal in place of its device, which waits for ever.
+    #[cfg(unix)]
+    #[test]
+    fn reading_a_usb_device_ends_in_the_time_of_the_question() {
+        let (mut instrument, device) = serialport::TTYPort::pair().expect("a pseudo-terminal");
+        let path = device.name().expect("its path");
+        let mut line = Line::open(&Reach::Usb(path)).expect("it opens");
+        let mut answer = [0; 8];
+        line.wait_for(Duration::from_millis(100)).expect("set");
+        for _ in 0..2 {
+            let began = Instant::now();
+            let read = line.read(&mut answer).expect_err("nothing is said");
+            assert_eq!(read.kind(), ErrorKind::TimedOut);
+            assert!(began.elapsed() < Duration::from_secs(2));
+        }
+        instrument.write_all(b"1\n").expect("said");
+        line.wait_for(Duration::from_secs(20)).expect("set");
+        assert_eq!(line.read(&mut answer).expect("it is said"), 2);
+        assert_eq!(&answer[..2], b"1\n");
     }
 }

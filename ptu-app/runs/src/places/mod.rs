@@ -14,6 +14,7 @@ mod instrument;
 mod line;
 mod modbus;
 mod model;
+mod needs;
 mod placed;
 mod points;
 mod relay;

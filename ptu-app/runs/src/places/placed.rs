@@ -19,7 +19,6 @@ use super::points::UnitInput;
 use super::relay::{Relay, send};
 use super::scpi::Scpi;
 use super::worker::{Instrument, Timing, Values, Wanted, Worker, span};
-use crate::sound::Stream;
 
 /// All outputs are off after this, on every end.
 pub(super) const SAFE_WITHIN: Duration = Duration::from_secs(1);
@@ -126,8 +125,7 @@ impl Placed {
         };
         let mut tried = |name: &String| {
             if places.instruments[name].kind() == Kind::Sound {
-                let device = &places.instruments[name].reach().to_string();
-                return try_sound(&Stream::start(device, places.full_scale_mv)?);
+                return try_sound(places, name, rounds);
             }
             let mut instrument = open(places, name, &mut lines)?;
             let here = |point: &Point| point.place() == Place::Instrument(name);

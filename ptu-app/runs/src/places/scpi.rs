@@ -21,7 +21,7 @@ const QUEUE_OVERFLOW: i32 = -350;
 /// Infinities and what is no number are answered as this and more (SCPI-99 7.2.1.4 and 7.2.1.5).
 const OVERLOAD: f64 = 9.9e37;
 /// Longest answer, bytes.
-const LONGEST: usize = 4096;
+pub(super) const LONGEST: usize = 4096;
 
 /// An instrument whose model was checked, with the points of the bench file that it has.
 pub(super) struct Scpi {
@@ -100,7 +100,7 @@ impl Scpi {
             let mut chunk = [0; LONGEST];
             let count = line.wait_for(left).and_then(|()| line.read(&mut chunk));
             match count.map_err(|error| io_fault(&error))? {
-                0 => return Err(InstrumentFault::Disconnected(question.to_owned())),
+                0 => return Err(InstrumentFault::Closed),
                 count => self.came.extend_from_slice(&chunk[..count]),
             }
         };

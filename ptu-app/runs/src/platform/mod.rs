@@ -1,5 +1,5 @@
-//! What each operating system does in a way of its own, under the same names: the terminal, requests to stop, serial
-//! ports, processes, their limits and pipes, and who may read a file. The rest of the program knows no operating system.
+//! Functions that differ by operating system, under one name for all: the terminal, requests to stop, serial ports,
+//! processes, their limits and pipes, and who may read a file. The rest of the program knows no operating system.
 
 #[cfg(unix)]
 mod unix;

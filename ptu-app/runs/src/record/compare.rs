@@ -15,10 +15,11 @@ use protocol::signal::Signal;
 use crate::drive::{Case, drive};
 use crate::failure::{Failure, RecordTrouble};
 
-/// A speed may be beside the one expected by so much, km/h, for so many rows [default: 1 s].
+/// Difference of a speed, km/h, that may last; a greater one may last less than [`FOR_ROWS`] rows.
 const SPEED_KMH: f64 = 3.0;
+/// Number of rows from which on a greater difference is a failure [default: 1 s].
 const FOR_ROWS: usize = 20;
-/// A brake is late that begins so much later than the sound unit's, m [default].
+/// Distance by which a late brake begins behind the sound unit's, m [default].
 const LATE_M: f64 = 10.0;
 /// Efforts below this are braking.
 const BRAKES: f64 = -20.0;
@@ -31,9 +32,10 @@ pub(super) const RESTS_KMH: f64 = 1.0;
 /// Where two curves part for the first time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parting {
-    /// What parts: `speed` from the run's own `target`, or a signal from the sound unit's.
+    /// The signal: `speed`, which differs from the run's own `target`, or a signal that differs
+    /// from the sound unit's.
     pub signal: &'static str,
-    /// What it was held against: `target` or `twin`.
+    /// Reference of the comparison: `target` or `twin`.
     pub against: &'static str,
     /// Seconds since departure.
     pub at_s: f64,
@@ -41,7 +43,6 @@ pub struct Parting {
     pub at_m: f64,
     /// What came and what was expected, km/h.
     pub came_kmh: f64,
-    /// What was expected, km/h.
     pub expected_kmh: f64,
     /// Greatest difference anywhere, km/h.
     pub most_kmh: f64,
@@ -169,7 +170,7 @@ pub fn compare(
 }
 
 impl RecordComparison {
-    /// How much later the brake began than the sound unit's, m, if that is late.
+    /// Distance by which the brake began later than the sound unit's, m, if it is late.
     pub fn late_m(&self) -> Option<f64> {
         let later_m = self.brake_m? - self.twin_brake_m?;
         (later_m > LATE_M).then_some(later_m)
@@ -182,7 +183,7 @@ impl RecordComparison {
             .is_some_and(|error_m| error_m.abs() > self.stop.aligned_m)
     }
 
-    /// Nothing parts, the stop is right and no brake is late.
+    /// Whether no curve parts, the stop is right and no brake is late.
     pub fn is_as_expected(&self) -> bool {
         self.partings.is_empty()
             && !self.is_misaligned()

@@ -1,7 +1,7 @@
 //! A unit's own record of automatic runs, read where the unit is, becomes traces in the history.
 //!
 //! ```text
-//! unit → field::read_log (stored rows, clocks) → recorded (a trace for each run) → store (what is new)
+//! unit → unit_log::read_log (stored rows, clocks) → recorded (a trace for each run) → store (what is new)
 //! trace → section (where it was) → compare (with its own target, and with a sound unit's run)
 //! ```
 

@@ -7,8 +7,8 @@ use protocol::message::{Message, StoredRow};
 use protocol::signal::Signal;
 use protocol::{CYCLE, Speed};
 
-use crate::field::StoredRead;
 use crate::run::channel;
+use crate::unit_log::StoredRead;
 
 /// Rows of the longest trace, 30 min: what follows a longer stand is left out.
 const MOST_ROWS: usize = 36_000;
@@ -27,7 +27,7 @@ const SIGNALS: [Signal; 7] = [
 /// One run of one power-up.
 #[derive(Clone, Debug)]
 pub struct RecordedRun {
-    /// The same on every laptop: it follows from the unit and all that the run's rows say.
+    /// Id of the run, equal on every laptop: made from the unit and all rows of the run.
     pub id: Id,
     /// Power-up that it was made in.
     pub power_up: u32,
@@ -42,10 +42,10 @@ pub struct RecordedRun {
     pub is_cut: bool,
 }
 
-/// What may still come of the last run of a record.
+/// Rest of the last run of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rest {
-    /// Nothing: it was read to its end, and is over.
+    /// The rest is complete: the record was read to its end, and the run is over.
     Nothing,
     /// The unit may still add to a run of its present power-up.
     OfUnit,

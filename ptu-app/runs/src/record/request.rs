@@ -1,4 +1,4 @@
-//! What a recorded run is compared with, as commands name it.
+//! Reference of a comparison of a recorded run, as commands name it.
 
 use btu_rig::drive::Load;
 use fault_db::{Id, Store};
@@ -11,7 +11,7 @@ use crate::failure::{Failure, Unknown};
 /// The train of the sound unit.
 const TRAIN: &str = "line6";
 
-/// What is asked for; what is not is found out from the trace and its run.
+/// Request for a comparison; fields that are not set follow from the trace and its run.
 #[derive(Clone, Debug, Default)]
 pub struct CompareRequest {
     pub section: Option<u16>,
@@ -27,10 +27,8 @@ pub struct CompareRequest {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     pub trace: Id,
-    /// Serial number of the unit.
     pub unit_serial: String,
     pub line: String,
-    /// Unit configuration.
     pub unit_config: String,
     pub comparison: RecordComparison,
 }
@@ -39,7 +37,7 @@ impl CompareRequest {
     /// Compares a stored trace of a unit's run record.
     ///
     /// # Errors
-    /// It is none, its section is not known, or a file is not there.
+    /// The trace is no run record, its section is not known, or a file is missing.
     pub fn compare(
         &self,
         store: &Store,

@@ -6,16 +6,16 @@ use protocol::signal::Signal;
 
 use super::{RecordedRun, Rest, recorded_runs};
 use crate::failure::{Failure, FieldTrouble};
-use crate::field::{Source, UnitReading, run_record};
+use crate::unit_log::{Source, UnitReading, run_record};
 
-/// What became of the runs of a record.
+/// Result of storing the runs of a record.
 #[derive(Clone, Debug, Default)]
 pub struct Pulled {
     /// The run they are stored as; none when nothing is new.
     pub run: Option<fault_db::Id>,
     /// New ones, in order.
     pub new: Vec<RecordedRun>,
-    /// Those known already.
+    /// Number of runs that were stored before.
     pub known: usize,
 }
 
@@ -92,7 +92,7 @@ impl RecordedRun {
         format!("power-up {}, run {}", self.power_up, self.run)
     }
 
-    /// How long and how far it went, and what limits it.
+    /// Time, distance and limits of the run, in one line.
     pub fn summary(&self) -> String {
         let trace = &self.trace;
         let known = |signal: Signal| {

@@ -6,10 +6,10 @@ use fault_db::Store;
 use super::*;
 use crate::clock::open_options;
 use crate::drive::{Case, Fixed, Request, SectionChoice};
-use crate::field::{LogRead, Source, UnitReading, read_log};
 use crate::link::Pace;
 use crate::stop::Stop;
 use crate::test_support::scripts;
+use crate::unit_log::{LogRead, Source, UnitReading, read_log};
 
 const NOW_US: i64 = 1_000_000_000_000;
 

@@ -12,7 +12,7 @@ use crate::failure::{Failure, RecordTrouble, Unknown, did_you_mean};
 /// any other value is another thing.
 const PLAIN_QUANTITIES: [&str; 2] = ["effort", "tcms_value"];
 
-/// Where a unit runs by a clock of its own, a value may come so many rows sooner or later.
+/// Rows by which a value may come sooner or later where a unit runs by a clock of its own.
 const CLOCK_ROWS: usize = 2;
 
 /// Where a unit runs by a clock of its own, numbers may be so far apart, by their unit; what two runs of
@@ -28,10 +28,11 @@ const CLOCK_TOLERANCES: [(&str, f64); 6] = [
 /// Units of what is left out there: efforts and their accelerations lag behind what the train was asked for
 /// before the procedure began, and jump with every frame that is late. What TCMS orders is compared.
 const CLOCK_LEFT_OUT: [&str; 3] = ["N", "m/s²", "m/s³"];
-/// The same for quantities without a unit: efforts of 1 024.
+/// Tolerance of quantities without a unit (efforts of 1 024), where a unit runs by a clock of its
+/// own.
 const CLOCK_TOLERANCE_PLAIN: f64 = 30.0;
 
-/// What the bench was left in before the procedure shows for so many rows.
+/// Rows in which the state of the bench before the procedure shows.
 const LEFT_ROWS: i64 = 20;
 
 /// Signals that go on counting from power-up: what counts is what was added since the procedure began.
@@ -40,11 +41,11 @@ const COUNTERS: [&str; 3] = ["train_position", "position", "marker_count"];
 /// times, and a busy line loses some.
 const FRAME_COUNTS: [&str; 4] = ["rejected_frames", "twc_received", "twc_answers", "twc_sent"];
 
-/// What counts as a deviation. Numbers deviate by more than their smallest step and the tolerance, words
-/// and bits by any difference, a known value from an unknown one always.
+/// Rule of a comparison. Numbers deviate by more than their smallest step and the tolerance, words and
+/// bits by any difference, a known value from an unknown one always.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
-    /// A value that came so many rows sooner or later is the same.
+    /// Rows by which a value may come sooner or later.
     slack_rows: usize,
     /// Numbers have the tolerances of a clock of its own, and counters begin at 0 in the first row.
     wall_clock: bool,
@@ -65,7 +66,7 @@ pub struct Deviation {
     pub largest: Difference,
     /// Rows that differ.
     pub rows: usize,
-    /// The same rows of the first trace, as stretches.
+    /// Stretches of the first trace in which those rows lie.
     pub stretches: Vec<Range<usize>>,
 }
 
@@ -74,7 +75,7 @@ pub struct Deviation {
 pub struct Difference {
     /// Seconds from the trigger.
     pub at_s: f64,
-    /// What came; `None` = not known.
+    /// Value of the first trace; `None` = not known.
     pub value: Option<f64>,
     pub expected: Option<f64>,
 }
@@ -122,8 +123,8 @@ impl Rule {
         }
     }
 
-    /// The same, where a procedure began in that row, from the trigger, on a bench that had been in use:
-    /// compared from one second after it.
+    /// Rule for one trace paced by the wall clock, on a bench that had been in use: rows count from one
+    /// second after `began_row`, in which the procedure began, counted from the trigger.
     pub const fn after_begin(began_row: i64) -> Self {
         Self {
             from_row: began_row.saturating_add(LEFT_ROWS),
@@ -131,7 +132,7 @@ impl Rule {
         }
     }
 
-    /// The same, with the second trace laid so many rows later; negative: sooner.
+    /// This rule with the second trace laid `shift_rows` later; negative: sooner.
     pub const fn shifted(self, shift_rows: i64) -> Self {
         Self { shift_rows, ..self }
     }
@@ -223,7 +224,8 @@ pub fn compare(
     })
 }
 
-/// By time, and within one report of the unit by their place on the way through it.
+/// Sorts deviations by time, and within one report of the unit by their place on the way through
+/// the unit.
 fn in_order(deviations: &mut [Deviation]) {
     deviations.sort_by_key(|deviation| deviation.row);
     let mut from = 0;
@@ -242,7 +244,7 @@ struct Rows {
     /// First row that is compared; those before it only say what came around it.
     from: usize,
     last: usize,
-    /// From a row of the first to that of the second.
+    /// Rows of the second trace less rows of the first.
     shift: i64,
     trigger: i64,
     period_us: i64,

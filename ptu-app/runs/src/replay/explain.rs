@@ -14,13 +14,13 @@ pub struct Explanation {
     pub id: Id,
     /// The procedure it comes from.
     pub procedure: String,
-    /// What was expected: the trace of the good twin.
+    /// Expected trace, made by the good twin.
     pub twin: TraceData,
     /// Where they differ; the first one first.
     pub comparison: Comparison,
     /// From the first deviation to the brake, or to the end of the trace when none came.
     pub chain: Vec<Link>,
-    /// What limits the comparison, in words.
+    /// Limits of the comparison, as sentences.
     pub notes: Vec<String>,
 }
 
@@ -50,7 +50,6 @@ impl Link {
 }
 
 impl Explanation {
-    /// The first deviation, if there is any.
     pub fn first(&self) -> Option<&Deviation> {
         self.comparison.deviations.first()
     }

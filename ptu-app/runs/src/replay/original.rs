@@ -7,7 +7,8 @@ use super::Rule;
 use crate::failure::{Failure, RecordTrouble};
 use crate::run::{BenchContents, Stimuli, Window};
 
-/// How two stored traces compare: to the last bit where both come from benches in virtual time.
+/// Rule for comparing two stored traces: to the last bit where both come from benches in virtual
+/// time.
 ///
 /// # Errors
 /// The database fails.
@@ -34,7 +35,7 @@ pub struct Original {
     pub procedure: String,
     pub trace: TraceData,
     pub made: BenchContents,
-    /// What was done to it.
+    /// Stimuli of the procedure.
     pub stimuli: Stimuli,
     /// Bench time of the run at which the bench's clock was 0, µs.
     t0_bench_us: i64,
@@ -102,7 +103,7 @@ impl Original {
         self.trace.trigger_row.unwrap_or(0) as usize
     }
 
-    /// Its window on a clock that runs `shift_us` ahead of the bench's own.
+    /// Window of the trace on a clock that runs `shift_us` ahead of the bench's own.
     pub(crate) fn window(&self, shift_us: i64) -> Window {
         let at = |row| Instant::from_us((self.row_us(row) + shift_us).max(0) as u64);
         Window {

@@ -39,7 +39,8 @@ fn names() -> impl Iterator<Item = &'static str> {
     PATH.lines().filter(|line| !line.starts_with('#'))
 }
 
-/// Its place on the way; what is not named is the train's, at the end.
+/// Place of the signal on the way from sensor to brake; a signal that the table does not name
+/// belongs to the train, at the end.
 pub fn place(signal: &str) -> usize {
     names()
         .position(|name| name == signal)
@@ -54,7 +55,7 @@ pub fn is_link(signal: &str) -> bool {
     !bulk && !BESIDE.contains(&signal)
 }
 
-/// It is a brake, which a chain ends with.
+/// The signal is a brake; a chain of deviations ends with one.
 pub fn is_brake(signal: &str) -> bool {
     BRAKES.contains(&signal)
 }

@@ -16,11 +16,11 @@ use crate::stop::Stop;
 #[derive(Debug)]
 pub(super) struct EmbeddedReplay {
     pub trace: TraceData,
-    /// How it compares with the original.
+    /// Rule for comparing the trace with the original.
     pub rule: Rule,
     /// What was done, on the clock of this bench.
     pub recorded: RecordedStimuli,
-    /// What this bench refused to do.
+    /// Stimuli that this bench refused.
     pub refused: Vec<String>,
 }
 

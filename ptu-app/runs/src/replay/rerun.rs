@@ -18,13 +18,13 @@ use crate::run::{BenchContents, BenchSetup, Connected};
 use crate::stop::Stop;
 use crate::words::{Manner, Say};
 
-/// What a replay is to be.
+/// Settings of a replay.
 #[derive(Clone, Debug)]
 pub struct Rerunning {
     pub endpoint: Endpoint,
     /// Faults injected into the embedded unit, and into the train around any.
     pub faults: Vec<FaultMode>,
-    /// Who tests.
+    /// Name of the tester.
     pub operator: String,
 }
 
@@ -33,9 +33,9 @@ pub struct Rerunning {
 pub enum ReplayMatch {
     /// The original and its good twin are the same, and so is the replay.
     Sound,
-    /// As the original: the fault shows again.
+    /// The replay deviates as the original did: the fault shows again.
     Reproduced,
-    /// As the good twin: the fault does not show.
+    /// The replay equals the good twin: the fault does not show.
     AsTwin,
     Otherwise,
 }
@@ -170,8 +170,8 @@ pub fn rerun(
     })
 }
 
-/// By what deviates and is evidence. A replay that differs from its good twin in counts of frames alone, as its original
-/// does, has reproduced that.
+/// Judges by the deviations that are evidence. A replay that differs from its good twin in counts of frames alone,
+/// as its original does, has reproduced that.
 fn likeness(from_original: &Comparison, from_twin: &Comparison) -> ReplayMatch {
     match (from_original.evidence(), from_twin.evidence()) {
         (0, 0) if from_original.deviations.is_empty() && !from_twin.deviations.is_empty() => {
@@ -195,7 +195,8 @@ fn first_again(original: &Comparison, replay: &Comparison) -> Option<(String, bo
     Some((first.clone(), again))
 }
 
-/// On the bench asked for; the unit's serial number, and why it was cut short, if it was.
+/// Plays the original on the bench asked for; gives the unit's serial number, and why the replay
+/// was cut short, if it was.
 fn play(
     original: &Original,
     setup: &mut BenchSetup,

@@ -36,7 +36,8 @@ pub fn first_deviation(
     first(&trace_data(cut), &twin, &Rule::exact())
 }
 
-/// The same of the first trace of each procedure of a stored run, as far as traces can be had again.
+/// Adds the residual of the first trace of each procedure of a stored run, as far as the traces can
+/// be made again.
 pub fn add_residuals(
     seen: &mut Observation,
     (store, directory): (&Store, &ScriptsDirectory),

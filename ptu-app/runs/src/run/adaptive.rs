@@ -52,7 +52,8 @@ fn run_adaptively(
             return false;
         }
         if !stop.may_begin() {
-            // Its stream ends without a word: it was due.
+            // The stream of events ends empty: the collector counts this procedure as due and not
+            // run.
             return false;
         }
         let mut sink = |event| {
@@ -70,8 +71,8 @@ fn run_adaptively(
 pub type Perform<'a> =
     dyn FnMut(&Task, &mut dyn FnMut(&SessionEvent), &dyn Fn() -> bool) -> bool + 'a;
 
-/// Has `perform` run the tasks that tell most, each as far as it tells something, until the question is answered. Bench time
-/// that it took, s.
+/// Lets `perform` run the tasks that tell most, each as far as it tells something, until the question is answered.
+/// Returns the bench time of the tasks, s.
 pub fn isolate(model: &Model<'_>, tasks: &[Task], perform: &mut Perform<'_>) -> f64 {
     let named = tasks.iter().map(|task| (task.procedure.id.as_str(), task));
     let named: BTreeMap<&str, &Task> = named.collect();

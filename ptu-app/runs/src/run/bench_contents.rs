@@ -1,5 +1,5 @@
-//! What a bench was made of, kept with what was done to it: enough to make the same bench again,
-//! without the faults that were injected.
+//! Content of a bench, kept with its stimuli: enough to make the same bench again, without injected
+//! faults.
 
 use std::sync::Arc;
 
@@ -16,7 +16,6 @@ use serde::{Deserialize, Serialize};
 use super::bench_setup::BenchSetup;
 use super::event::RecordedStimuli;
 use crate::data::{ScriptsDirectory, sha256};
-use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
 use crate::failure::{Exit, Failure, RecordTrouble};
 use crate::fleet;
@@ -25,23 +24,20 @@ use crate::link::Endpoint;
 /// A data file a bench was made of.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BenchFile {
-    /// Its name.
     pub name: String,
-    /// What was changed in it by `--set`.
+    /// Changes to the file by `--set`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub settings: Vec<String>,
     /// SHA-256 of it with its changes, in hex; of a train, of its content.
     pub sha256: String,
 }
 
-/// What the benches of a run are made of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BenchContents {
     /// Where the unit was: `sim`, `serial:…`, `tcp:…`.
     pub source: String,
     /// Serial number of the unit.
     pub serial: String,
-    /// Unit configuration.
     pub unit_config: BenchFile,
     /// Track database.
     pub line: BenchFile,
@@ -49,33 +45,32 @@ pub struct BenchContents {
     pub train: BenchFile,
     /// Seed of the run; that of a procedure follows from its name.
     pub seed: u64,
-    /// How units, trains and benches were let differ.
+    /// Scatter of units, trains and benches.
     pub scatter: Option<BenchScatter>,
-    /// What disturbed the waveforms that were used in place of numbers.
+    /// Disturbances of the waveforms that were used in place of numbers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub waveforms: Option<ChannelConfig>,
     /// The bench file that said where stimuli go and readings come from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub places: Option<BenchFile>,
-    /// At the wall clock's pace.
+    /// The bench runs at the wall clock's pace.
     pub realtime: bool,
     /// Only the maintenance port was connected: the train did all else by itself.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub on_train: bool,
 }
 
-/// What was done to a bench, as it is kept.
+/// Stimuli of a bench, as they are kept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stimuli {
     /// When the procedure began, µs on the bench's clock: 0 where the unit was powered up for it.
     pub began_us: u64,
-    /// What was done.
     #[serde(rename = "tape")]
     pub record: StimulusRecord,
 }
 
 impl BenchContents {
-    /// What `setup` makes benches of, for a unit of this serial number, reached so.
+    /// Content of the benches that `setup` makes for a unit of this serial number and connection.
     pub fn of(setup: &BenchSetup, serial: String, connection: Connection) -> Self {
         let (config, line) = (&setup.config, &setup.line);
         Self {
@@ -109,7 +104,7 @@ impl BenchContents {
         }
     }
 
-    /// What was done in a procedure on such a bench, to be kept; its place in the run is left open.
+    /// Recording of a procedure's stimuli on such a bench; its place in the run is left open.
     pub fn recording(&self, procedure: &str, recorded: &RecordedStimuli) -> RecordingRecord {
         let stimuli = Stimuli {
             began_us: recorded.began.since(Instant::ZERO).as_us(),
@@ -129,7 +124,7 @@ impl BenchContents {
     /// Reads a recording back.
     ///
     /// # Errors
-    /// It was written by another version, or more was done than could be kept.
+    /// The recording is of another version, or has lost stimuli.
     pub fn read(recording: &Recording) -> Result<(Self, Stimuli), Failure> {
         let other = |error: serde_json::Error| {
             Failure::bench(RecordTrouble::OtherVersion(
@@ -148,10 +143,10 @@ impl BenchContents {
         Ok((made, stimuli))
     }
 
-    /// Such a bench with the embedded unit, sound, in virtual time.
+    /// A bench of this content with the embedded unit, without fault, in virtual time.
     ///
     /// # Errors
-    /// A data file is no longer there, or is another than it was.
+    /// A data file is no longer there, or differs from the recorded one.
     pub fn setup(&self, directory: &ScriptsDirectory) -> Result<BenchSetup, Failure> {
         let settings: Vec<Setting> = self
             .unit_config
@@ -165,7 +160,7 @@ impl BenchContents {
             unit_config(directory, &self.unit_config.name, &settings),
         )?;
         let line = gone("line", &self.line, directory.line(&self.line.name))?;
-        let train = gone("train", &self.train, train(directory, &self.train.name))?;
+        let train = gone("train", &self.train, directory.train(&self.train.name))?;
         for (what, made, found) in [
             ("unit configuration", &self.unit_config, &config.sha256),
             ("line", &self.line, &line.sha256),
@@ -200,7 +195,6 @@ impl BenchContents {
         })
     }
 
-    /// How the unit was reached.
     pub fn connection(&self) -> Connection {
         match self.on_train {
             true => Connection::Ptu,

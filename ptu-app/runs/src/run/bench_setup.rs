@@ -30,7 +30,7 @@ use crate::stop::Stop;
 /// Sets the scans whose frames are late apart from what else the same seed gives.
 const WIRE_SEQUENCE: u64 = 0x317E_5CA7_7E2D_1A7E;
 
-/// The same for what disturbs waveforms.
+/// Sets the draws of what disturbs waveforms apart from what else the same seed gives.
 const WAVEFORM_SEQUENCE: u64 = 0xC011_5A3B_1E5D_0A7E;
 
 /// Time an embedded unit is without power before a procedure, so that the signals before show in a trace of its
@@ -42,10 +42,8 @@ pub(crate) const SWITCHED_OFF: Duration = Duration::from_ms(1_000);
 pub struct BenchSetup {
     /// Where the unit is.
     pub endpoint: Endpoint,
-    /// Whether the bench harness is connected. The embedded unit is on a bench unless this says that there is none:
-    /// then it is aboard a train.
+    /// Connection of the bench harness. With `Harness::None` the embedded unit is aboard a train.
     pub harness: Harness,
-    /// Unit configuration.
     pub config: DataFile<UnitConfig>,
     /// Track database.
     pub line: DataFile<Line>,
@@ -55,13 +53,12 @@ pub struct BenchSetup {
     pub faults: Vec<FaultMode>,
     /// Seed of everything random.
     pub seed: u64,
-    /// How good units, trains and benches differ: drawn by the seed; none = all are nominal.
+    /// Scatter of good units, trains and benches, drawn by the seed; none = all are nominal.
     pub scatter: Option<Arc<BenchScatter>>,
     /// Codes, TWC, markers and pulses are waveforms that are disturbed so; none = numbers.
     pub waveforms: Option<ChannelConfig>,
-    /// Serial number asked for.
     pub serial: Option<String>,
-    /// What the unit's identity is compared with.
+    /// Identity that the unit should have.
     pub expected: ExpectedIdentity,
     /// Wall-clock pace also for the embedded unit.
     pub realtime: bool,
@@ -77,7 +74,7 @@ pub struct BenchSetup {
 
 /// The embedded unit where it is built in.
 pub enum SimUnit {
-    /// On a bench, all of whose channels reach it.
+    /// The unit is on a bench, all of whose channels reach the unit.
     OnBench(Box<SimLink>),
     /// Aboard a train, reached at its maintenance port alone.
     Aboard(Box<UnitAboard>),
@@ -116,7 +113,7 @@ impl BenchSetup {
         }
     }
 
-    /// Whether a run is practice: on a simulated unit, or with injected faults.
+    /// Whether the run is practice: on a simulated unit, or with injected faults.
     pub fn is_practice(&self) -> bool {
         fault_db::is_practice(&self.endpoint.to_string(), self.injected().as_deref())
     }
@@ -130,7 +127,7 @@ impl BenchSetup {
     /// Reaches the unit. A unit on a port is identified and brought to a known state.
     ///
     /// # Errors
-    /// It cannot be reached, is another one, or has another configuration.
+    /// The unit cannot be reached, is another one, or has another configuration.
     pub fn connect(&self, stop: &Stop) -> Result<Connected, Failure> {
         if self.endpoint == Endpoint::Sim {
             return Ok(Connected::Sim(Box::new(self.clone())));
@@ -188,12 +185,11 @@ impl BenchSetup {
     }
 
     /// The embedded unit on a bench, without a procedure.
-    #[cfg(test)]
-    pub(super) fn on_bench(&self, seed: u64, power_at: Instant) -> Bench<SimLink> {
+    pub fn on_bench(&self, seed: u64, power_at: Instant) -> Bench<SimLink> {
         Bench::new(self.rig(seed, power_at), self.unit(seed, power_at))
     }
 
-    /// What was drawn for this run.
+    /// Conditions drawn for this run; none without scatter.
     fn drawn(&self) -> Option<BenchDraw> {
         let scatter = self.scatter.as_ref()?;
         Some(scatter.draw(self.seed, self.train.full_load_kg()))
@@ -204,7 +200,7 @@ impl BenchSetup {
         self.sim_session_by(procedure, stop, |link| link)
     }
 
-    /// The same, reached by what `wired` makes of its link.
+    /// As [`Self::sim_session`]; `wired` wraps the link to the unit.
     pub(super) fn sim_session_by<L: UnitLink>(
         &self,
         procedure: &str,
@@ -235,7 +231,7 @@ impl BenchSetup {
     }
 }
 
-/// Those the unit itself has; it knows nothing of the train's.
+/// Faults of the unit; the unit does not know those of the train.
 fn of_unit(faults: &[FaultMode]) -> Vec<FaultMode> {
     let own = faults.iter().filter(|fault| fault.place.in_unit());
     own.cloned().collect()
@@ -250,7 +246,7 @@ impl Connected {
         }
     }
 
-    /// How it is reached.
+    /// Connection by which the unit was reached.
     pub fn connection(&mut self) -> Connection {
         let found = match self {
             Self::Sim(setup) if setup.harness == Harness::None => Some(Connection::Ptu),

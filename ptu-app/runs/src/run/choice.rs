@@ -1,4 +1,5 @@
-//! What a tester chooses by name: the unit, its configuration, the line, the train and the injected faults.
+//! Choices that a tester makes by name: the unit, its configuration, the line, the train and the injected
+//! faults.
 //!
 //! Command line and window fill in the same [`BenchChoice`]; [`BenchChoice::setup`] reads the named files and
 //! checks that they fit together.
@@ -16,11 +17,11 @@ use serde::{Deserialize, Serialize};
 use super::bench_setup::BenchSetup;
 use super::signals::Signals;
 use crate::data::ScriptsDirectory;
-use crate::drive::train::train;
 use crate::drive::{Setting, unit_config};
 use crate::failure::{Asked, Failure, RunTrouble};
 use crate::fleet;
 use crate::link::Endpoint;
+use crate::places::Places;
 
 /// A unit and the bench around it, by name. Its JSON form is part of the window's settings file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,7 +29,7 @@ use crate::link::Endpoint;
 pub struct BenchChoice {
     /// `sim`, `serial:PATH[@BAUD]`, `tcp:HOST:PORT` or `lockstep:PATH`.
     pub endpoint: String,
-    /// Whether the bench harness is connected.
+    /// Connection of the bench harness.
     pub harness: Harness,
     /// Line, `lines/NAME.toml`.
     pub line: String,
@@ -107,8 +108,8 @@ impl BenchChoice {
         }
     }
 
-    /// The same without faults if the unit is on a port: the window offers faults for the embedded unit only, and
-    /// those chosen before a port was entered do not apply.
+    /// This choice without faults if the unit is on a port. The window offers faults for the embedded unit alone;
+    /// faults chosen before a port was entered do not apply.
     pub fn with_offered_faults(mut self) -> Self {
         if !self.is_simulated() {
             self.faults.clear();
@@ -121,6 +122,22 @@ impl BenchChoice {
         let names =
             |choice: &Self| [&choice.unit_config, &choice.line, &choice.train].map(Clone::clone);
         names(self) == names(other)
+    }
+
+    /// The bench file, for a unit that goes by the clock.
+    fn bench(
+        &self,
+        directory: &ScriptsDirectory,
+        endpoint: &Endpoint,
+    ) -> Result<Option<Arc<Places>>, Failure> {
+        let by_the_clock = matches!(endpoint, Endpoint::Serial { .. } | Endpoint::Tcp(_));
+        match self.places.as_str() {
+            "" => Ok(None),
+            name if self.slower == 1 && by_the_clock => {
+                Ok(Some(Arc::new(directory.bench_places(name)?)))
+            }
+            _ => Err(Failure::usage(Asked::BenchByTheClock)),
+        }
     }
 
     /// Reads and checks all named files.
@@ -144,17 +161,10 @@ impl BenchChoice {
         if self.signals != Signals::Values && matches!(endpoint, Endpoint::Serial { .. }) {
             return Err(Failure::usage(RunTrouble::SampledOnSerial));
         }
-        let by_the_clock = matches!(endpoint, Endpoint::Serial { .. } | Endpoint::Tcp(_));
-        let places = match self.places.as_str() {
-            "" => None,
-            name if self.slower == 1 && by_the_clock => {
-                Some(Arc::new(directory.bench_places(name)?))
-            }
-            _ => return Err(Failure::usage(Asked::BenchByTheClock)),
-        };
+        let places = self.bench(directory, &endpoint)?;
         let config = unit_config(directory, &self.unit_config, &self.settings)?;
         let line = directory.line(&self.line)?;
-        let train = train(directory, &self.train)?;
+        let train = directory.train(&self.train)?;
         check_places(&faults, &train)
             .map_err(|wrong| Failure::usage(RunTrouble::Misplaced(wrong.to_string())))?;
         let scatter = match self.scatter {
@@ -198,7 +208,7 @@ impl BenchChoice {
 /// Reads a software version, `MAJOR.MINOR.PATCH`.
 ///
 /// # Errors
-/// It is not three numbers up to 255.
+/// The text is not three numbers up to 255.
 pub fn software_version(text: &str) -> Result<[u8; 3], RunTrouble> {
     let parts: Vec<u8> = text
         .split('.')
@@ -214,7 +224,7 @@ pub fn software_version(text: &str) -> Result<[u8; 3], RunTrouble> {
 /// Checks a serial number that was given.
 ///
 /// # Errors
-/// It is empty, too long for the unit's identity, or not ASCII.
+/// The number is empty, too long for the unit's identity, or not ASCII.
 pub fn check_serial(serial: &str) -> Result<(), Failure> {
     let longest = size_of_val(&Identity::default().serial);
     if serial.is_empty() || serial.len() > longest || !serial.is_ascii() {

@@ -10,11 +10,10 @@ use protocol::{Duration, Instant};
 use super::bench_contents::BenchContents;
 use super::event::{RecordedStimuli, SessionEvent};
 use super::fault_watch::FaultSeen;
+use super::run_start::RunStart;
 use super::store_thread::{LinePrinter, RunStore};
 use super::trace_data::trace_data;
-use super::whole_run::RunStart;
-use crate::failure::Exit;
-use crate::failure::Trouble;
+use crate::failure::{Exit, Failure, Trouble, prevented_by};
 use crate::stored::{WHOLE_RUN, fault_record, kind, outside_record, stored, whole_run};
 
 /// Receives the events of a run while it goes on.
@@ -38,11 +37,10 @@ impl Listener for () {
     fn on_event(&mut self, _: &Procedure, _: &SessionEvent) {}
 }
 
-/// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub id: Id,
-    /// Over all procedures.
+    /// Verdict over all procedures.
     pub verdict: Verdict,
     /// Bench time of all procedures.
     pub bench_time: Duration,
@@ -50,7 +48,7 @@ pub struct Outcome {
     pub exit: Exit,
     /// The history does not hold the run: why, and where it is kept.
     pub lost: Option<Trouble>,
-    /// Nothing was begun: why.
+    /// Why nothing was begun.
     pub prevented: Option<Trouble>,
     /// How many of the run's steps were due, passed, failed and so on.
     pub counts: StepCounts,
@@ -73,8 +71,8 @@ pub struct Collector<'a> {
     dates: Vec<(i64, i64)>,
     faults_before: usize,
     verdict: Verdict,
-    /// What failed outside the steps of the present procedure: stored after its last step, so that places of steps
-    /// do not depend on it.
+    /// Failures outside the steps of the present procedure, stored after its last step, so that the places of
+    /// steps stay.
     outside: Vec<OutsideStep>,
     /// The present procedure has something recorded that did not pass.
     says_why: bool,
@@ -83,7 +81,7 @@ pub struct Collector<'a> {
     finished: u32,
     /// Different steps that are due.
     planned: usize,
-    /// It is a search for a fault; one that passed without all steps accepts nothing.
+    /// The run searches for a fault: passing without all steps accepts nothing.
     search: bool,
     /// Steps by procedure and place in it.
     counter: StepCounter<(String, usize)>,
@@ -167,10 +165,32 @@ impl<'a> Collector<'a> {
         self.say_of_whole(Verdict::Error, why);
     }
 
-    /// What the run as a whole came to, told to whoever listens as it is stored.
+    /// Nothing could be begun.
+    pub fn prevented(&mut self, failure: &Failure) {
+        self.verdict = match failure.exit {
+            Exit::Aborted => Verdict::Aborted,
+            _ => Verdict::Error,
+        };
+        let finding = match failure.message.of_the_bench() {
+            Some(why) => {
+                let lost = SessionEvent::LinkLost(why.clone());
+                self.listener.on_event(&whole_run(), &lost);
+                self.link_lost = Some(why.clone());
+                Finding::LinkLost { why: why.clone() }
+            }
+            None => prevented_by(&failure.message),
+        };
+        self.say(Outside::Bench, self.verdict, finding);
+    }
+
+    /// Records a finding on the run as a whole, and tells it to the listener.
     fn say_of_whole(&mut self, verdict: Verdict, finding: Finding) {
+        self.say(Outside::Whole, verdict, finding);
+    }
+
+    fn say(&mut self, place: Outside, verdict: Verdict, finding: Finding) {
         let entry = OutsideStep {
-            place: Outside::Whole,
+            place,
             verdict,
             finding,
             at: Instant::ZERO,
@@ -233,8 +253,8 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// That of its procedures. A stop outranks what they came to, and so does a lost link: what was not
-    /// tested then is no verdict on the unit.
+    /// Verdict of the run from the verdicts of its procedures. A stop or a lost link outranks them:
+    /// what was not tested is no verdict on the unit.
     fn overall(&self) -> Verdict {
         match self.verdict {
             Verdict::Aborted => Verdict::Aborted,
@@ -348,6 +368,7 @@ impl<'a> Collector<'a> {
                 of,
                 left,
                 instrument,
+                bench: self.made.places.as_ref().map(|file| file.name.clone()),
             };
             self.say_of_whole(verdict, at);
         } else if self.search && left > 0 && is_passed(verdict) {

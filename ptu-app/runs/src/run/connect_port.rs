@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{EventSource, LogState, UnitEvent};
-use btu_rig::rig::{Bench, TimeOfDay};
+use btu_rig::rig::{Bench, LinkTrouble, TimeOfDay};
 use btu_rig::stimulus::Stimulus;
 use protocol::event::Event;
 use protocol::message::Identity;
@@ -23,8 +23,8 @@ use crate::link::{Endpoint, WireLink};
 use crate::places::Placed;
 use crate::stop::Stop;
 
-/// How fast a unit's clock may go beside the bench's, a faulty one on a busy computer included: what is beyond
-/// goes at another pace on purpose.
+/// Pace of a unit's clock over the bench's, faulty clocks on a busy computer included: a unit beyond runs at
+/// another pace on purpose.
 const CLOCKS_AGREE: RangeInclusive<f64> = 0.55..=1.8;
 
 /// Clocks that go together so nearly after [`CLOCK_WATCHED`] are in step; others are watched longer, up to
@@ -39,7 +39,7 @@ const LOG_WITHIN: Duration = Duration::from_ms(10_000);
 pub(super) struct ReadyUnit {
     pub session: Session<WireLink>,
     pub identity: Identity,
-    /// What TCMS found meanwhile, and the unit in its own self-test.
+    /// Faults that TCMS found meanwhile, and the unit in its own self-test.
     pub found: Vec<FaultSeen>,
 }
 
@@ -47,11 +47,11 @@ impl BenchSetup {
     /// Reaches the unit on its port, identifies it and brings it to a known state.
     ///
     /// # Errors
-    /// It cannot be reached, is another one, or has another configuration.
+    /// The unit cannot be reached, is another one, or has another configuration.
     pub(super) fn reach(&self, stop: &Stop) -> Result<ReadyUnit, Failure> {
         let mut link = WireLink::open(&self.endpoint)?.slower(self.slower);
         if let Some(places) = &self.places {
-            link = link.with_instruments(Placed::open(places).map_err(NoUnit::BadBench)?);
+            link = link.with_instruments(Placed::open(places).map_err(|why| self.bad_bench(why))?);
         }
         let mut rig = self.rig(self.seed, Instant::ZERO);
         rig.set_harness(self.harness);
@@ -157,10 +157,15 @@ impl BenchSetup {
         Ok(identity)
     }
 
+    fn bad_bench(&self, why: LinkTrouble) -> NoUnit {
+        let bench = self.places.as_ref().map(|places| places.name.clone());
+        NoUnit::BadBench(bench.unwrap_or_default(), why)
+    }
+
     fn link_holds(&self, session: &Session<WireLink>) -> Result<(), NoUnit> {
         match session.link_error() {
             None => Ok(()),
-            Some(why) if why.is_of_the_bench() => Err(NoUnit::BadBench(why)),
+            Some(why) if why.is_of_the_bench() => Err(self.bad_bench(why)),
             Some(why) => Err(NoUnit::BadLink(self.endpoint.clone(), why)),
         }
     }

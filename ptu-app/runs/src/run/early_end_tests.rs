@@ -94,7 +94,7 @@ fn run_with(
     (outcome, detail.run.verdict.expect("it is over"))
 }
 
-/// The same with all that is stored.
+/// Runs the plan under a run control; the outcome and all that is stored of the run.
 fn recorded(
     presser: &Arc<StopBeforeScan>,
     plan: &RunPlan,

@@ -1,4 +1,4 @@
-//! What happens while a procedure runs on a bench: the one type of event that is stored and shown.
+//! Events of a procedure that runs on a bench: one type, stored and shown.
 
 use btu_rig::procedure::RunEvent;
 use btu_rig::recorded::StimulusRecord;
@@ -8,7 +8,7 @@ use protocol::{Duration, Instant};
 
 use super::fault_watch::FaultSeen;
 
-/// What happens while a procedure runs on a bench. Times are bench times.
+/// Event of a procedure that runs on a bench. Times are bench times.
 #[derive(Clone, Debug)]
 pub enum SessionEvent {
     /// From the runner.
@@ -19,7 +19,7 @@ pub enum SessionEvent {
     Trace(Box<RecordedWindow>),
     /// Rows since those before, of a run that is recorded whole.
     Rows(Vec<Row>),
-    /// What was done to the bench in a procedure whose traces came before.
+    /// Stimuli of a procedure whose traces came before.
     Recording(Box<RecordedStimuli>),
     /// Nothing can be judged any more: the unit cannot be reached, another one answers, or its log cannot
     /// be read.
@@ -30,7 +30,7 @@ pub enum SessionEvent {
     },
 }
 
-/// What was done to the bench in one procedure, on the bench's clock.
+/// Stimuli of one procedure, on the bench's clock.
 #[derive(Clone, Debug)]
 pub struct RecordedStimuli {
     /// When the procedure began.

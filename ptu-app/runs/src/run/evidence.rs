@@ -1,4 +1,5 @@
-//! What a run's results rest on besides its scripts: kept with the run, sealed and signed with it.
+//! Evidence behind a run's results besides its scripts: kept with the run, sealed and signed with
+//! it.
 
 use fault_db::Instrument;
 use serde::{Deserialize, Serialize};
@@ -8,7 +9,7 @@ use super::bench_contents::BenchContents;
 use super::plan::MeasuringRules;
 use crate::clock::{ClockState, NOT_KNOWN_MS, local_day, now_us};
 
-/// What the bench was made of, and how right its clock was.
+/// Content of the bench, and accuracy of its clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
     /// Unit configuration, line, train and settings, by their content.
@@ -33,14 +34,15 @@ pub struct Evidence {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "serde_json::Value")]
 pub struct InstrumentEvidence {
-    /// As it was registered.
+    /// Instrument as registered.
     #[serde(flatten)]
     pub of: Instrument,
-    /// Its calibration held.
+    /// The calibration was valid.
     pub is_calibrated: bool,
 }
 
-/// By hand: what serde flattens loses the numbers that serde_json keeps with all their digits.
+/// Written by hand: flattening by serde loses the numbers that serde_json keeps with all their
+/// digits.
 impl TryFrom<Value> for InstrumentEvidence {
     type Error = serde_json::Error;
 
@@ -59,12 +61,12 @@ impl TryFrom<Value> for InstrumentEvidence {
 pub struct ClockEvidence {
     /// The network has set it since the computer was started; none: the system does not say.
     pub synchronised: Option<bool>,
-    /// How far its times may be wrong; none: not known.
+    /// Greatest error of the clock's times, ms; none = unknown.
     pub uncertainty_ms: Option<u16>,
 }
 
 impl Evidence {
-    /// With the clock as it is now.
+    /// Evidence of a run that begins now, with the state of the clock.
     pub fn now(
         bench: BenchContents,
         used: Vec<Instrument>,
@@ -101,13 +103,13 @@ impl Evidence {
         self.instruments.iter().find(measures)
     }
 
-    /// As a run keeps it.
+    /// Evidence as JSON, as a run stores it.
     pub fn text(&self) -> String {
         // Structures of text and numbers: this cannot fail.
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// As a run has kept it.
+    /// Evidence from the JSON of a run.
     pub fn of(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
     }

@@ -18,7 +18,7 @@ pub(super) struct FirstFailure {
 }
 
 impl FirstFailure {
-    /// None so far; `ends_run` = the run is to end with it.
+    /// No failure so far; `ends_run` = the run ends with the first.
     pub(super) fn new(ends_run: bool) -> Self {
         Self {
             ends_run,

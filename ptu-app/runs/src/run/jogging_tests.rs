@@ -14,7 +14,7 @@ use crate::run::{BenchChoice, BenchSetup};
 
 /// Passengers of a full train, kg.
 const FULL_KG: f64 = 160_000.0;
-/// What the unit's position may be off, m: a few pulses.
+/// Tolerance of the unit's position, m: a few pulses.
 const POSITION_M: f64 = 0.06;
 /// From the section's start to its stop point, m: more than the train is long.
 const WAY_M: f64 = 200.0;
@@ -44,7 +44,6 @@ struct Stop {
     backward: bool,
 }
 
-/// How a recovery went.
 #[derive(Debug)]
 struct Recovery {
     tries: u32,
@@ -174,7 +173,7 @@ impl Stop {
         self.watch()
     }
 
-    /// Until the run is over.
+    /// Watches the train until the run is over.
     fn watch(&mut self) -> Recovery {
         let mut seen = Recovery {
             tries: 0,

@@ -25,15 +25,17 @@ use crate::platform;
 /// The word that makes the program load scripts and nothing else.
 pub const WORD: &str = "load-scripts";
 
-/// Processor time that all scripts together may take, s: so much, and a second more for so many of them.
+/// Processor time that all scripts together may take, s, with one more second for each
+/// [`SCRIPTS_A_SECOND`] of them.
 const MOST_TIME_S: u64 = 9;
 /// See [`MOST_TIME_S`].
 const SCRIPTS_A_SECOND: u64 = 50;
-/// The same by the clock is so many times as much: the machine may have other work.
+/// Time by the clock over processor time: the machine may have other work.
 const BUSY: u32 = 6;
 /// Memory that they may take, MiB.
 const MOST_MEMORY_MIB: u64 = 512;
-/// What they are evaluated on, bytes: as deep as scripts may nest and call takes a fraction of it.
+/// Stack of the thread that evaluates scripts, bytes: scripts that nest and call as deep as they
+/// may take a fraction of it.
 const STACK: usize = 16 << 20;
 /// Longest line of what is loaded, bytes: the plan of one procedure.
 const LONGEST_LINE: u64 = 8 << 20;
@@ -41,10 +43,10 @@ const LONGEST_LINE: u64 = 8 << 20;
 const MOST_LOADED: u64 = 256 << 20;
 /// Lines under way.
 const QUEUE: usize = 16;
-/// What is kept of the last words of a process that broke off, bytes.
+/// Part of the last words of a broken-off process that is kept, bytes.
 const LAST_WORDS: u64 = 64 << 10;
 
-/// What is to be loaded, for what.
+/// Scripts to load, and the configuration, line and train to load them for.
 #[derive(Serialize, Deserialize)]
 struct Order<'a> {
     scripts: Cow<'a, Scripts>,
@@ -53,10 +55,10 @@ struct Order<'a> {
     train: Cow<'a, TrainData>,
 }
 
-/// What the process says, a line each.
+/// Lines that the process prints.
 #[derive(Serialize, Deserialize)]
 enum LoaderLine<'a> {
-    /// It evaluates the script of this path from now on.
+    /// The process evaluates the script of this path from now on.
     Evaluates(Cow<'a, str>),
     Loaded(Box<Procedure>),
     Done {
@@ -121,7 +123,7 @@ pub fn load(
         let heard = listen(&lines, most_time_s(scripts));
         drop(lines);
         if heard.is_err() {
-            // It may have ended by itself.
+            // The process may have ended by itself.
             let _ = child.kill();
         }
         let status = child.wait().map_err(|error| cannot(&error))?;
@@ -152,7 +154,7 @@ pub fn load(
 struct Broken {
     /// The script it was at.
     at: Option<String>,
-    /// What it did wrong; none if it ended by itself.
+    /// Error of the process; none if it ended by itself.
     why: Option<String>,
 }
 
@@ -218,7 +220,7 @@ fn read_lines(output: impl Read, lines: &SyncSender<Option<Vec<u8>>>) {
             Ok(0) | Err(_) => return,
             Ok(_) if line.ends_with(b"\n") => Some(line),
             Ok(length) if length as u64 == LONGEST_LINE => None,
-            // It broke off within a line.
+            // The process broke off within a line.
             Ok(_) => return,
         };
         let is_last = line.is_none();
@@ -245,7 +247,7 @@ fn too_long(most_s: u64) -> String {
     format!("takes longer than {most_s} s to load; does a loop or a long text or list go too far?")
 }
 
-/// Why a process broke off.
+/// Sentence that says why a process broke off.
 fn reason(status: ExitStatus, words: &str, most_s: u64) -> String {
     if platform::ended_by_time(status) {
         return too_long(most_s);
@@ -271,10 +273,10 @@ fn reason(status: ExitStatus, words: &str, most_s: u64) -> String {
     format!("the script language broke off ({status}): {first}")
 }
 
-/// What the process does: loads what its standard input names, within its limits.
+/// The loading process: loads the scripts that its standard input names, within its limits.
 ///
 /// # Errors
-/// Its input is not understood, or its output is no longer read.
+/// Input is not understood, output is no longer read, or a limit cannot be set.
 pub fn serve() -> Result<(), Failure> {
     let failed = |error: &dyn std::fmt::Display| {
         Failure::bench(RunTrouble::NotLoadedApart(error.to_string()))

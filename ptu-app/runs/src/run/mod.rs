@@ -19,8 +19,6 @@ mod event;
 mod evidence;
 mod fault_watch;
 mod first_failure;
-#[cfg(test)]
-mod hazards;
 mod instruments;
 #[cfg(test)]
 mod jogging_tests;
@@ -34,6 +32,7 @@ mod repetitions;
 #[cfg(test)]
 mod resume_tests;
 mod run_control;
+mod run_start;
 pub mod select;
 mod session;
 mod settle;
@@ -61,6 +60,7 @@ pub use observe::{ObservationBuilder, of_run};
 pub use plan::{Adaptive, MeasuringRules, RunPlan, Task, different_steps, steps_of};
 pub(crate) use repaired::trace_repaired;
 pub use run_control::RunControl;
+pub use run_start::RunStart;
 pub(crate) use session::{Session, Window};
 pub(crate) use settle::{READY_WITHIN, settled};
 pub use signals::Signals;
@@ -68,5 +68,6 @@ pub use store_thread::{LinePrinter, RunStore};
 pub use suite::Suite;
 pub use trace_data::{channel, in_steps};
 pub use unfinished::{Unfinished, unfinished};
-pub use whole_run::{RunStart, run, run_on, search};
-pub(crate) use workers::{TO_THE_END, run_on_fresh};
+pub use whole_run::{run, run_on, search};
+pub(crate) use workers::TO_THE_END;
+pub use workers::run_on_fresh;

@@ -21,7 +21,7 @@ pub struct ObservationBuilder {
 }
 
 impl ObservationBuilder {
-    /// Of the procedure called `procedure`.
+    /// Observation of the procedure called `procedure`.
     pub fn new(procedure: &str) -> Self {
         Self {
             procedure: procedure.to_owned(),
@@ -78,8 +78,8 @@ fn sign_of(fault: &FaultSeen) -> Option<Sign> {
     })
 }
 
-/// What a stored run saw. Signs go with the step they showed in or, before a procedure's first step,
-/// with that; a run without steps, as an imported log is, has nothing but signs.
+/// Observation of a stored run. Signs go with the step they showed in or, before a procedure's first
+/// step, with that; a run without steps, as an imported log is, has nothing but signs.
 pub fn of_run(run: &RunDetail, occurrences: &[RunOccurrence]) -> Observation {
     let mut seen = Observation::default();
     let steps = run

@@ -24,7 +24,7 @@ use crate::test_support::{procedures, setup};
 /// When it happens, after power-up: the steps are under way.
 const AT_MS: u64 = 10_000;
 
-/// What happens to the train.
+/// Events that happen to the train.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Happens {
     Nothing,
@@ -33,7 +33,7 @@ enum Happens {
     ModeTurned,
     /// The supply fails for good.
     PowerLost,
-    /// It fails for half a second.
+    /// The unit fails for half a second.
     Restarted,
     Unplugged,
 }

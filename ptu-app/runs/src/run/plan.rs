@@ -1,4 +1,4 @@
-//! What a run is to do, and the streams of events in which it comes back.
+//! Plan of a run, and the streams of its events.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub struct Task {
     pub options: RunOptions,
 }
 
-/// What stays the same for a whole run.
+/// Settings that stay the same for a whole run.
 pub struct RunPlan {
     /// Procedures in order.
     pub tasks: Vec<Task>,
@@ -29,11 +29,11 @@ pub struct RunPlan {
     pub jobs: usize,
     /// The run ends with the first procedure, in this order, that does not pass.
     pub stop_on_fail: bool,
-    /// Who tests.
+    /// Name of the tester.
     pub operator: String,
     /// The train the unit is in, as the tester names it; empty if not given.
     pub train: String,
-    /// What was wrong with the unit, as the person who brought it said: a name of `symptoms.toml`.
+    /// Symptom that was reported with the unit: a name of `symptoms.toml`.
     pub symptom: Option<String>,
     /// SHA-256 over all scripts.
     pub scripts_sha256: String,
@@ -41,7 +41,7 @@ pub struct RunPlan {
     pub adaptive: Option<Adaptive>,
     /// The earlier run whose open procedures these are.
     pub continues: Option<fault_db::Id>,
-    /// What is made of the instruments of the bench.
+    /// Use of the bench's instruments.
     pub measuring: MeasuringRules,
 }
 
@@ -56,7 +56,7 @@ impl From<Arc<Procedure>> for Task {
 }
 
 impl RunPlan {
-    /// These tasks one after the other on one bench, and nothing else asked for or known.
+    /// A plan of these tasks in order on one bench, with defaults for everything else.
     pub fn of(tasks: impl IntoIterator<Item = impl Into<Task>>) -> Self {
         Self {
             tasks: tasks.into_iter().map(Into::into).collect(),
@@ -73,7 +73,7 @@ impl RunPlan {
     }
 }
 
-/// What a run makes of the instruments of its bench.
+/// Use that a run makes of the instruments of its bench.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeasuringRules {
     /// Instruments whose calibration is over do not hinder the run; it says so.
@@ -85,15 +85,15 @@ pub struct MeasuringRules {
 /// A procedure and the events of its run.
 pub(super) type ProcedureStream = (Arc<Procedure>, Receiver<SessionEvent>);
 
-/// What an adaptive run decides by.
+/// Data by which an adaptive run decides.
 pub struct Adaptive {
-    /// What each fault does to each check.
+    /// Dictionary: effect of each fault on each check.
     pub dictionary: Dictionary,
     /// Priors and thresholds.
     pub settings: Settings,
-    /// What the unit's history says of its parts.
+    /// Weights of the parts by the unit's history.
     pub lru_factors: BTreeMap<LruId, f64>,
-    /// What to bear in mind with what it finds.
+    /// Warnings for the reader of the result.
     pub warnings: Vec<Warning>,
 }
 

@@ -12,7 +12,7 @@ use crate::failure::Failure;
 const MOST_FAULTS: u32 = 50;
 const MOST_OCCURRENCES: usize = 5;
 
-/// Has a trace kept of each step that failed with a fault of this unit which is repaired and not verified yet.
+/// Keeps a trace of each step that failed with a fault of this unit which is repaired and not verified yet.
 ///
 /// # Errors
 /// The database fails.

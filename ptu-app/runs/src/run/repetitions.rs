@@ -6,19 +6,19 @@ use protocol::Instant;
 /// Different results of repetitions that are kept; what went wrong in thousands is clear from the first few.
 const KEPT: usize = 8;
 
-/// How many repetitions of a procedure have ended, and their common verdict.
+/// Count of ended repetitions of a procedure, and their common verdict.
 pub(super) struct RepetitionTally {
     of: u32,
     begun: bool,
     over: u32,
     verdict: Verdict,
     findings: Vec<Findings>,
-    /// Those that found no room.
+    /// Differing results beyond [`KEPT`].
     more: u32,
 }
 
 impl RepetitionTally {
-    /// None over of so many.
+    /// A tally of `of` repetitions, before the first.
     pub(super) fn new(of: u32) -> Self {
         Self {
             of,
@@ -30,7 +30,7 @@ impl RepetitionTally {
         }
     }
 
-    /// How many are over: the place of the present one, from 0.
+    /// Number of repetitions that are over: the place of the present one, from 0.
     pub(super) fn over(&self) -> u32 {
         self.over
     }

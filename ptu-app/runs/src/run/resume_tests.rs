@@ -56,7 +56,7 @@ impl StandsStill {
     }
 }
 
-/// What is not as if the computer had not stood still.
+/// Differences from a run in which the computer did not stand still.
 fn amiss(setup: &mut BenchSetup, procedure: &Arc<Procedure>, after: u32) -> Vec<String> {
     let stands_still = Arc::new(StandsStill {
         after,

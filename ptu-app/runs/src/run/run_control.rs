@@ -1,4 +1,4 @@
-//! How the window watches a bench and controls its runs.
+//! Observation of a bench and control of its runs by the window.
 
 use btu_rig::procedure::Runner;
 use btu_rig::rig::Rig;

@@ -8,7 +8,7 @@ use btu_rig::procedure::Procedure;
 use btu_rig::procedure::loader::is_library;
 use glob::Pattern;
 
-use script_files::Place;
+use script_files::Layer;
 
 use protocol::Random;
 
@@ -89,8 +89,8 @@ fn matching(
 fn under(directory: &ScriptsDirectory, name: &str) -> String {
     let path = Path::new(name);
     let folders = directory.places().iter().filter_map(|place| match place {
-        Place::Folder(folder) => Some(folder.as_path()),
-        Place::Embedded => None,
+        Layer::Folder(folder) => Some(folder.as_path()),
+        Layer::Embedded => None,
     });
     let path = folders
         .chain([Path::new("scripts")])
@@ -121,7 +121,7 @@ fn outside(name: &str, all: &BTreeMap<String, String>) -> Result<(String, String
 /// A glob over step names.
 ///
 /// # Errors
-/// It is not a glob.
+/// The text is no glob.
 pub fn step_pattern(glob: Option<&str>) -> Result<Option<Pattern>, Failure> {
     glob.map(Pattern::new).transpose().map_err(|error| {
         Failure::usage(RunTrouble::Glob(

@@ -32,7 +32,7 @@ pub struct Session<L: UnitLink> {
     recorder: Recorder,
     sample: Sample,
     link_error: Option<LinkTrouble>,
-    /// How far the bench may lag behind the wall clock; `None` for a unit in virtual time.
+    /// Permitted lag of the bench behind the wall clock; `None` for a unit in virtual time.
     max_lag: Option<Duration>,
     /// Largest lag beyond `max_lag` since it was last taken.
     stalled: Option<Duration>,
@@ -99,7 +99,7 @@ impl<L: UnitLink> Session<L> {
         self
     }
 
-    /// The same, once it is known how the unit is reached.
+    /// Sets the lag of [`Self::with_max_lag`] once it is known how the unit is reached.
     pub fn set_max_lag(&mut self, max_lag: Duration) {
         self.max_lag = Some(max_lag);
     }
@@ -172,18 +172,18 @@ impl<L: UnitLink> Session<L> {
         }
     }
 
-    /// How far the bench is behind a unit that goes on by itself.
+    /// Lag of the bench behind a unit that goes on by itself.
     fn behind(&self) -> Duration {
         self.max_lag.map_or(Duration::ZERO, |_| self.pace.behind())
     }
 
-    /// Why nothing can be sent or received any more, if so.
+    /// Reason for which nothing can be sent or received any more; none if the link works.
     pub fn link_failure(&self) -> Option<&LinkTrouble> {
         self.link_error.as_ref()
     }
 
-    /// Why nothing can be judged, if so: the unit cannot be reached, another one answers, or its log cannot
-    /// be read.
+    /// Reason for which nothing can be judged, if there is one: the unit cannot be reached, another one
+    /// answers, or its log cannot be read.
     pub fn link_error(&self) -> Option<LinkTrouble> {
         self.link_error
             .clone()

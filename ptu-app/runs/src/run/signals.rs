@@ -1,4 +1,5 @@
-//! How codes, TWC, markers and pulses reach the unit: as numbers, or as sampled waveforms.
+//! Form in which codes, TWC, markers and pulses reach the unit: as numbers, or as sampled
+//! waveforms.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -9,7 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::failure::{Failure, FileTrouble, Why};
 
-/// What bench and unit exchange. Its text form is `values`, `sampled` or `sampled:FILE`.
+/// Form of the signals between bench and unit. Its text form is `values`, `sampled` or
+/// `sampled:FILE`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Signals {
@@ -21,7 +23,7 @@ pub enum Signals {
 }
 
 impl Signals {
-    /// What disturbs the waveforms; none for numbers.
+    /// Disturbances of the waveforms; none where signals are numbers.
     ///
     /// # Errors
     /// The file cannot be read or is wrong.

@@ -39,9 +39,9 @@ const BUSY_TIMEOUT: BusyTimeout = BusyTimeout {
     gives_up: Duration::from_secs(180),
 };
 
-/// So many values of traces of a run are held until its end (32 MB), to write the run again if its file is lost.
+/// Values of traces of a run that are held until its end (32 MB), to write the run again if its file is lost.
 const MOST_TRACE_VALUES: usize = 4_000_000;
-/// So many steps are held (about 90 MB); a longer run is kept only as far as its open file can be copied.
+/// Steps that are held (about 90 MB); a longer run is kept only as far as its open file can be copied.
 const MOST_STEPS: usize = 100_000;
 
 enum Entry {
@@ -50,7 +50,7 @@ enum Entry {
     Fault(FaultRecord),
     /// A trace and the numbers of the faults it shows.
     Trace(Vec<usize>, TraceData),
-    /// What the traces since the last recording came from.
+    /// Recording behind the traces since the last one.
     Recording(RecordingRecord),
     /// Something to say once all before it is in the file.
     Say(String),
@@ -153,7 +153,7 @@ impl RunStore {
         self.send(Entry::Recording(recording));
     }
 
-    /// Has something said as soon as all that was recorded before is in the file.
+    /// Prints a line as soon as all that was recorded before is in the file.
     pub fn say(&self, line: String) {
         self.send(Entry::Say(line));
     }
@@ -214,10 +214,10 @@ fn write(
 #[derive(Default)]
 struct RecordedIds {
     occurrences: Vec<Id>,
-    /// So many of them are in another file.
+    /// Number of ids recorded in another file.
     before: usize,
     traces: Vec<Id>,
-    /// What is to be said of it.
+    /// Lines to print on the run.
     lines: Lines,
     /// All that was recorded, in order.
     records: Vec<Entry>,
@@ -240,7 +240,7 @@ impl RecordedIds {
                     return;
                 }
             }
-            // It is of traces that are held.
+            // This recording belongs to traces that were left out.
             Entry::Recording(_) if self.left_out > 0 => return,
             _ => {}
         }
@@ -251,7 +251,7 @@ impl RecordedIds {
         }
     }
 
-    /// More was recorded than is held.
+    /// Whether more was recorded than is held.
     fn is_too_long(&self) -> bool {
         self.steps > MOST_STEPS
     }
@@ -311,7 +311,8 @@ fn write_entries(
     }
 }
 
-/// Does it until the file is free. A unit is not driven meanwhile for longer than a moment.
+/// Repeats the work until the file is free. A unit is not driven meanwhile for longer than a
+/// moment.
 fn retry_while_locked(
     busy_timeout: BusyTimeout,
     stop: &Stop,

@@ -18,7 +18,7 @@ use crate::failure::{Failure, did_you_mean};
 pub struct Suite {
     /// Procedures, in order.
     pub procedures: Vec<Arc<Procedure>>,
-    /// What is wrong in the scripts, with file, line and column; nothing may be run then.
+    /// Errors in the scripts, with file, line and column; nothing may be run then.
     pub errors: Vec<String>,
     /// Procedures left out because the train has no cars.
     pub need_cars: Vec<String>,

@@ -1,4 +1,4 @@
-//! What an earlier run left open, to be run as a new one.
+//! Procedures that an earlier run left open, to be run as a new one.
 
 use std::collections::BTreeMap;
 
@@ -10,9 +10,9 @@ use btu_rig::procedure::Outside;
 /// Which procedures of an earlier run are run again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unfinished {
-    /// Those that have no verdict: stopped, interrupted or not begun.
+    /// Procedures without a verdict: stopped, interrupted or not begun.
     WithoutVerdict,
-    /// Those that could not be tested.
+    /// Procedures that could not be tested.
     Errors,
 }
 

@@ -10,7 +10,7 @@ use crate::link::Endpoint;
 const NO_SERIAL: &str = "(no serial number)";
 /// Stands for a configuration without a name.
 const NO_NAME: &str = "(no name)";
-/// What an escaped byte begins with.
+/// Beginning of an escaped byte.
 const ESCAPE: &str = "\\x";
 
 /// Serial number of a unit, as it is shown, stored and asked for with `--serial-no`.
@@ -18,7 +18,7 @@ pub fn serial(identity: &Identity) -> String {
     of_serial(&identity.serial)
 }
 
-/// The same of a serial number alone.
+/// Text of a serial number's bytes, as in [`serial`].
 pub fn of_serial(bytes: &[u8]) -> String {
     text(bytes).unwrap_or(NO_SERIAL.into())
 }
@@ -26,7 +26,7 @@ pub fn of_serial(bytes: &[u8]) -> String {
 /// Compares the unit at `endpoint` with the serial number that is expected there, if one is.
 ///
 /// # Errors
-/// It is another unit.
+/// Another unit is there.
 pub fn check_expected(
     endpoint: &Endpoint,
     identity: &Identity,

@@ -18,7 +18,7 @@ use crate::test_support::{procedures, setup};
 /// When what is wrong begins: the first procedure is under way.
 const FROM: Duration = Duration::from_ms(SWITCHED_OFF.as_ms() + 3_500);
 
-/// What is wrong between bench and unit.
+/// Fault between bench and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum LinkFault {
     Nothing,
@@ -28,7 +28,7 @@ enum LinkFault {
     NoLog,
     OtherSerial,
     OtherDatabase,
-    /// It says that every item of its self-test failed.
+    /// The unit says that every item of its self-test failed.
     SelfTest,
 }
 
@@ -110,7 +110,6 @@ impl<L: UnitLink> UnitLink for FaultyLink<L> {
     }
 }
 
-/// The result of a procedure.
 struct ProcedureEnd {
     verdict: Verdict,
     message: String,

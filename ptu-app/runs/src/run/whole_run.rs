@@ -2,10 +2,9 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use btu_rig::procedure::Finding;
 use btu_rig::procedure::plan::Connection;
-use btu_rig::procedure::{Finding, Outside, OutsideStep};
-use fault_db::{Instrument, RunEnd, RunRecord, StepCounter, Store, UnitRecord, Verdict};
-use protocol::{Duration, Instant};
+use fault_db::{Instrument, RunRecord, Store, UnitRecord, Verdict};
 
 use super::adaptive;
 use super::bench_contents::BenchContents;
@@ -16,13 +15,13 @@ use super::first_failure::FirstFailure;
 use super::instruments;
 use super::plan::{Adaptive, ProcedureStream, RunPlan, Task, different_steps};
 use super::repaired::trace_repaired;
+use super::run_start::RunStart;
 use super::store_thread::RunStore;
 use super::workers;
-use crate::clock;
-use crate::failure::{Exit, Failure, RunTrouble, prevented_by};
+use crate::failure::{Exit, Failure, RunTrouble};
 use crate::platform;
 use crate::stop::Stop;
-use crate::stored::{WHOLE_RUN, from_stored, outside_record, stored};
+use crate::stored::stored;
 
 /// Runs the plan and records it, also where the unit cannot be reached; the store comes back for the report.
 ///
@@ -36,7 +35,7 @@ pub fn run(
     listener: &mut dyn Listener,
 ) -> Result<(Store, Outcome), Failure> {
     let began = RunStart::now();
-    let (reached, store) = reach(plan, &setup, store, stop, &began)?;
+    let (reached, store) = reach(plan, &setup, store, stop, &began, listener)?;
     let mut connected = match reached {
         Ok(connected) => connected,
         Err(over) => return Ok((store, *over)),
@@ -48,7 +47,7 @@ pub fn run(
     run_on(&mut connected, &began, plan, &setup, store, stop, listener)
 }
 
-/// The same of an adaptive run, which goes by what `adaptive` makes for the unit as it was reached.
+/// Runs an adaptive run. `adaptive` makes its settings for the unit that was reached.
 ///
 /// # Errors
 /// The unit has no dictionary, or the database fails; what was recorded stays.
@@ -61,7 +60,7 @@ pub fn search(
     adaptive: impl FnOnce(&Store, &str, Connection) -> Result<Adaptive, Failure>,
 ) -> Result<(Store, Outcome), Failure> {
     let began = RunStart::now();
-    let (reached, store) = reach(plan, &setup, store, stop, &began)?;
+    let (reached, store) = reach(plan, &setup, store, stop, &began, listener)?;
     let mut connected = match reached {
         Ok(connected) => connected,
         Err(over) => return Ok((store, *over)),
@@ -85,6 +84,7 @@ fn reach(
     store: Store,
     stop: &Stop,
     began: &RunStart,
+    listener: &mut dyn Listener,
 ) -> Result<(Reached, Store), Failure> {
     let serial = setup.expected_serial();
     run_record(plan, setup, serial.clone(), began.at_us).check()?;
@@ -96,42 +96,22 @@ fn reach(
     let made = BenchContents::of(setup, serial.clone(), Connection::Btu);
     let used = instruments::of_run(&store, setup, true)?;
     let record = RunRecord {
-        evidence: Some(plan.evidence(made, used).text()),
+        evidence: Some(plan.evidence(made.clone(), used).text()),
         ..run_record(plan, setup, serial, began.at_us)
     };
-    let verdict = match failure.exit {
-        Exit::Aborted => Verdict::Aborted,
-        _ => Verdict::Error,
-    };
-    let run_store = RunStore::begin(store, record, None, stop)?;
+    let run_store = RunStore::begin(store, record, listener.line_printer(), stop)?;
     let id = run_store.id;
-    run_store.step(outside_record(
-        WHOLE_RUN,
-        &OutsideStep {
-            place: Outside::Bench,
-            verdict: from_stored(verdict),
-            finding: prevented_by(&failure.message),
-            at: Instant::ZERO,
-        },
-        0,
-    ));
-    let mut counter = StepCounter::<()>::default();
-    counter.note_outside(verdict);
-    let (store, lost) = run_store.finish(began.end(verdict, 0))?;
-    let over = Outcome {
-        id,
-        verdict: from_stored(verdict),
-        bench_time: Duration::ZERO,
-        exit: failure.exit,
-        lost,
-        prevented: Some(failure.message),
-        counts: counter.counts(different_steps(&plan.tasks)),
-    };
+    let due = (different_steps(&plan.tasks), false);
+    let mut collector = Collector::new(run_store, *began, listener, made, due);
+    collector.prevented(&failure);
+    let (run_store, mut over) = collector.finish(id, None);
+    let (store, lost) = run_store.finish(began.end(stored(over.verdict), 0))?;
+    (over.exit, over.lost, over.prevented) = (failure.exit, lost, Some(failure.message));
     Ok((Err(Box::new(over)), store))
 }
 
 impl RunPlan {
-    /// What its results rest on, on a bench that is made so and measures with these.
+    /// Evidence of the plan's results on a bench of this content, with these instruments.
     fn evidence(&self, made: BenchContents, used: Vec<Instrument>) -> Evidence {
         Evidence {
             is_part: self.tasks.iter().any(|task| task.options.chosen.is_some()),
@@ -278,40 +258,5 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
                 sha256: task.procedure.sha256.clone(),
             })
             .collect(),
-    }
-}
-
-/// When a run began. All dates of the run follow from this one and the time since, so that a clock that is set meanwhile
-/// changes none of them.
-#[derive(Clone, Copy)]
-pub struct RunStart {
-    at_us: i64,
-    at: std::time::Instant,
-}
-
-impl RunStart {
-    /// Now.
-    pub fn now() -> Self {
-        Self {
-            at_us: clock::now_us(),
-            at: std::time::Instant::now(),
-        }
-    }
-
-    /// The present time, microseconds since 1970.
-    pub(super) fn now_us(&self) -> i64 {
-        let since_us = i64::try_from(self.at.elapsed().as_micros()).unwrap_or(i64::MAX);
-        self.at_us.saturating_add(since_us)
-    }
-
-    /// The end of the run, now.
-    pub fn end(&self, verdict: Verdict, bench_time_us: i64) -> RunEnd {
-        let finished_at_us = self.now_us();
-        RunEnd {
-            verdict,
-            finished_at_us,
-            bench_time_us,
-            wall_time_us: finished_at_us - self.at_us,
-        }
     }
 }

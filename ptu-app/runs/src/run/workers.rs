@@ -91,7 +91,7 @@ pub struct Worker<'a> {
 }
 
 impl<'a> Worker<'a> {
-    /// On a unit that has been reached.
+    /// A worker on a unit that has been reached.
     pub fn new(connected: &'a mut Connected, stop: &'a Stop) -> Self {
         Self { connected, stop }
     }

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use btu_rig::procedure::Finding;
 use btu_rig::procedure::plan::Connection;
 use diagnosis::{
     Assessment, Candidate, Cause, Conclusion, Diagnosis, Dictionary, Model, Observation, Relations,
 };
-use fault_db::{Id, RepairsOf, RunDetail, Store, Verdict};
+use fault_db::{Id, RepairsOf, RunDetail, StepRecord, Store, Verdict};
 use protocol::LruId;
 use protocol::injection::Lru;
 
@@ -20,7 +21,7 @@ use crate::data::ScriptsDirectory;
 use crate::failure::{DiagnosisTrouble, Failure, Trouble, Unknown, did_you_mean};
 use crate::replay::add_residuals;
 use crate::run::{Adaptive, of_run};
-use crate::stored::DEPARTURE;
+use crate::stored::{DEPARTURE, findings};
 use crate::structure::Structure;
 use crate::symptoms::{self, Symptom};
 use crate::words::Warning;
@@ -243,12 +244,33 @@ fn cannot_tell_unless_passed(run: &RunDetail, diagnosis: &mut Diagnosis) {
         }
         _ => false,
     };
-    if !passed && !run.steps.is_empty() && nothing_wrong {
+    let nothing_made = matches!(diagnosis.conclusion, Conclusion::NothingSeen { .. });
+    if let Some(bench) = failed_bench(run).filter(|_| nothing_wrong || nothing_made) {
+        diagnosis.conclusion = Conclusion::BenchFailed { bench };
+    } else if !passed && !run.steps.is_empty() && nothing_wrong {
         diagnosis.conclusion = match (run.run.verdict, &diagnosis.next_check) {
             (Some(Verdict::Aborted), Some(_)) => Conclusion::BrokenOff,
             _ => Conclusion::NotWeighed,
         };
     }
+}
+
+/// The bench of which an instrument ended the run.
+fn failed_bench(run: &RunDetail) -> Option<String> {
+    let named = |finding: &Finding| match finding {
+        Finding::LinkLostAt {
+            instrument: Some(_),
+            bench,
+            ..
+        } => bench.clone(),
+        _ => None,
+    };
+    let of = |step: &StepRecord| {
+        findings(&step.findings)
+            .iter()
+            .find_map(|found| named(&found.finding))
+    };
+    run.steps.iter().find_map(of)
 }
 
 /// What an adaptive run on the unit called `serial`, which was brought with this symptom, decides by.

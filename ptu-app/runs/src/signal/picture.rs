@@ -130,6 +130,7 @@ impl Merge for Levels {
 #[derive(Clone)]
 pub struct Picture {
     sample_hz: f64,
+    carrier_hz: f64,
     wave: Columns<Span>,
     spectrum: Spectrum,
     downmix: Downmix,
@@ -143,6 +144,7 @@ impl Picture {
         let highest = f64::from(tones.middle_hz + tones.apart_hz);
         Self {
             sample_hz,
+            carrier_hz,
             wave: Columns::new(MOST_COLUMNS),
             spectrum: Spectrum::new(sample_hz, OVERLAP),
             downmix: downmix(carrier_hz, fastest_hz, sample_hz).0,
@@ -169,6 +171,11 @@ impl Picture {
     /// The waveform, mV, and seconds of a column.
     pub fn wave(&self) -> (&[Span], f64) {
         (self.wave.values(), self.wave.each() as f64 / self.sample_hz)
+    }
+
+    /// Frequency of the carrier whose level is the envelope, Hz.
+    pub fn carrier_hz(&self) -> f64 {
+        self.carrier_hz
     }
 
     /// Level of the carrier, mV rms, and seconds of a column.

@@ -10,9 +10,9 @@ use protocol::signal::Signal;
 
 use super::{Structure, WayStep};
 
-/// What a link of a chain makes.
+/// Result of a link of a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Made {
+pub enum LinkOutput {
     Signal(Signal),
     /// An event that the unit logs.
     Event(Event),
@@ -21,7 +21,7 @@ pub enum Made {
 /// Parts, and what they make of the link before.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Link {
-    pub made: Made,
+    pub made: LinkOutput,
     pub parts: Vec<LruId>,
 }
 
@@ -69,49 +69,55 @@ impl Structure {
         })
     }
 
-    /// What a step looks at and has a way: what it measures and expects before what it only waits for.
-    fn judged(&self, step: &Step) -> Vec<Made> {
+    /// Signals that a step judges and that have a way: first those measured and expected, then those
+    /// it only waits for.
+    fn judged(&self, step: &Step) -> Vec<LinkOutput> {
         let mut judged = Vec::new();
-        let mut add = |made: Made| {
+        let mut add = |made: LinkOutput| {
             if self.step_of(made).is_some() && !judged.contains(&made) {
                 judged.push(made);
             }
         };
         for expectation in &step.expectations {
             if let Expectation::Logs { event, .. } = expectation {
-                add(Made::Event(*event));
+                add(LinkOutput::Event(*event));
             }
         }
         let mut signals = Vec::new();
         step.for_each_signal(&mut |signal| signals.push(signal));
-        signals.into_iter().rev().map(Made::Signal).for_each(add);
+        signals
+            .into_iter()
+            .rev()
+            .map(LinkOutput::Signal)
+            .for_each(add);
         judged
     }
 
-    fn step_of(&self, made: Made) -> Option<&WayStep> {
+    fn step_of(&self, made: LinkOutput) -> Option<&WayStep> {
         match made {
-            Made::Signal(signal) => self.steps.get(&signal),
-            Made::Event(event) => self.event_steps.get(&event),
+            LinkOutput::Signal(signal) => self.steps.get(&signal),
+            LinkOutput::Event(event) => self.event_steps.get(&event),
         }
     }
 
     /// From what is judged to the nearest link that the part makes, both included.
-    fn down_from(&self, judged: Made, part: &LruId) -> Option<Vec<Made>> {
-        let mut came_from: BTreeMap<Signal, Made> = BTreeMap::new();
+    fn down_from(&self, judged: LinkOutput, part: &LruId) -> Option<Vec<LinkOutput>> {
+        let mut came_from: BTreeMap<Signal, LinkOutput> = BTreeMap::new();
         let mut ahead = VecDeque::from([judged]);
         while let Some(made) = ahead.pop_front() {
             let step = self.step_of(made)?;
             if step.parts.contains(part) {
-                let before = |made: &Made| came_from.get(&signal_of(*made)?).copied();
+                let before = |made: &LinkOutput| came_from.get(&signal_of(*made)?).copied();
                 let mut way: Vec<_> = std::iter::successors(Some(made), before).collect();
                 way.reverse();
                 return Some(way);
             }
             for signal in &step.from {
-                let is_new = Made::Signal(*signal) != judged && !came_from.contains_key(signal);
+                let is_new =
+                    LinkOutput::Signal(*signal) != judged && !came_from.contains_key(signal);
                 if is_new && self.steps.contains_key(signal) {
                     came_from.insert(*signal, made);
-                    ahead.push_back(Made::Signal(*signal));
+                    ahead.push_back(LinkOutput::Signal(*signal));
                 }
             }
         }
@@ -120,25 +126,25 @@ impl Structure {
 
     /// From the last link of a way on to one that is made of nothing else, over signals that the step looks at where there
     /// are any, and otherwise over those that the file names first.
-    fn on_to_a_sensor(&self, way: &mut Vec<Made>, looked_at: &BTreeSet<Signal>) {
+    fn on_to_a_sensor(&self, way: &mut Vec<LinkOutput>, looked_at: &BTreeSet<Signal>) {
         while let Some(step) = way.last().and_then(|made| self.step_of(*made)) {
             let is_new = |signal: &&Signal| {
-                self.steps.contains_key(signal) && !way.contains(&Made::Signal(**signal))
+                self.steps.contains_key(signal) && !way.contains(&LinkOutput::Signal(**signal))
             };
             let mut from = step.from.iter().filter(is_new);
             let first = from.clone().next();
             let Some(next) = from.find(|signal| looked_at.contains(signal)).or(first) else {
                 return;
             };
-            way.push(Made::Signal(*next));
+            way.push(LinkOutput::Signal(*next));
         }
     }
 }
 
-fn signal_of(made: Made) -> Option<Signal> {
+fn signal_of(made: LinkOutput) -> Option<Signal> {
     match made {
-        Made::Signal(signal) => Some(signal),
-        Made::Event(_) => None,
+        LinkOutput::Signal(signal) => Some(signal),
+        LinkOutput::Event(_) => None,
     }
 }
 
@@ -157,8 +163,8 @@ mod tests {
         let chain = structure.chain(procedure, step, &part)?;
         let links = chain.links.iter().enumerate().map(|(place, link)| {
             let made = match link.made {
-                Made::Signal(signal) => signal.name(),
-                Made::Event(event) => event.definition().name,
+                LinkOutput::Signal(signal) => signal.name(),
+                LinkOutput::Event(event) => event.definition().name,
             };
             let mark = if place < chain.failing { "" } else { "!" };
             format!("{mark}{made}")

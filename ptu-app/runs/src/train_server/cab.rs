@@ -1,4 +1,4 @@
-//! What a person in the cab says: one order a line, or a key of the desk with its value behind it.
+//! Orders of a person in the cab: one order a line, or a key of the desk with its value behind it.
 
 use std::fmt;
 
@@ -14,7 +14,7 @@ use crate::aboard::MAX_PUSH_KMH;
 /// Something done in the cab, on the track, or to the unit's supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Order {
-    /// What a procedure could do, too.
+    /// A stimulus that procedures have, too.
     Do(Stimulus),
     /// The train is pushed up to a speed, backward below 0, and to rest at 0.
     Push(Speed),
@@ -42,17 +42,17 @@ pub struct Cab {
 }
 
 impl Cab {
-    /// For a unit with this code table.
+    /// A reader of orders for a unit with this code table.
     pub fn new(config: &UnitConfig) -> Self {
         Self {
             config: config.clone(),
         }
     }
 
-    /// What a line says.
+    /// Reads an order from a line.
     ///
     /// # Errors
-    /// What is wrong with it, and what can be said.
+    /// The line is no order; the text says what is wrong, and for an unknown word names the orders.
     pub fn order(&self, line: &str) -> Result<Order, String> {
         let mut parts = line.split_whitespace();
         let word = parts.next().unwrap_or_default();

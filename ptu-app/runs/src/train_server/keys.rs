@@ -1,10 +1,10 @@
-//! What a driver does in the cab beside what has an order of its own: words with a value, each a stimulus of the desk or of
-//! the train's switches.
+//! Operations in the cab that have no order of their own: words with a value, each a stimulus of the desk or of the
+//! train's switches.
 
 use btu_rig::lever::Lever;
 use btu_rig::stimulus::{CutOut, DoorState, Stimulus, TrainSwitch};
 
-/// What the driver operates with a key's value.
+/// Part that a key's value operates.
 #[derive(Clone, Copy)]
 enum Key {
     /// Cuts the equipment of a car out, or in again.
@@ -50,10 +50,10 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     KEYS.iter().map(|(name, _)| *name)
 }
 
-/// What the key of this name does with a value; `None` = there is no such key.
+/// Stimulus of the key of this name with a value; `None` = there is no such key.
 ///
 /// # Errors
-/// The values that the key takes, when this is none of them.
+/// The values that the key takes, if this is another one.
 pub fn stimulus(name: &str, value: Option<&str>) -> Option<Result<Stimulus, &'static str>> {
     let (_, key) = KEYS.iter().find(|(known, _)| *known == name)?;
     let value = value.unwrap_or_default();

@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use ato_under_test::flash::FileFlash;
-pub use ato_under_test::serve::{NO_AUTHENTICATION, Place, check_exposed};
+pub use ato_under_test::serve::{NO_AUTHENTICATION, PortAddress, check_exposed};
 use ato_under_test::serve::{Served, Wire, in_real_time};
 use btu_rig::rig::UnitLink;
 use protocol::Instant;
@@ -34,7 +34,7 @@ use cab::{Cab, Order};
 #[derive(Clone, Debug)]
 pub struct TrainRequest {
     /// Where the maintenance port is served.
-    pub place: Place,
+    pub place: PortAddress,
     /// Unit, train, line and faults; its endpoint is the embedded unit.
     pub choice: BenchChoice,
     /// Section at whose departure station the train stands; none = in a depot.
@@ -121,7 +121,7 @@ struct Train {
 }
 
 impl Train {
-    /// Does what is said in the cab; false when that is to quit.
+    /// Carries out an order of the cab; false when the order is to quit.
     fn obey(&mut self, line: &str) -> bool {
         let order = match self.cab.order(line) {
             Ok(order) => order,

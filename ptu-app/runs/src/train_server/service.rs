@@ -55,7 +55,7 @@ pub fn drive(
     Ok(())
 }
 
-/// How a section ended, for people.
+/// Sentence for people that says how a section ended.
 fn told(arrival: &Arrival) -> String {
     let outcome = &arrival.outcome;
     let time = outcome

@@ -1,4 +1,4 @@
-//! What is refused of what a person asked for at a command line or in a window.
+//! Refusals of requests at a command line or in a window.
 
 use btu_rig::rig::LinkTrouble;
 use fault_db::Id;
@@ -7,7 +7,7 @@ use super::{EndpointError, OfUnit, Why, sentences};
 use crate::failure::Near;
 
 sentences! {
-    /// What a person asks for at a command line or in a window, and cannot be had so.
+    /// Request of a person at a command line or in a window that cannot be met.
     Asked {
         // A run.
         ErrorInScripts: "1 error in the scripts; nothing was driven", "스크립트 오류 1건. 아무것도 구동하지 않았습니다";

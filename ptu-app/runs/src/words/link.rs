@@ -1,4 +1,4 @@
-//! What is wrong with the link to a unit, in Korean.
+//! Trouble of the link to a unit, in Korean.
 
 use btu_rig::procedure::link_trouble::{
     GarbageCause, InstrumentFault, LinkFailure, LinkTrouble, PortFailure, Property, Refused,
@@ -77,6 +77,7 @@ fn of_instrument(fault: &InstrumentFault) -> String {
     match fault {
         F::NotThere { at, why } => format!("{at}에 연결하지 못함: {why}"),
         F::Disconnected(why) => format!("연결이 끊어짐: {why}"),
+        F::Closed => "계측기가 연결을 닫음".to_owned(),
         F::Silent(within) => format!("{:.2} s 동안 응답 없음", within.as_secs()),
         F::Slow { took, stated } => format!(
             "응답 지연: {:.0} ms 걸림 (시험대 파일에는 {:.0} ms)",
@@ -94,6 +95,7 @@ fn of_instrument(fault: &InstrumentFault) -> String {
         F::NoPlayer { server, alsa } => {
             format!("음향을 전달할 프로그램이 없음: {server}와(과) {alsa} 모두 설치되지 않음")
         }
+        F::NotHeard(at) => format!("{at}에서 소리가 들리지 않음"),
         F::PlayerEnded => "음향을 전달하는 프로그램이 종료됨".to_owned(),
         F::Refused { command, error } => format!("명령 {command}을(를) 거부함: {error}"),
         F::QueueFull(error) => format!("오류 대기열이 가득 참: {error}"),
@@ -138,6 +140,8 @@ mod tests {
         {"instrument": {"instrument": "io5", "fault": {"other_model": {"found": "28", "expected": "29"}}}},
         {"instrument": {"instrument": "io51", "fault": {"other_serial": {"found": "52", "expected": "53"}}}},
         {"instrument": {"instrument": "io54", "fault": "taken"}},
+        {"instrument": {"instrument": "io62", "fault": "closed"}},
+        {"instrument": {"instrument": "io63", "fault": {"not_heard": "p64"}}},
         {"instrument": {"instrument": "io55", "fault": "no_unmodulated"}},
         {"instrument": {"instrument": "io56", "fault": "too_loud"}},
         {"instrument": {"instrument": "io57", "fault": "takes_no_samples"}},

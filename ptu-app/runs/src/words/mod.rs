@@ -1,4 +1,4 @@
-//! What is refused or does not work, in both languages: data, and one table of sentences for each area.
+//! Refusals and failures in both languages: data, and one table of sentences for each area.
 //!
 //! A row is `Name(what: Type): "English" ["; what helps at a command line" "; the same in a window"], "한국어" […];`. What stands
 //! in brackets ends the sentence; without a second text a window says nothing there. `ptu_report::words` chooses the language.
@@ -24,23 +24,23 @@ use fault_db::Id;
 
 use crate::failure::{Near, Trouble};
 
-/// How something is said.
+/// Language and extent of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Manner {
-    /// In Korean, not in English.
+    /// Korean instead of English.
     pub korean: bool,
-    /// With the commands and options that help.
+    /// The text names commands and options that help.
     pub commands: bool,
 }
 
 impl Manner {
-    /// As a text that no window shows has it.
+    /// Manner of a text that no window shows.
     pub const COMMAND_LINE: Self = Self {
         korean: false,
         commands: true,
     };
 
-    /// One of the two.
+    /// The text of the language.
     pub fn choose<T>(self, [english, korean]: [T; 2]) -> T {
         match self.korean {
             true => korean,
@@ -51,7 +51,7 @@ impl Manner {
 
 /// A value that stands in a sentence: a name, a number, or a sentence of its own.
 pub trait Say {
-    /// Its text in this language, with or without commands.
+    /// Text of the value in this language, with or without commands.
     fn say(&self, how: Manner) -> String;
 }
 
@@ -76,7 +76,7 @@ as_it_is!(
     crate::link::Endpoint
 );
 
-/// A word of this program; a `String` is in words of others.
+/// A word of this program, which has a translation; a `String` comes from elsewhere.
 impl Say for &'static str {
     fn say(&self, how: Manner) -> String {
         how.choose([self, noun(self)]).to_owned()
@@ -95,7 +95,7 @@ impl Say for Near {
     }
 }
 
-/// A unit that something is of, if one was named.
+/// Addition to a sentence: the unit of a thing, if one was named.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OfUnit(pub Option<String>);
 
@@ -113,7 +113,7 @@ impl Say for btu_rig::rig::LinkTrouble {
     }
 }
 
-/// Declares what can be refused in an area, with its sentences.
+/// Declares the refusals of an area, with their sentences.
 macro_rules! sentences {
     ($($(#[$doc:meta])* $area:ident { $(
         $name:ident $(($($part:ident: $kind:ty),*))?:
@@ -165,7 +165,7 @@ use sentences;
 /// Makes one type of all areas.
 macro_rules! areas {
     ($($area:ident),*) => {
-        /// What is refused, by area.
+        /// Refusals, by area.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Refusal { $(#[doc = stringify!($area)] $area($area),)* }
 

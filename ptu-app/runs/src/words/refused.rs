@@ -1,4 +1,4 @@
-//! What benches, files, keys, units, traces and diagnoses refuse.
+//! Refusals of benches, files, keys, units, traces and diagnoses.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -32,7 +32,7 @@ sentences! {
         Code(asked: String, known: String): "the unit configuration has no code \"{asked}\"; it has {known}", "장치 구성에 속도 코드 \"{asked}\"이(가) 없습니다. 있는 코드: {known}";
     }
 
-    /// Why a file does not serve.
+    /// Reasons for which a file does not serve.
     Why {
         Said(said: String): "{said}", "{said}";
         NoFileName: "it has no file name", "파일 이름이 없음";
@@ -62,7 +62,7 @@ sentences! {
         NotInstalled(package: &'static str): "it is not installed ({package})", "설치되어 있지 않음 ({package})";
     }
 
-    /// How an odometer's reading is not what it should be.
+    /// Errors in the cell of an odometer's reading.
     WrongCell {
         Empty: "there is no value", "값이 없습니다";
         NoDate(text: String): "\"{text}\" is no date like 2026-03-21", "\"{text}\"은(는) 2026-03-21 형식의 날짜가 아닙니다";
@@ -71,7 +71,7 @@ sentences! {
         GoesBack(km: f64): "{km} does not fit the train's other readings: an odometer never goes back", "{km}은(는) 이 열차의 다른 값과 맞지 않습니다. 주행거리는 줄지 않습니다";
     }
 
-    /// Why a receiver does not hear a code of its own table.
+    /// Reasons for which a receiver does not hear a code of its own table.
     Unheard {
         Short(detect_ms: u32, least_ms: u32): "receiver.detect_ms = {detect_ms} is too short for the slowest code, {least_ms} or more are needed", "receiver.detect_ms = {detect_ms}은(는) 가장 느린 코드에 너무 짧습니다. {least_ms} 이상이어야 합니다";
         As(heard_hz: String): "the receiver hears it as {heard_hz} Hz", "수신기가 {heard_hz} Hz로 수신합니다";
@@ -129,7 +129,7 @@ sentences! {
         OfTwo(one: String, other: String): "one key is listed as that of {one} and of {other}", "한 키가 {one}와(과) {other}의 키로 등록되어 있습니다";
     }
 
-    /// Why a text is no place of a unit.
+    /// Reasons for which a text is no endpoint of a unit.
     EndpointError {
         Unknown: "a unit is sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH", "장치는 sim, serial:PATH[@BAUD], tcp:HOST:PORT 또는 lockstep:PATH 형식으로 지정합니다";
         Address(text: String): "\"{text}\" is not HOST:PORT", "\"{text}\"은(는) HOST:PORT 형식이 아닙니다";
@@ -144,7 +144,7 @@ sentences! {
         NotServed(at: String, why: String): "cannot connect to {at}: {why}; check that the unit is served there", "{at}에 연결할 수 없습니다 ({why}). 장치가 그 주소에 있는지 확인하십시오";
         Taken(at: Endpoint, why: LinkTrouble): "{at}: {why}; wait until it has left, or end it there", "{at}: {why}. 끝날 때까지 기다리거나 그 시험기를 끝내십시오";
         PortFailed(why: LinkTrouble): "{why}; check the cable and that the unit is served there", "{why}. 케이블과 장치를 확인하십시오";
-        BadBench(why: LinkTrouble): "{why}" ["; `ptu doctor --bench` checks each instrument" ""], "{why}" [". 계측기 점검: `ptu doctor --bench`" ""];
+        BadBench(bench: String, why: LinkTrouble): "{why}" ["; `ptu doctor --bench {bench}` checks each instrument" ""], "{why}" [". 계측기 점검: `ptu doctor --bench {bench}`" ""];
         BadLink(at: Endpoint, why: LinkTrouble): "{at}: {why}", "{at}: {why}";
         NotReady(at: Endpoint, within: Duration): "{at}: the unit answers but does not become ready within {within}; power it off and on", "{at}: 장치가 응답하지만 {within} 안에 준비되지 않습니다. 전원을 껐다 켜십시오";
         OtherPace(at: Endpoint, times: String): "{at}: the unit's clock goes {times} times as fast as the tester's; slow both ends down alike, or neither", "{at}: 장치의 시계가 시험기보다 {times}배 빠릅니다. 양쪽의 속도를 같게 하십시오";
@@ -240,19 +240,19 @@ impl From<NoUnit> for Failure {
 }
 
 impl Why {
-    /// What the system or a reader said.
+    /// Message of the system or of a reader.
     pub fn of(said: impl Display) -> Self {
         Self::Said(said.to_string())
     }
 }
 
 impl FileTrouble {
-    /// It cannot be read, and who reads it says why.
+    /// The file cannot be read; `why` is the reader's error.
     pub fn unread(file: &Path, why: impl Display) -> Self {
         Self::Unread(file.display().to_string(), Why::of(why))
     }
 
-    /// What stands in it is wrong, and who reads it says why.
+    /// The content is wrong; `why` is the reader's error.
     pub fn wrong(file: impl Display, why: impl Display) -> Self {
         Self::Wrong(file.to_string(), Why::of(why))
     }

@@ -1,4 +1,4 @@
-//! What the history says where something does not work, in both languages: at a command line with what helps there.
+//! Messages of the history about its troubles, in both languages: at a command line with what helps there.
 
 use fault_db::{
     FaultAction, Misplaced, QueryLimit, ServerReason, StoreError, TraceError, TransitionError,
@@ -44,7 +44,7 @@ fn helps(error: &StoreError) -> &'static str {
     }
 }
 
-/// What the store says without a command; its own English where that names none.
+/// Message of the store without a command; the store's own English where it names no command.
 #[rustfmt::skip]
 pub(super) fn in_window(error: &StoreError) -> [String; 2] {
     use StoreError as S;

@@ -1,9 +1,9 @@
-//! What to bear in mind with the answer of a diagnosis.
+//! Warnings with the answer of a diagnosis.
 
 use super::sentences;
 
 sentences! {
-    /// What a dictionary was made of, where that is not what there is now.
+    /// Differences between a dictionary's basis and the present one.
     Differs {
         Configuration: "made of another unit configuration, line, train, scatter or fault catalogue", "장치 구성, 노선, 열차, 산포 또는 고장 목록이 다름";
         Gone(scripts: usize): "made with {scripts} scripts that are gone", "스크립트 {scripts}개가 없어짐";
@@ -11,18 +11,20 @@ sentences! {
         ManyChanged(names: String, more: usize): "made before {names} and {more} more scripts changed", "변경된 스크립트: {names} 외 {more}개";
     }
 
-    /// What a bench of instruments makes of a step.
+    /// Notes on what a bench of instruments does to a step.
     BenchNote {
         NoPlace(bench: String, what: String): "bench {bench} has no {what}", "시험대 {bench}에 {what} 없음";
         Beyond(bench: String, instrument: String, why: btu_rig::rig::InstrumentFault): "bench {bench}: {instrument} cannot: {why}", "시험대 {bench}: 계측기 {instrument} 불가 ({why})";
         Unread(bench: String, what: String): "bench {bench} does not read {what}", "시험대 {bench}에서 읽을 수 없음: {what}";
+        TooSlow(bench: String, what: String): "bench {bench}: a person reads {what}, too slowly for this step", "시험대 {bench}: 사람이 읽기에는 너무 빠름: {what}";
         Do(what: String): "Please do by hand: {what}. Done?", "손으로 조작하십시오: {what}. 완료했습니까?";
         See(what: String): "Please look: {what}. Is it so?", "확인하십시오: {what}. 맞습니까?";
         Wider(bench: String, used: String, by: String): "bench {bench}: {used} (limits wider by {by})", "시험대 {bench}: {used} (한계 확대 {by})";
+        Looks(bench: String, within_s: u64): "bench {bench}: a person (limits wider by {within_s} s)", "시험대 {bench}: 사람 (한계 확대 {within_s} s)";
         ByHand(instrument: String, what: String): "{instrument} has no watchdog: if this program is killed, {what}", "{instrument}에 워치독 없음. 이 프로그램이 강제로 종료되면: {what}";
     }
 
-    /// Why an answer is worth less than others.
+    /// Reasons for which an answer is worth less than others.
     Warning {
         OtherConnection(how: &'static str): "the fault dictionary was made on another connection" [": make one with `ptu campaign{how}`" ": make one"], "고장 사전이 다른 연결 방식으로 만들어짐" [". `ptu campaign{how}`(으)로 다시 만드십시오" ". 사전을 다시 만드십시오"];
         Stale(differs: Differs, how: &'static str): "the fault dictionary is stale, {differs}" [": make a new one with `ptu campaign{how}`" ": make a new one"], "고장 사전이 현재와 맞지 않음 ({differs})" [". `ptu campaign{how}`(으)로 다시 만드십시오" ". 사전을 다시 만드십시오"];

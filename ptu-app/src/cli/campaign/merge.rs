@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::super::print_out;
+use ptu_runs::batch::merge;
 use ptu_runs::data::write;
 use ptu_runs::failure::{Exit, Failure};
-use ptu_runs::kept::merge;
 use ptu_runs::new_file::kind;
 use ptu_runs::stdio;
 

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::super::{Json, answered};
+use ptu_runs::batch::{Missing, missing};
 use ptu_runs::failure::{Exit, Failure};
-use ptu_runs::kept::{Missing, missing};
 
 /// List the shards that lack runs, of a campaign or of `ptu drive --monte-carlo`
 ///

@@ -40,7 +40,7 @@ pub(super) struct PruneArguments {
 
 pub(super) fn backup(database: &Database, to: &Path) -> Result<Exit, Failure> {
     database.open_read_only()?.backup(only_file(to)?)?;
-    // Of the copy: another process may have recorded more into the file meanwhile.
+    // Head of the copy: another process may have recorded more into the file meanwhile.
     let head = fault_db::Store::open_read_only(to)?.head()?;
     let words = Words::shown();
     let mut said = fill(words.care.backed_up, &[("file", &to.display())]);

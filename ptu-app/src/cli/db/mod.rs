@@ -74,7 +74,6 @@ enum Verb {
 }
 
 impl DbArguments {
-    /// Does it.
     pub fn run(self) -> Result<Exit, Failure> {
         match self.verb {
             Verb::Check { json } => check::check(&self.database, json),

@@ -142,7 +142,8 @@ fn table(answer: &QueryResult) -> String {
     table.render()
 }
 
-/// As few digits as tell it from all other numbers; with an exponent where zeros would fill the table.
+/// The number in as few digits as tell it from all others; with an exponent where zeros would fill the
+/// table.
 fn real(number: f64) -> String {
     let size = number.abs();
     if size > 0.0 && size.is_finite() && !(1e-5..=1e15).contains(&size) {

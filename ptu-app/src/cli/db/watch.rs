@@ -13,7 +13,7 @@ use ptu_runs::failure::{Exit, Failure, KeepTrouble};
 const LOOK: Duration = Duration::from_millis(50);
 /// A function of SQL that is at work when the time is over is not waited for longer than this.
 const GRACE: Duration = Duration::from_secs(1);
-/// What SQLite calls its temporary files.
+/// Beginning of the names of SQLite's temporary files.
 const TEMPORARY: &str = "etilqs_";
 
 /// The bounds of one question.
@@ -70,7 +70,7 @@ impl Watch {
         })
     }
 
-    /// It was the disk, not the time.
+    /// Whether the disk stopped the command, not the time.
     pub fn stopped_by_disk(&self) -> bool {
         self.disk.load(Ordering::Relaxed)
     }

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use btu_rig::rig::LinkTrouble;
 use fault_db::{Address, Instrument, Store, StoreError};
 
 use super::Finding;
@@ -22,7 +21,8 @@ const LITTLE_ROOM: u64 = 1 << 30;
 const NO_ROOM: u64 = 100 << 20;
 /// Times that an instrument is tried.
 const ROUNDS: u32 = 20;
-/// What a Modbus module is registered as, and the unit of its reaction time, which is no uncertainty of a measured time.
+/// Kind as which a Modbus module is registered; its reaction time has a unit of its own, as it is no uncertainty of
+/// a measured time.
 const MODULE: &str = "modbus module";
 const REACTION: &str = "ms reaction";
 /// The newest run is at most this far ahead of a clock that is right, µs: another computer's clock may be off a little.
@@ -111,7 +111,7 @@ pub(super) fn ports(words: &Words) -> Vec<Finding> {
 
 /// A port that this user may not open, and the group whose members may, if there is one.
 fn closed_port(path: &str, kind: &str, group: Option<&str>, doctor: &Doctor) -> Finding {
-    // Who joins the group "root" may do more than open ports.
+    // A member of the group "root" may do more than open ports.
     let remedy = match group.filter(|group| *group != "root") {
         Some(group) => fill(doctor.join_group, &[("group", &group)]),
         None => doctor.install_rule.into(),
@@ -207,7 +207,7 @@ pub(super) fn database(file: &Path, words: &Words) -> Vec<Finding> {
     findings
 }
 
-/// There is room for runs.
+/// Checks the room on the disk for runs.
 pub(super) fn disk(file: &Path, words: &Words) -> Finding {
     let doctor = &words.doctor;
     let subject = doctor.disk;
@@ -288,14 +288,9 @@ pub(super) fn bench(
         let took_ms = match tried {
             Ok(took_ms) => took_ms,
             Err(fault) => {
-                let instrument = name.clone();
-                let fault = LinkTrouble::Instrument {
-                    instrument,
-                    fault: fault.into(),
-                };
                 let why = words.told(&fault);
                 let found = fill(doctor.instrument_wrong, &[of[0], of[1], ("why", &why)]);
-                findings.push(Finding::wrong(doctor.bench, found, doctor.check_instrument));
+                findings.push(Finding::wrong(doctor.bench, found, doctor.remedy(&fault)));
                 continue;
             }
         };
@@ -329,7 +324,11 @@ pub(super) fn bench(
         registered.uncertainty.insert(REACTION.into(), rounded_ms);
         registered.at_us = now_us();
         store.register_instrument(&registered)?;
-        findings.push(Finding::ok(doctor.bench, fill(doctor.instrument_ok, &of)));
+        let found = fill(doctor.instrument_ok, &of);
+        findings.push(match registered.calibrated {
+            Some(_) => Finding::ok(doctor.bench, found),
+            None => Finding::warning(doctor.bench, found, fill(doctor.not_calibrated, &of)),
+        });
     }
     for note in places.by_hand() {
         let told = words.told(&note);

@@ -41,7 +41,7 @@ pub struct DoctorArguments {
     scripts: ScriptsOption,
 }
 
-/// How well something is.
+/// Health of a thing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum State {
@@ -69,7 +69,7 @@ struct Finding {
     subject: &'static str,
     state: State,
     found: String,
-    /// What to do.
+    /// Remedy.
     #[serde(skip_serializing_if = "Option::is_none")]
     remedy: Option<String>,
 }

@@ -56,17 +56,17 @@ pub struct FilterArguments {
 }
 
 impl FilterArguments {
-    /// The span of time it asks for.
+    /// The span of time of the filter.
     pub fn span(&self) -> Span {
         self.when.unwrap_or_default()
     }
 
-    /// As the history takes it.
+    /// The filter, as the history takes it.
     pub fn filter(&self, store: &Store) -> Result<FaultFilter, Failure> {
         if let Some(unit) = &self.serial_no {
             check_unit(store, unit)?;
         }
-        // Of several the others would hide it.
+        // In a list of several codes the others would hide an unknown one.
         if self.code.as_ref().is_some_and(|codes| codes.contains(','))
             && let Some(unknown) = self.unknown_code(store)?
         {
@@ -108,7 +108,7 @@ impl FilterArguments {
         .to_owned())
     }
 
-    /// What to say of the first code that no fault has.
+    /// Refusal of the first code that no fault has.
     fn unknown_code(&self, store: &Store) -> Result<Option<Asked>, Failure> {
         let Some(codes) = &self.code else {
             return Ok(None);
@@ -132,7 +132,8 @@ impl FilterArguments {
         }))
     }
 
-    /// The first name that neither something here nor the scripts have, and the nearest that something here has.
+    /// Refusal of the first name that neither the history nor the scripts have, with the nearest name in the
+    /// history.
     fn unknown(&self, store: &Store) -> Result<Option<Asked>, Failure> {
         if let Some(said) = self.unknown_code(store)? {
             return Ok(Some(said));

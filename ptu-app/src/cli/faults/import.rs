@@ -10,9 +10,9 @@ use crate::cli::{Json, ScriptsOption, since_argument};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock::{local, rfc3339};
 use ptu_runs::failure::{Exit, Failure};
-use ptu_runs::field::{ImportedLog, UnitReading};
 use ptu_runs::stop::Stop;
 use ptu_runs::table::Table;
+use ptu_runs::unit_log::{ImportedLog, UnitReading};
 
 /// Read a unit's own event log: what is new in it becomes faults, stored as a run without steps
 ///

@@ -20,11 +20,11 @@ pub fn named(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<Stri
     })
 }
 
-/// A part that the catalogue lacks, as it is written; one that it has is that one. A name that is nearly one of its parts is
-/// taken and told.
+/// Name of a part that the catalogue lacks, as written; or the part of the catalogue with this name. A name close to
+/// a part's is taken, with a note.
 ///
 /// # Errors
-/// It has no letter, or the database fails.
+/// The name has no letter, or the database fails.
 pub fn other(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<String, Failure> {
     if asked.trim().is_empty() {
         return Err(Failure::usage(Asked::OtherPartUnnamed));

@@ -139,7 +139,7 @@ fn detail(detail: &FaultDetail, parts: &PartNames) -> String {
     text
 }
 
-/// How often and when it was seen.
+/// Number and times of the occurrences.
 fn times(fault: &FaultSummary, words: &Words) -> String {
     let last = local(fault.last_at_us);
     match fault.occurrences {

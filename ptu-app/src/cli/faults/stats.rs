@@ -118,7 +118,7 @@ impl StatsArguments {
             GroupBy::Cause => StatKey::Cause,
             GroupBy::Unit => StatKey::Unit,
             GroupBy::Line => StatKey::Line,
-            // Of one cause its cases are counted, as without months.
+            // Months of one cause count its cases, as without months.
             GroupBy::Month if self.filter.cause.is_some() => StatKey::Cause,
             GroupBy::Month => StatKey::All,
         };
@@ -173,7 +173,7 @@ impl StatsArguments {
         })
     }
 
-    /// What shares are of: cases of a cause, else occurrences.
+    /// Total of shares: cases of a cause, else occurrences.
     fn counted(&self, stat: &FaultStat) -> u64 {
         match self.counts_cases() {
             true => u64::from(stat.faults),

@@ -123,8 +123,8 @@ impl TrendArguments {
         }
     }
 
-    /// Why there is no value: another procedure measures it, or it was measured at another time, or it was
-    /// not measured on such units.
+    /// Reason for which there is no value: another procedure measures it, or it was measured at another
+    /// time, or it was not measured on such units.
     fn nothing(
         &self,
         store: &Store,
@@ -265,7 +265,7 @@ fn json(trend: &Trend) -> Value {
     value
 }
 
-/// That a unit has no repair of a part, and the part that is meant where none has this name.
+/// Refusal: the unit has no repair of this part; with the nearest part where none has this name.
 fn never_repaired(
     store: &Store,
     scripts: &ScriptsOption,

@@ -149,7 +149,7 @@ fn mean(days: &[TrendDay]) -> f64 {
         / n
 }
 
-/// As many bars as fit, each the mean of its share.
+/// As many bars as fit into a row, each the mean of its share of the values.
 fn bars(values: &[Option<f64>]) -> String {
     let share = values.len().div_ceil(BARS).max(1);
     let mean = |values: &[Option<f64>]| {
@@ -288,7 +288,7 @@ fn outstanding(units: &[TrendUnit], limit: usize) -> String {
     format!("\n\n{said}\n{}", table.render())
 }
 
-/// How units scatter: from their middle half, so that a few bad ones do not hide themselves.
+/// Scatter of units, from their middle half, so that a few bad ones do not hide themselves.
 struct Spread {
     middle: f64,
     sigma: f64,

@@ -121,7 +121,7 @@ pub(super) fn page(command: &Command) -> Result<Vec<u8>> {
     Ok(page)
 }
 
-/// As a page takes it: hyphens that can be copied, and no line that is taken for a request.
+/// Text for a manual page: hyphens that can be copied, and no line that is taken for a request.
 fn text(text: &str) -> String {
     let text = text.replace('\\', "\\e").replace('-', "\\-");
     let lines = text

@@ -4,7 +4,7 @@ use ptu_report::words::{Words, fill};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use script_files::{Place, own_folder};
+use script_files::{Layer, own_folder};
 
 use super::{ScriptsOption, print_out};
 use ptu_runs::data::{ScriptsDirectory, write_text};
@@ -69,7 +69,7 @@ impl NewArguments {
         let scripts = self.scripts.find()?;
         // A folder that is read alone is the place where what is written is read.
         let read_alone = match scripts.places() {
-            [Place::Folder(folder)] => Some(folder.clone()),
+            [Layer::Folder(folder)] => Some(folder.clone()),
             _ => own_folder(),
         };
         let Some(folder) = self.into.clone().or(read_alone) else {

@@ -10,9 +10,9 @@ use crate::cli::{Json, ScriptsOption};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock::rfc3339;
 use ptu_runs::failure::{Exit, Failure};
-use ptu_runs::field::UnitReading;
 use ptu_runs::record::{Pulled, RecordedRun, pull_reading};
 use ptu_runs::stop::Stop;
+use ptu_runs::unit_log::UnitReading;
 
 /// Read a unit's stored record of automatic runs: each run that is new becomes a trace
 ///

@@ -48,7 +48,7 @@ pub(super) fn show(
     print_out(&format!("{checked}; {found}; {english}{bench}"))
 }
 
-/// What a bench leaves out of procedures as notes, and how much it does.
+/// Notes on the steps that a bench leaves out, and their number.
 fn of_bench(bench: &Places, fitted: &[Arc<Procedure>]) -> String {
     let terminal = &Words::shown().terminal;
     let (mut all, mut left_out) = (0, 0);

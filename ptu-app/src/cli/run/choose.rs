@@ -1,4 +1,4 @@
-//! Which procedures and steps are run.
+//! Choice of procedures and steps to run.
 
 use std::sync::Arc;
 
@@ -73,10 +73,10 @@ impl RunArguments {
     }
 }
 
-/// Takes out what the name, folder or glob stands for.
+/// Removes the procedures of a name, folder or glob.
 ///
 /// # Errors
-/// It stands for none of them, or for all that are left.
+/// No procedure has the name, or all the remaining ones have.
 fn exclude(name: &str, procedures: &mut Vec<Arc<Procedure>>) -> Result<(), Failure> {
     let wanted = name.strip_suffix(".star").unwrap_or(name);
     let wanted = wanted.trim_start_matches("scripts/").trim_end_matches('/');

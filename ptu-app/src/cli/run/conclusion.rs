@@ -1,4 +1,4 @@
-//! What a run comes to beyond its verdict: the diagnosis, and what it says of repairs.
+//! Conclusions of a run beyond its verdict: the diagnosis, and the proof of repairs.
 
 use std::collections::BTreeSet;
 
@@ -28,8 +28,8 @@ impl RunArguments {
         is_wanted.then(|| diagnose_run(store, directory, outcome.id))
     }
 
-    /// What an adaptive run came to; after any other that failed, the conclusion if it is not to be
-    /// had from a dictionary that is not of these scripts.
+    /// Prints the result of an adaptive run; after any other failed run the conclusion, unless the
+    /// dictionary does not belong to these scripts.
     pub(super) fn say_diagnosis(&self, answer: Result<Answer, Failure>) -> Result<(), Failure> {
         let words = Words::shown();
         if self.adaptive {
@@ -52,7 +52,8 @@ impl RunArguments {
     }
 }
 
-/// Until when a departure test holds; of one that does not, why, and how the part is found.
+/// Time until which a departure test holds; else the reason why it does not, and how the part is
+/// found.
 pub(super) fn say_validity(run: &RunDetail) -> Result<(), Failure> {
     let Some(departure) = Departure::of(run) else {
         return Ok(());
@@ -78,7 +79,7 @@ pub(super) fn say_validity(run: &RunDetail) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What a run that passed says of the repairs made before it.
+/// Prints which earlier repairs a passed run proves.
 pub(super) fn say_proofs(proofs: &[RepairProof]) -> Result<(), Failure> {
     if !proofs.is_empty() {
         let words = Words::shown();

@@ -13,7 +13,7 @@ use ptu_runs::link::Endpoint;
 use ptu_runs::run::{BenchSetup, Unfinished, unfinished};
 use ptu_runs::stdio;
 
-/// Of units that were not reached.
+/// Serial number of units that were not reached.
 const UNKNOWN_SERIAL: &str = "unknown";
 
 /// Which earlier run.

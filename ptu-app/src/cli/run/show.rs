@@ -6,7 +6,7 @@ use clap::Args;
 use fault_db::RunDetail;
 
 use crate::console::Detail;
-use crate::event_stream::Place;
+use crate::event_stream::StreamTarget;
 use crate::verdict_table::{failures, verdict_table};
 use ptu_report::words::Words;
 
@@ -31,7 +31,7 @@ pub struct ShowOptions {
 }
 
 impl ShowOptions {
-    /// How much is said.
+    /// Amount of detail.
     pub fn detail(&self) -> Detail {
         match (self.quiet, self.verbose) {
             (true, _) => Detail::Quiet,
@@ -41,14 +41,14 @@ impl ShowOptions {
     }
 
     /// Where the events go, if they are asked for.
-    pub fn events(&self) -> Option<Place> {
+    pub fn events(&self) -> Option<StreamTarget> {
         match self.json {
-            true => Some(Place::Stdout),
-            false => self.events.clone().map(Place::File),
+            true => Some(StreamTarget::Stdout),
+            false => self.events.clone().map(StreamTarget::File),
         }
     }
 
-    /// What the run came to.
+    /// Outcome of the run.
     pub fn verdict(&self, run: &RunDetail) -> String {
         let words = Words::shown();
         match self.quiet {

@@ -138,9 +138,9 @@ impl DiffArguments {
     }
 }
 
-/// What is compared.
+/// Two traces to compare.
 struct ComparedTraces {
-    /// What B is called.
+    /// Name of B.
     name: String,
     came: TraceData,
     expected: TraceData,

@@ -10,7 +10,7 @@ pub fn named(channel: &Channel, value: f64) -> String {
     value::named(channel, value, Words::shown())
 }
 
-/// The same, where it may not be known.
+/// Name of a value that may be unknown.
 pub fn said(channel: &Channel, value: Option<f64>) -> String {
     named(channel, value.unwrap_or(f64::NAN))
 }

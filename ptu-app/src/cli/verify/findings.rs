@@ -1,4 +1,4 @@
-//! What a verification found: who signed, what was changed, what is in doubt.
+//! Findings of a verification: who signed, what was changed, what is in doubt.
 
 use std::fmt::Display;
 
@@ -12,7 +12,7 @@ use ptu_runs::keys::{KeyList, Standing};
 use ptu_runs::stored::from_stored;
 use ptu_runs::words::{Manner, Say as _};
 
-/// What was found, in the words of those who read it.
+/// Findings, in the words of their readers.
 pub(super) struct Findings {
     pub(super) words: &'static Words,
     /// `run`, `database`, `sheet` or `certificate`.
@@ -20,23 +20,23 @@ pub(super) struct Findings {
     pub(super) id: String,
     /// A signature or seal of it as a whole was read: without one nothing says that it is unchanged.
     pub(super) is_covered: bool,
-    /// Who signed what, when, and how the key stood then.
+    /// Signatures: who signed what, when, and whether the key was valid then.
     pub(super) signatures: Vec<Value>,
     /// The signatures, a sentence each.
     pub(super) said: Vec<String>,
     pub(super) changes: Vec<String>,
-    /// What is not signed, or not by a key that is trusted.
+    /// Things that are not signed, or not by a trusted key.
     pub(super) doubts: Vec<String>,
-    /// What is neither a change nor a doubt, as samples that were pruned.
+    /// Remarks that are neither changes nor doubts, such as pruned samples.
     pub(super) remarks: Vec<String>,
-    /// What it is worth as a departure test.
+    /// Value as a departure test.
     pub(super) departure: Option<Departure>,
 }
 
-/// A clock may be ahead of this one by so much, µs.
+/// Time by which a clock may be ahead of this one, µs.
 const AHEAD_US: i64 = 86_400_000_000;
 
-/// What to say of a signature that is dated in the future.
+/// Sentence on a signature that is dated in the future.
 pub(super) fn dated_ahead(name: &str, at_us: i64, words: &Words) -> Option<String> {
     let is_ahead = at_us > clock::now_us().saturating_add(AHEAD_US);
     is_ahead.then(|| {
@@ -46,7 +46,7 @@ pub(super) fn dated_ahead(name: &str, at_us: i64, words: &Words) -> Option<Strin
 }
 
 impl Findings {
-    /// Nothing yet, of a `run`, `database`, `sheet` or `certificate`.
+    /// No findings yet about a `run`, `database`, `sheet` or `certificate`.
     pub(super) fn of(what: &'static str, words: &'static Words) -> Self {
         Self {
             words,
@@ -152,7 +152,7 @@ impl Findings {
         }));
     }
 
-    /// Until when a departure test holds, or why it does not: then it is no good one.
+    /// Time until which a departure test holds, or why it does not: then it is no good one.
     pub(super) fn say_departure(&mut self, departure: Departure) {
         let verify = &self.words.verify;
         if departure.why_not.is_empty() {
@@ -197,7 +197,7 @@ impl Findings {
     }
 }
 
-/// What a signed run says, in short.
+/// Summary of a signed run.
 fn about_text(about: &About, words: &Words) -> String {
     let verify = &words.verify;
     let injected = match &about.injected {

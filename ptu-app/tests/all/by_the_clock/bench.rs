@@ -96,7 +96,7 @@ impl Bench {
         place.write("bench.toml", &text)
     }
 
-    /// The same with generator, module and a supply at serial lines.
+    /// Bench file with generator, module and a supply at serial lines.
     fn serial_file(&self, place: &Place) -> String {
         let [generator, supply, module] = serial_lines(place);
         let Self(_, ports) = self;
@@ -126,8 +126,8 @@ impl Bench {
         place.write("serial.toml", &(text + &supply))
     }
 
-    /// Runs procedures on a served unit that is wired to the bench of this file; gives the exit code and the run. Of the last
-    /// ports of the bench so many have no wires.
+    /// Runs procedures on a served unit that is wired to the bench of this file; gives the exit code and the run.
+    /// The last `unwired` ports of the bench have no wires.
     fn run(&self, place: &Place, asked: &str, file: &str, unwired: usize) -> (Option<i32>, Value) {
         let unit = Unit::on_tcp(&[]);
         let port = unit.port.rsplit(':').next().expect("a port").to_owned();
@@ -258,9 +258,21 @@ fn a_bench_that_is_not_reached_is_reported_like_any_error() {
         (&last["event"], &last["verdict"], &last["exit"]),
         (&"run_finished".into(), &"error".into(), &3.into())
     );
+    assert!(
+        ran.out.contains("\"event\":\"bench_failed\""),
+        "{}",
+        ran.out
+    );
     let run = place.json("runs show latest --json");
     assert_eq!(run["run"]["steps_not_run"], last["not_run"]);
     assert!(last["not_run"].as_u64() > Some(10));
+    let of_whole = format!("instrument generator of bench {file} failed before the first");
+    assert!(run.to_string().contains(&of_whole), "{run}");
+    let diagnosis = place.json("diagnose latest --json");
+    let says = format!("the bench failed, not the unit: `ptu doctor --bench {file}`");
+    assert_eq!(diagnosis["conclusion"], says);
+    let doctor = place.ptu(&format!("doctor --bench {file}")).exits(1);
+    doctor.prints(&["generator GEN-0001: not reached", "check its supply"]);
     for file in [sheet, junit] {
         let text = std::fs::read_to_string(&file).expect("a report");
         assert!(

@@ -1,7 +1,8 @@
-//! What judges times by the clock, when nothing else runs.
+//! Tests that judge times by the clock, when nothing else runs.
 
 mod acceptance;
 mod bench;
 mod pace;
 mod sound;
+mod sound_server;
 mod standstill;

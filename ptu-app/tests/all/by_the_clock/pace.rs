@@ -1,4 +1,4 @@
-//! What takes how long, and what goes at the pace of the clock.
+//! Tests of durations, and of work at the pace of the clock.
 
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,7 @@ use protocol::message::{Channel, LogEntry, Message};
 
 /// A procedure of a second.
 const SHORT: &str = "procedure(title = \"Short\", suspect = \"tcms\")\nstep(\"lasts\", do = wait(s(1)), measure = value(\"v\", speed))\n";
-/// What a run may take beside its bench time.
+/// Time that a run may take beside its bench time.
 const BESIDE_S: f64 = 2.0;
 
 /// Goal: nobody waits for what is not measured. Method: short runs on both kinds of port, each right after the one before.

@@ -12,7 +12,7 @@ const FEW_STEPS: [&str; 3] = ["atp/limit_speed", "--step", "code ?5 gives*"];
 /// A killed tester's unit is safe again within this time.
 const SAFE_WITHIN: Duration = Duration::from_millis(1000);
 
-/// What the observer and a busy machine may add.
+/// Time that the observer and a busy machine may add.
 const SLACK: Duration = Duration::from_millis(200);
 
 fn eb_applied(message: &Message) -> bool {

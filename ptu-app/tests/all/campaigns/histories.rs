@@ -11,7 +11,7 @@ use crate::common::{Place, record_bad_unit_anew};
 
 /// Steps of the run, each of which fails and is told.
 const STEPS: usize = 20;
-/// What begins the line that tells of one.
+/// Beginning of the line that tells of a failed step.
 const TOLD_STEP: &str = "failed  fails: ";
 /// Rows that may only become more, or, where something is deleted, fewer.
 const ROWS: [&str; 8] = [
@@ -26,7 +26,7 @@ const ROWS: [&str; 8] = [
 ];
 const FAILED_STEPS: usize = 2;
 
-/// How many of each of the [`ROWS`] a file has.
+/// Number of each of the [`ROWS`] in a file.
 pub type Rows = [i64; ROWS.len()];
 
 /// A place with a history of some runs, and a second file to be imported.
@@ -80,7 +80,7 @@ pub struct Victim {
     after: Rows,
 }
 
-/// What is done: name, arguments, the file that is written, the exit code.
+/// Commands: name, arguments, the file that is written, the exit code.
 const DEEDS: [(&str, &[&str], &str, i32); 8] = [
     ("run", &["run", "fails.star"], "history.db", 1),
     (
@@ -143,7 +143,8 @@ impl Victim {
         place.command(&arguments.iter().map(String::as_str).collect::<Vec<_>>())
     }
 
-    /// What is wrong with the files of a folder in which it ended before its time, after it had told this.
+    /// Errors in the files of a folder in which the program ended before its time, after it had printed
+    /// this.
     pub fn judge(&self, folder: &Path, out: &str, err: &str) -> Vec<String> {
         let mut wrong = Vec::new();
         for name in ["history.db", "other.db", "copy.db"] {
@@ -182,7 +183,7 @@ impl Victim {
     }
 }
 
-/// What the history's own check finds in a file, opened as the next program opens it.
+/// Findings of the history's own check in a file, opened as the next program opens it.
 fn problems(file: &Path) -> Vec<String> {
     let checked = Store::open(file, clock::open_options()).and_then(|store| store.check());
     match checked {

@@ -17,7 +17,7 @@ use crate::server::owner_only::shared;
 /// A program is run so often undisturbed to know how long it takes at least.
 const TIMED: u32 = 3;
 
-/// How kills of one program went.
+/// Counts of kills of one program.
 #[derive(Default)]
 struct Kills {
     at_writes: u32,
@@ -75,7 +75,7 @@ fn a_program_that_is_killed_loses_nothing_that_it_told() {
     }
 }
 
-/// How long it takes undisturbed, at least.
+/// Least time that the program takes undisturbed.
 fn shortest(victim: &Victim, base: &Base) -> Duration {
     let times = (0..TIMED).map(|_| {
         let place = base.copy();
@@ -86,7 +86,7 @@ fn shortest(victim: &Victim, base: &Base) -> Duration {
     times.min().unwrap_or_default()
 }
 
-/// How many writes it makes to its files.
+/// Number of writes that the program makes to its files.
 fn writes(victim: &Victim, base: &Base) -> usize {
     let place = base.copy();
     let (_, deeds) = traced(&victim.command(&place), &base.path(""));

@@ -9,7 +9,7 @@ use protocol::Random;
 use super::histories::{Base, Victim, victims};
 use super::system_calls::{Deed, traced};
 
-/// What a disk writes as a whole, bytes.
+/// Bytes that a disk writes as a whole.
 const SECTOR: usize = 512;
 
 /// A file: what the disk has for sure, and what was asked of it since.
@@ -43,7 +43,7 @@ impl OnDisk {
         asked.iter().for_each(|asked| asked.apply(&mut self.synced));
     }
 
-    /// What is left of it after a power cut, if each sector and each length was written by this chance.
+    /// Content after a power cut, if each sector and each length was written by this chance.
     fn after_cut(&self, chance: f64, random: &mut Random) -> Vec<u8> {
         let mut content = self.synced.clone();
         for asked in &self.asked {
@@ -66,7 +66,7 @@ impl OnDisk {
     }
 }
 
-/// What a folder is asked: a file system keeps the order of these.
+/// Changes of a folder, whose order a file system keeps.
 enum Entry {
     Named(PathBuf, usize),
     Gone(PathBuf),
@@ -97,7 +97,7 @@ impl Entry {
 struct Disk {
     folder: PathBuf,
     files: Vec<OnDisk>,
-    /// As the program sees them, and as the disk has them for sure.
+    /// Files as the program sees them, and as the disk has them for sure.
     names: Names,
     synced: Names,
     asked: Vec<Entry>,

@@ -1,4 +1,4 @@
-//! What a program does to its files and says, in the order in which it does it, as `strace` shows it.
+//! Acts of a program on its files and its output, in their order, as `strace` shows them.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -38,9 +38,9 @@ pub enum Deed {
         file: PathBuf,
         to: PathBuf,
     },
-    /// On its standard output.
+    /// Writes to standard output.
     Says(Vec<u8>),
-    /// On its standard error output.
+    /// Writes to standard error.
     Notes(Vec<u8>),
 }
 
@@ -96,7 +96,7 @@ pub fn traced(program: &Command, folder: &Path) -> (ExitStatus, Vec<Deed>) {
 
 fn deeds(log: &str) -> Vec<Deed> {
     let mut deeds = Vec::new();
-    // Of calls that another thread interrupted: the first half of the line, by thread.
+    // First halves of calls that another thread interrupted, by thread.
     let mut begun = BTreeMap::new();
     // Where the next `write` to a file goes.
     let mut places = BTreeMap::new();

@@ -13,7 +13,7 @@ use crate::common::{Place, Said, install, text};
 use fuzzing::draw;
 use serde_json::Value;
 
-/// What is read and not run, by what its line has, and why.
+/// Lines that are read and not run, by a part of the line, with the reason.
 const NOT_RUN: [(&str, &str); 20] = [
     ("serial:", "a unit on a port"),
     ("tcp:", "a unit on a network"),
@@ -41,7 +41,7 @@ const NOT_RUN: [(&str, &str); 20] = [
 ];
 /// Files that a reader has before: name and content.
 const GIVEN: [(&str, &str); 2] = [("pin.txt", "739156\n"), ("noisy.toml", "noise_mv = 1.0\n")];
-/// What asks for it at a terminal gets it so.
+/// PIN for commands that ask for one at a terminal.
 const PIN: &str = "739156";
 
 /// Where an installed program is used.
@@ -159,7 +159,7 @@ fn run(document: &Document, blocks: &[Block<'_>], installed: &Installed) -> Vec<
     wrong
 }
 
-/// Those that the last commit or what is not committed yet changes, and one in three of the others.
+/// Documents changed by the last commit or since, and one in three of the others.
 fn drawn(guides: Vec<Document>) -> Vec<Document> {
     let mut git = Command::new("git");
     git.args(["diff", "--name-only", "HEAD~1"])

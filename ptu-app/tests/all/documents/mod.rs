@@ -157,7 +157,7 @@ fn links_of(line: &str) -> impl Iterator<Item = &str> {
     targets.filter_map(|rest| rest.split_once(')').map(|(target, _)| target))
 }
 
-/// Why a link leads nowhere, if so.
+/// Reason for which a link leads nowhere; none if it works.
 fn broken(document: &Document, target: &str) -> Option<String> {
     if target.contains("://") {
         return None;

@@ -28,21 +28,21 @@ const AFTER_S: f64 = 5.0;
 /// Suites run side by side.
 const WORKERS: usize = 2;
 
-/// The check runs the whole suite on one mode in so many.
+/// The check runs the whole suite on one mode of this many.
 const ONE_IN: usize = 20;
 
-/// For each fault mode (or glob): procedure, and words in the name of a step that must fail.
+/// Procedure for each fault mode (or glob), and words in the name of a step that must fail.
 const FOUND_BY: &str = include_str!("found_by.txt");
-/// What is not as it is with the others, the fault mode (or glob), and why: the part that diagnosis names, the part that a
-/// stored fault names (of those that come and go none need be named), the side that a step suspects, a procedure of the
-/// unit that a fault of the train fails.
+/// What differs from other modes, with the fault mode (or glob) and the reason: the part that diagnosis names, the part
+/// that a stored fault names (of those that come and go none need be named), the side that a step suspects, a procedure
+/// of the unit that a fault of the train fails.
 const EXCUSED: &str = include_str!("excused.txt");
 const PROTECTION: &str = include_str!("../../../../docs/protection.md");
 /// The mode of which the whole suite is run through the program itself, command line, printed reports and exit codes
 /// included.
 const WHOLE_THROUGH_THE_PROGRAM: &str = "eb_relay.slow";
-/// Those of which the procedures of the table are: of the train, of a link, a weak one, one that comes and goes, one
-/// that starts the unit again and again.
+/// Modes that run through the program with the procedures of the table: of the train, of a link, a weak one, one
+/// that comes and goes, one that starts the unit again and again.
 const THROUGH_THE_PROGRAM: [&str; 5] = [
     "brake_unit.dead",
     "rs485_link.receiver_errors",
@@ -75,7 +75,7 @@ fn some_faults_are_found_by_the_whole_suite() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// What is wrong with each mode, two of them side by side.
+/// Problems of each mode, two of them side by side.
 fn on_each<'a>(
     modes: impl Iterator<Item = &'a FaultMode> + Send,
     problems_of: impl Fn(&FaultMode) -> Vec<String> + Sync,
@@ -232,14 +232,14 @@ fn columns(
     })
 }
 
-/// Why this is not as with the others in this fault mode, if it may be so.
+/// Reason for which this is an exception in this fault mode, if it may be one.
 fn excused(what: &str, mode: &FaultMode) -> Option<&'static str> {
     let mut rows = columns(EXCUSED).filter(|(of, glob, _)| *of == what && fits(glob, &mode.id));
     rows.next().map(|(.., why)| why)
 }
 
-/// What is wrong with a run of the procedures that the table names for this fault. What other procedures add, the
-/// part that is named and the diagnosis, is not asked for.
+/// Problems of a run of the procedures that the table names for this fault. The named part and the diagnosis,
+/// which need other procedures, are not judged.
 fn problems_of_procedures(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     let mut problems = Vec::new();
     if run.exit != 1 {
@@ -255,7 +255,7 @@ fn problems_of_procedures(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     problems.into_iter().map(named).collect()
 }
 
-/// What is wrong with the outcome of a run of the whole suite on a unit with this fault.
+/// Problems in the outcome of a run of the whole suite on a unit with this fault.
 fn problems(mode: &FaultMode, run: &FaultRun) -> Vec<String> {
     let mut problems = Vec::new();
     if run.exit != 1 {

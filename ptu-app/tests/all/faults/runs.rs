@@ -14,7 +14,7 @@ use ptu_runs::run_diagnosis::diagnose_run;
 use ptu_runs::stop::Stop;
 use serde_json::Value;
 
-/// What a run on a faulty unit came to.
+/// Outcome of a run on a faulty unit.
 pub struct FaultRun {
     /// Exit code.
     pub exit: u8,
@@ -52,7 +52,7 @@ impl TestBench {
         Self::of(&BTreeSet::new())
     }
 
-    /// These procedures, or the default suite if there is none, evaluated once.
+    /// A bench with these procedures, or with the default suite if there is none, evaluated once.
     pub fn of(procedures: &BTreeSet<&str>) -> Self {
         let asked: Vec<_> = procedures.iter().map(|id| (*id).to_owned()).collect();
         let directory = ScriptsDirectory::find(Some(&scripts())).expect("scripts");
@@ -81,7 +81,7 @@ impl TestBench {
         self.run_of(mode, |procedure| !procedure.on_request, true)
     }
 
-    /// The same with these procedures alone, and without a diagnosis.
+    /// Runs these procedures alone, and makes no diagnosis.
     pub fn run_procedures(&self, mode: &FaultMode, ids: &BTreeSet<&str>) -> FaultRun {
         self.run_of(mode, |procedure| ids.contains(procedure.id.as_str()), false)
     }
@@ -130,7 +130,7 @@ impl TestBench {
     }
 }
 
-/// The same through the program: these procedures, or the whole suite if none is named.
+/// Runs these procedures through the program, or the whole suite if none is named.
 pub fn run_program(id: &str, procedures: &BTreeSet<&str>) -> FaultRun {
     let place = Place::new();
     let faulty = ["--inject", id].into_iter();

@@ -11,7 +11,7 @@ use crate::no_unit::fails;
 use protocol::link::{End, Link};
 use protocol::message::{Channel, KeepAlive, Message};
 
-/// Another tester that has the unit, until this is dropped.
+/// A second tester that has the unit, until this value is dropped.
 struct Other {
     address: SocketAddr,
     leaves: std::sync::mpsc::Sender<()>,

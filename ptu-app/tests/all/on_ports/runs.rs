@@ -9,7 +9,7 @@ use crate::common::{Place, list, text};
 use protocol::message::Message;
 use serde_json::Value;
 
-/// What the observer and a busy machine may add.
+/// Time that the observer and a busy machine may add.
 const SLACK: Duration = Duration::from_millis(200);
 
 /// A stopped run makes its outputs safe and ends within this time.

@@ -116,7 +116,7 @@ fn a_laptop_alone_tests_the_unit_of_a_train() {
     let said = Running::start(&place, &train, &arguments).finish().exits(0);
     let report = place.read_json("report.json");
     for step in list(&report["steps"]) {
-        // Of this unit no record tells more than the number that was given.
+        // No record tells more of this unit than the number that was given.
         let passes = match text(&step["procedure"]) {
             "ptu/identity" => text(&step["name"]).contains("serial number"),
             procedure => procedure.starts_with("ptu/"),

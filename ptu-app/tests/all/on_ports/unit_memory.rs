@@ -1,4 +1,4 @@
-//! What a unit remembers over power-ups, read over its port: by commands.
+//! Stored memory of a unit, read over its port by commands.
 
 use crate::common::served::{Running, Unit};
 use crate::common::{Place, list, number, text};

@@ -131,7 +131,7 @@ fn every_reader_tells_the_same_of_runs_on_a_unit() {
     monitor.finish(400);
 }
 
-/// What is made of a stored run.
+/// Compares everything made of a stored run.
 fn of_run(monitor: &mut Monitor, facts: &mut Facts, of: &Stored<'_>, is_printed: bool) {
     let run = &of.run;
     for language in Language::ALL {
@@ -235,7 +235,7 @@ fn certificate(monitor: &mut Monitor, facts: &mut Facts, of: &Stored<'_>, place:
     monitor.hold(facts, "seal", vec![fact("digest", &seal.digest)]);
 }
 
-/// What SQL finds in the views.
+/// Rows that SQL finds in the views.
 fn views(monitor: &mut Monitor, made: &mut [Made], store: &Store) {
     let ask = |sql: &str| {
         let answer = store.query_read_only(sql, 100_000).expect("an answer");
@@ -270,7 +270,7 @@ fn views(monitor: &mut Monitor, made: &mut [Made], store: &Store) {
     }
 }
 
-/// What commands answer about all runs.
+/// Answers of commands about all runs.
 fn by_command(monitor: &mut Monitor, made: &mut [Made], place: &Place) {
     let runs = place.ptu("runs list --limit 1000").exits(0).out;
     let faults = place.json("faults list --limit 10000 --json");

@@ -31,7 +31,7 @@ pub fn short(text: &str) -> Told {
     vec![fact("run", run), fact("planned", planned)]
 }
 
-/// Of what a record says that it is.
+/// Whether a record of this kind is a step.
 fn is_step(kind: &str) -> bool {
     ["step", "attempt", "again"].contains(&kind)
 }
@@ -44,13 +44,13 @@ pub fn turn_kind(kind: &str) -> &str {
         .unwrap_or("step")
 }
 
-/// What stands outside of steps has no turns.
+/// Turns of a record; one outside steps has none.
 fn turn_of_keys(of: &Value, kind: &str) -> String {
     let [turn, turns] = ["turn", "turns"].map(|key| of[key].as_u64().unwrap_or(1));
     turn_of(turn, turns, kind)
 }
 
-/// What the row of a lost link begins with.
+/// Beginning of a lost link's row.
 const LOST: &str = "link lost at step ";
 
 /// The table at the end of a run.
@@ -304,7 +304,7 @@ pub fn junit(xml: &str) -> Told {
         }
     }
     told.extend(numbers("passed|failed|error", counts));
-    // It has no limits.
+    // The measurement has no limits.
     told.extend(measured(values.into_iter()).into_iter().take(1));
     told.extend([
         id(run),
@@ -332,7 +332,6 @@ pub fn texts(page: &str) -> Vec<String> {
     texts.map(read).filter(|text| !text.is_empty()).collect()
 }
 
-/// The same of a page as it is printed.
 pub fn printed_texts(page: &Page) -> Vec<String> {
     let text = |item: &Item| match item {
         Item::Text(text) => {

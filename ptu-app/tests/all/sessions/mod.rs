@@ -20,7 +20,7 @@ use snapbox::{Assert, Data};
 
 use crate::common::{Place, record_bad_unit, scripts, workspace};
 
-/// What differs from one time to the next.
+/// Texts that differ from one time to the next.
 const DIFFERS: [(&str, &str); 9] = [
     (
         "[ID]",
@@ -202,7 +202,7 @@ fn answer(place: &Place, line: &str, names: &mut BTreeMap<String, String>) -> St
     told
 }
 
-/// What stands at this path, of each of a list where it has `*`.
+/// Value at this path; of each element of a list where the path has `*`.
 fn at(value: &Value, path: &str) -> Value {
     let Some((list, rest)) = path.split_once("/*") else {
         return value

@@ -34,7 +34,7 @@ const TALL: [f32; 2] = [1280.0, 3400.0];
 /// Presses of + from the whole hour to about 10 s.
 const TO_TEN_SECONDS: usize = 17;
 
-/// By then a page has its answers.
+/// Time after which a page has its answers.
 const ANSWERED: Duration = Duration::from_secs(2);
 
 fn main() {
@@ -219,7 +219,7 @@ fn page(bencher: Bencher<'_, '_>, page: Page) {
     bencher.bench_local(|| window.frame(&[]));
 }
 
-/// What is done once when the trace is opened, on the library's thread.
+/// Work done once when the trace is opened, on the library's thread.
 #[divan::bench(sample_count = 20)]
 fn summaries(bencher: Bencher<'_, '_>) {
     bencher

@@ -28,7 +28,7 @@ const RUN_BAR: f32 = 72.0;
 /// Letters of a name, at most.
 const NAME: usize = 24;
 
-/// What gives way where the bar is too narrow, in this order.
+/// Parts of the bar that give way where the bar is too narrow, in this order.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Without {
     Nothing,
@@ -228,7 +228,7 @@ fn unit_face(unit: &Unit, words: &words::Frame, without: Without) -> Face<'stati
     }
 }
 
-/// How the unit is reached, and how well.
+/// Connection of the unit, and its quality.
 fn link(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Item>) {
     let common = &words.common;
     let words = &words.frame;
@@ -258,7 +258,7 @@ fn link(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Ite
     }
 }
 
-/// What a run is at, whatever page is in front.
+/// State of a run, whatever page is in front.
 fn run(unit: &Unit, words: &words::Frame, without: Without, items: &mut Vec<Item>) {
     let Some(run) = unit.run.as_ref().filter(|run| run.is_running()) else {
         return;
@@ -282,7 +282,7 @@ fn run(unit: &Unit, words: &words::Frame, without: Without, items: &mut Vec<Item
     }
 }
 
-/// What else wants a look; at last without its words.
+/// Other states that need a look; the last one without its words.
 fn states(context: &PageContext<'_>, with_words: bool, items: &mut Vec<Item>) {
     let words = context.words;
     let unit = context.units.chosen();
@@ -311,7 +311,7 @@ fn states(context: &PageContext<'_>, with_words: bool, items: &mut Vec<Item>) {
     }
 }
 
-/// What of the unit is not as the record of its train says.
+/// Difference of the unit from the record of its train, as text.
 fn differs_from_record(sample: &Sample, frame: &words::Frame) -> Option<String> {
     let compared = [
         (Signal::IdentitySerial, frame.recorded_serial),

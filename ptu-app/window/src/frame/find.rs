@@ -25,12 +25,12 @@ use ptu_runs::bench_worker::Phase;
 /// Width of it, and height of what was found, points.
 const WIDE: f32 = 640.0;
 const HIGH: f32 = 420.0;
-/// As many of a kind are shown.
+/// Number of entries of a kind that are shown.
 const MOST: usize = 6;
-/// As many faults are looked through, the latest.
+/// Number of faults that are looked through, the latest.
 const FAULTS: u32 = 500;
 
-/// What is typed, and what it is looked for in.
+/// Typed text, and the lists in which it is looked for.
 #[derive(Default)]
 pub struct Find {
     open: bool,
@@ -164,7 +164,7 @@ impl Find {
             return;
         }
         let (faults, steps) = (self.faults(context), steps(procedures, context));
-        // Of hundreds nobody looks for one without a letter of it.
+        // Among hundreds of entries nobody looks for one without typing a letter.
         let most = if wanted.0.trim().is_empty() { 0 } else { MOST };
         let faults = faults.filter(|row| row.fits(&wanted.0)).take(most);
         let steps = steps.filter(|row| row.fits(&wanted.0)).take(most);

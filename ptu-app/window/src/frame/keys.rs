@@ -12,7 +12,7 @@ pub const STOP_ALL: Key = Key::F12;
 /// Finds anything.
 pub const FIND: &str = "Ctrl K";
 
-/// Of [`connect`].
+/// Key of [`connect`].
 pub const CONNECT: Key = Key::F9;
 
 pub fn keys(egui_context: &Context, context: &mut PageContext<'_>) {

@@ -8,10 +8,10 @@ use crate::{PageContext, Palette, Sizes};
 
 /// Width of the field for a name, points.
 const NAME: f32 = 220.0;
-/// How strong what cannot be clicked is painted: it is still to be read.
+/// Strength in which disabled parts are painted: they are still to be read.
 const STRENGTH: f32 = 0.75;
 
-/// What follows in `ui` can be read and not clicked.
+/// Makes the rest of `ui` readable and not clickable.
 pub fn only_look(ui: &mut Ui) {
     let quiet = Palette::of(ui).quiet;
     let visuals = ui.visuals_mut();

@@ -39,7 +39,7 @@ pub fn menu(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
         ui.end_row();
         ui.label(words.scale);
         ui.horizontal(|ui| {
-            // It moves all of them under the pointer.
+            // The size moves every button under the pointer.
             let place = ActionPlace::new(ui, "size", settings.zoom.to_bits());
             let smaller = Face::new(Look::Secondary, "−").show(ui);
             let shown = format!("{:.0} %", 100.0 * settings.zoom);
@@ -55,7 +55,7 @@ pub fn menu(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
         ui.end_row();
         let name = name_edit(&mut settings.operator, FIELD);
         field(ui, context.words.common.operator, name);
-        // It stays with the window, whatever unit is chosen.
+        // The depot's name stays with the window, whatever unit is chosen.
         let depot = name_edit(&mut settings.depot, FIELD);
         field(ui, context.words.report.depot, depot);
     });

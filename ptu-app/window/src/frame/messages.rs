@@ -1,5 +1,5 @@
-//! What was told: trouble until it is taken note of, the latest message for a while, and all of them under the bell. A message
-//! that tells what was written has a button that takes it back.
+//! Messages: trouble until somebody acknowledges it, the latest message for a while, and all of them under the bell.
+//! A message that tells what was written has a button that takes it back.
 
 use std::time::Duration;
 
@@ -67,7 +67,7 @@ impl Undo {
 pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo) {
     let (ended, now_s) = (context.units.runs_ended(), ui.input(|input| input.time));
     let undoable = context.messages.undoable(now_s, ended);
-    // Who takes it back is written down with it.
+    // The person who takes a message back is written down with it.
     let named = !context.settings.operator.trim().is_empty();
     let undoable = undoable.filter(|_| named && !context.settings.locked);
     let place = undoable.map(|(place, ..)| place);

@@ -34,7 +34,7 @@ use setup::Setup;
 /// Between what was told and the edges of the page, points.
 const AROUND: f32 = 12.0;
 
-/// What the frame keeps while the window is open.
+/// State of the frame while the window is open.
 #[derive(Default)]
 pub struct Frame {
     setup: Setup,
@@ -90,7 +90,7 @@ impl Frame {
         self.setup.open();
     }
 
-    /// What a locked window says, and the name that opens it.
+    /// Bar of a locked window, with the name that opens it.
     pub fn locked(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
         lock::bar(ui, context);
     }
@@ -100,7 +100,7 @@ impl Frame {
         lost::row(ui, goes_on, context);
     }
 
-    /// What stands over the page: what was told, and the dialogs that are open.
+    /// Shows what stands over the page: messages, and open dialogs.
     pub fn over(&mut self, ui: &Ui, procedures: &[Arc<Procedure>], context: &mut PageContext<'_>) {
         self.undo.poll(context);
         // Not over the steps and the foot of a case, nor over the foot of a form.
@@ -119,8 +119,8 @@ impl Frame {
         Find::show(self, ui, procedures, context);
     }
 
-    /// Over everything while the window is being closed; true once the person has taken note that
-    /// outputs were not confirmed safe.
+    /// Shows, over everything, that the window is being closed; true once the person has taken note
+    /// that outputs were not confirmed safe.
     pub fn closing(&self, ui: &mut Ui, words: &Words, not_safe: bool) -> bool {
         let mut noted = false;
         over_everything(ui.ctx(), |ui| {

@@ -21,7 +21,7 @@ const WIDE: [f32; 2] = [1600.0, 200.0];
 const GAP: f32 = 1.0;
 
 /// A page, the history or the menu in the rail.
-struct Place<'a> {
+struct RailEntry<'a> {
     icon: MaterialIcon,
     key: &'a str,
     name: &'a str,
@@ -49,7 +49,7 @@ pub fn rail(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
     let all = all - f32::from(u8::from(frame.is_low));
     let high = (ui.available_height() / all - GAP).floor().min(usual);
     for page in Page::ALL {
-        let place = Place {
+        let place = RailEntry {
             icon: icon(page),
             key: page.key(),
             name: page.name(context.words),
@@ -59,7 +59,7 @@ pub fn rail(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
             context.settings.page = page;
         }
     }
-    let other = |icon, name| Place {
+    let other = |icon, name| RailEntry {
         icon,
         key: "",
         name,
@@ -77,7 +77,7 @@ pub fn rail(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
     });
 }
 
-fn shown(ui: &mut Ui, high: f32, place: &Place<'_>) -> Response {
+fn shown(ui: &mut Ui, high: f32, place: &RailEntry<'_>) -> Response {
     let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
     let size = vec2(ui.available_width(), high);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());

@@ -15,7 +15,7 @@ use ptu_runs::run::BenchChoice;
 
 /// Width of a field, points.
 const FIELD: f32 = 220.0;
-/// Of what the list of faults leaves to the rest of the dialog, and its least height.
+/// Height that the list of faults leaves to the rest of the dialog, and its least height.
 const AROUND: f32 = 120.0;
 const LOWEST: f32 = 120.0;
 

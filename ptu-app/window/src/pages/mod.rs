@@ -21,7 +21,7 @@ use super::Page;
 use super::page_context::Destination;
 use super::page_context::PageContext;
 
-/// What the pages keep while the window is open.
+/// State of the pages while the window is open.
 #[derive(Default)]
 pub struct Pages {
     case: case::CasePage,
@@ -74,7 +74,7 @@ impl Pages {
         self.procedures.goes_on(context)
     }
 
-    /// Goes where the person wants to; the page to show then.
+    /// Leads the person to a destination; returns the page to show.
     pub fn go_to(&mut self, to: Destination, context: &mut PageContext<'_>) -> Page {
         match to {
             Destination::Trace(id) => {

@@ -19,14 +19,14 @@ const BESIDE: f32 = 8.0;
 /// Room for the values at the axis, and for the names below it.
 const GUTTER: f32 = 40.0;
 const BELOW: f32 = 20.0;
-/// Of the room above the highest bar, for its value.
+/// Height of the chart over that of the highest bar; the rest holds the bar's value.
 const ABOVE: f64 = 1.15;
 /// Counts have an axis that reaches so far: there are no halves on it.
 const LEAST: f64 = 5.0;
 
 pub struct Bar {
     pub name: String,
-    /// What it counts, or a rate.
+    /// Count, or rate.
     pub value: f64,
     /// Said behind the count.
     pub more: String,
@@ -35,7 +35,7 @@ pub struct Bar {
 /// A chart, each bar of which can be clicked.
 pub struct Chart<'a> {
     pub title: &'a str,
-    /// Its bars are counts, whose sum says something.
+    /// The bars are counts, whose sum is shown.
     pub sums: bool,
 }
 

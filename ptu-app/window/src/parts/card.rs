@@ -15,7 +15,7 @@ const INNER: i8 = 16;
 /// Width of what says what is missing.
 const EMPTY: f32 = 420.0;
 
-/// What a run comes to: an icon and a word in its colour, a headline, and what belongs to it.
+/// Card of an outcome: an icon and a word in its colour, a headline, and what belongs to it.
 pub struct Card<'a> {
     pub icon: MaterialIcon,
     pub word: &'a str,
@@ -53,7 +53,8 @@ pub fn ground(palette: &Palette) -> Frame {
     frame.corner_radius(8).inner_margin(Margin::same(INNER))
 }
 
-/// What is missing, and a button that leads to it if there is one; true when it was clicked.
+/// Message that something is missing, with a button that leads to it if there is one; true when it
+/// was clicked.
 pub fn empty(
     ui: &mut Ui,
     icon: MaterialIcon,

@@ -21,7 +21,6 @@ pub fn verdict_chip(ui: &mut Ui, verdict: Verdict, words: &Words) -> Response {
     chip(ui, (icon, words.common.verdict(verdict)), colour)
 }
 
-/// The icon of a verdict, and its colour.
 pub fn verdict_look(verdict: Verdict, palette: &Palette) -> (MaterialIcon, Color32) {
     match verdict {
         Verdict::Passed => (ICON_CHECK, palette.second),

@@ -6,7 +6,7 @@ use eframe::egui::{Context, Event, Id, Key, Modifiers, Response, Ui};
 
 /// A click so soon after the place changed or acted was meant for what was there before, s.
 const MOMENT_S: f64 = 0.6;
-/// What arms is held so long, s.
+/// Time for which a button that arms is held, s.
 const HOLD_S: f64 = 1.0;
 
 /// This key was pressed just now; one that is held down acts once.
@@ -55,7 +55,7 @@ impl ActionPlace {
         }
     }
 
-    /// Nothing has changed or acted here for a moment.
+    /// Whether nothing has changed or acted here for a moment.
     fn is_ready(&self) -> bool {
         self.now_s - self.remembered.at_s >= MOMENT_S
     }
@@ -69,7 +69,8 @@ impl ActionPlace {
         meant
     }
 
-    /// How far a button that has to be held down is, by pointer or by key: 1 once it was long enough.
+    /// Progress of a button that has to be held down, by pointer or by key: 1 once it was long
+    /// enough.
     pub fn held(&self, ui: &Ui, response: &Response) -> f32 {
         let id = self.id.with("held since");
         let by_key = response.has_focus()

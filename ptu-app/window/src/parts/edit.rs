@@ -46,7 +46,8 @@ pub fn field(ui: &mut Ui, name: impl Into<WidgetText>, edit: TextEdit<'_>) -> Re
     field
 }
 
-/// Goes to the next of these fields with Enter: a scanner of serial numbers is a keyboard that ends with it.
+/// Moves the keyboard to the next of these fields with Enter: a scanner of serial numbers is a keyboard that
+/// ends with Enter.
 pub fn go_on(ui: &Ui, fields: &[Response]) {
     let is_left = |field: &Response| field.lost_focus();
     let left = fields.iter().position(is_left);
@@ -56,7 +57,7 @@ pub fn go_on(ui: &Ui, fields: &[Response]) {
     }
 }
 
-/// What was typed, if anything.
+/// Text of a field, trimmed; none if it is empty.
 pub fn typed(text: &str) -> Option<String> {
     let text = text.trim();
     (!text.is_empty()).then(|| text.to_owned())

@@ -21,7 +21,6 @@ const DASH: f32 = 4.0;
 /// Between two dashes.
 const DASH_GAP: f32 = 4.0;
 
-/// What a face looks like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
     /// The one button of a screen that is pressed first.
@@ -33,15 +32,15 @@ pub enum Look {
     Chosen,
     /// Stops or ends something.
     Danger,
-    /// The same while there is something to stop; an armed unit.
+    /// Stops something, while there is something to stop; an armed unit.
     Acting,
     /// A line and no ground.
     Outlined,
     /// Says something and cannot be clicked.
     State,
-    /// The same of what wants a look.
+    /// A state that needs a look and cannot be clicked.
     Warned,
-    /// The same of what is practice.
+    /// A state of practice, which cannot be clicked.
     Dashed,
 }
 
@@ -58,7 +57,7 @@ pub struct Face<'a> {
     ink: Option<Color32>,
 }
 
-/// What is written in a face, laid out.
+/// Laid-out content of a face.
 struct Laid {
     parts: Vec<std::sync::Arc<Galley>>,
     size: Vec2,
@@ -96,7 +95,7 @@ impl<'a> Face<'a> {
         self
     }
 
-    /// What it is called where that is not what is written in it.
+    /// Sets the name for screen readers, where it differs from the text.
     pub fn named(mut self, name: impl Into<Cow<'a, str>>) -> Self {
         self.name = Some(name.into());
         self
@@ -108,7 +107,8 @@ impl<'a> Face<'a> {
         self
     }
 
-    /// The same where there is no room beside it: the reason is said when the pointer is over it.
+    /// Disables the button for a reason that is shown while the pointer is over it, where there is
+    /// no room beside it.
     pub fn because(mut self, why_not: Option<&'a str>) -> Self {
         if let Some(why) = why_not {
             (self.why_not, self.hint) = (Some(""), why.into());
@@ -122,13 +122,13 @@ impl<'a> Face<'a> {
         self
     }
 
-    /// In this colour, whatever it looks like otherwise.
+    /// Sets the colour of the letters, whatever the look.
     pub fn ink(mut self, ink: Color32) -> Self {
         self.ink = Some(ink);
         self
     }
 
-    /// Its width, points.
+    /// Width of the button, points.
     pub fn wide(&self, ui: &Ui) -> f32 {
         self.laid(ui, Color32::WHITE, Color32::WHITE).size.x
     }

@@ -12,11 +12,11 @@ use ptu_runs::bench_worker::Wake;
 use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::stop::Stop;
 
-/// What work came to, in words.
+/// Result of work, in words.
 pub struct Done {
     pub text: String,
     pub notes: Vec<String>,
-    /// It was not done to its end: why.
+    /// Why the work was not done to its end.
     pub broken_off: Option<Trouble>,
 }
 
@@ -29,7 +29,7 @@ pub struct Job {
     done: Option<Done>,
 }
 
-/// What the work hears, and how far it says it is.
+/// Handle of the work: stop, and text of its progress.
 #[derive(Clone, Default)]
 pub struct Told {
     pub stop: Stop,
@@ -99,7 +99,7 @@ impl Job {
         }
     }
 
-    /// How far it is, with the button that stops it, if it can be.
+    /// Progress of the work, with a button that stops it, if it can be stopped.
     pub fn progress(&self, ui: &mut Ui, words: &Words, stops: bool) {
         ui.horizontal_wrapped(|ui| {
             ui.spinner();
@@ -112,7 +112,7 @@ impl Job {
         });
     }
 
-    /// What it came to last.
+    /// Shows the last result.
     pub fn result(&self, ui: &mut Ui) {
         if let Some(done) = &self.done {
             if !done.text.is_empty() {

@@ -56,7 +56,7 @@ pub fn limits_within(ui: &Ui, rect: Rect, measurement: &Measurement) {
     painter.vline(x(value), rect.y_range(), Stroke::new(3.0, colour));
 }
 
-/// The same over the whole width, with ticks, the limit in words and the value above it.
+/// The bar of a limit over the whole width, with ticks, the limit in words and the value above it.
 pub fn limit_scale(ui: &mut Ui, words: &Words, (name, measurement): (&str, &Measurement)) {
     let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
     let high = 2.0 * sizes.lead + sizes.caption + 14.0;

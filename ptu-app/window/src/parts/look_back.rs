@@ -1,4 +1,4 @@
-//! How far back a page looks.
+//! Choice of how far back a page looks.
 
 use eframe::egui::Ui;
 
@@ -18,7 +18,7 @@ pub fn look_back(ui: &mut Ui, words: &Words, days: &mut Option<i64>) {
     segments(ui, days, names.iter().map(|(span, name)| (*span, &**name)));
 }
 
-/// The same in a list, which says what it is of.
+/// The choice of a time in a list, which names what the time limits.
 pub fn look_back_list(ui: &mut Ui, words: &Words, days: &mut Option<i64>) {
     let (since, always) = (words.faults.since, words.faults.always);
     let names = named(words, &format!("{since}: {always}"));

@@ -7,10 +7,10 @@ use crate::{DataPaths, PageContext};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::Phase;
 use ptu_runs::failure::Failure;
-use ptu_runs::field::AskedUnit;
 use ptu_runs::link::Endpoint;
 use ptu_runs::record::pull_reading;
 use ptu_runs::stop::Stop;
+use ptu_runs::unit_log::AskedUnit;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stored {

@@ -12,7 +12,7 @@ pub fn menu<R>(ui: &mut Ui, face: &Face<'_>, content: impl FnOnce(&mut Ui) -> R)
     menu.show(content).map(|shown| shown.inner)
 }
 
-/// The same for what is seldom wanted, behind three points of this name.
+/// A menu of seldom used acts, behind a button with three points and this name.
 pub fn more<R>(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui) -> R) -> Option<R> {
     menu(ui, &points().named(name).hint(name), content)
 }

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use ptu_runs::failure::{Asked, Failure, RunTrouble};
 
-/// What opens files here, and what stands before the file's name.
+/// Command that opens files here, and its arguments before the file's name.
 const OPENER: (&str, &[&str]) = if cfg!(windows) {
     // A command line would take apart a name with its signs in it.
     ("explorer", &[])
@@ -33,7 +33,8 @@ fn open_with((program, before): (&str, &[&str]), path: &Path) -> Result<(), Fail
         .stderr(Stdio::null());
     match command.spawn() {
         Ok(mut child) => {
-            // It is waited for, so that nothing is left of it; what it shows outlives it.
+            // Waits for the process, so that nothing is left of it; the viewer that it starts
+            // outlives it.
             std::thread::spawn(move || child.wait());
             Ok(())
         }

@@ -28,7 +28,7 @@ pub fn names<'a>(all: impl Iterator<Item = &'a str>) -> Vec<String> {
     names.into_iter().map(str::to_owned).collect()
 }
 
-/// Gives a box to choose from, which shows only what is chosen, the name of what it chooses.
+/// Names a box to choose from for screen readers; by itself the box shows only the choice.
 pub fn named_combo(response: &Response, name: &str, chosen: &str) {
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::ComboBox, response.enabled(), name);

@@ -1,4 +1,4 @@
-//! How far a run is: what passed, what did not and what is left of it, in one bar.
+//! Progress of a run in one bar: passed, not passed, still to come.
 
 use eframe::egui::{Rect, Role, Sense, Ui, Vec2, WidgetInfo, pos2};
 

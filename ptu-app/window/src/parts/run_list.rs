@@ -16,23 +16,22 @@ use ptu_runs::clock;
 use ptu_runs::coverage::counts_of;
 use ptu_runs::stored::from_stored;
 
-/// As many runs as are listed.
+/// Number of runs that are listed.
 const MOST: u32 = 2_000;
 
-/// The list's own state.
 #[derive(Default)]
 pub struct RunList {
     runs: CachedResponse<Vec<RunSummary>>,
-    /// Version of the data it was asked for; none = not asked yet.
+    /// Version of the data at the last query; none = not asked yet.
     version: Option<(usize, u64)>,
     find: String,
-    /// What a person chose, until a run ends or another unit is connected.
+    /// Run chosen by a person, until a run ends or another unit is connected.
     chosen: Option<Id>,
     followed: Followed,
     shown: Option<Id>,
 }
 
-/// What decides which run is shown unless one is chosen.
+/// State that decides which run is shown unless one is chosen.
 #[derive(Clone, Default, PartialEq)]
 struct Followed {
     unit: Option<String>,
@@ -40,7 +39,8 @@ struct Followed {
 }
 
 impl RunList {
-    /// Shows it at the side of a page; the run to show: the one chosen, or the latest of the connected unit that ended.
+    /// Shows the list at the side of a page. Returns the run to show: the chosen run, or the latest ended run of the
+    /// connected unit.
     pub fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> Option<Id> {
         self.keep_up(context);
         let side = Side {
@@ -61,7 +61,7 @@ impl RunList {
         self.shown = Some(run);
     }
 
-    /// The other runs of the unit that this one is of, the latest first.
+    /// The other runs of this run's unit, the latest first.
     pub fn of_same_unit(&self, run: Id) -> impl Iterator<Item = &RunSummary> {
         let all = self.runs.items().iter();
         let unit = all.clone().find(|other| other.id == run);
@@ -78,7 +78,7 @@ impl RunList {
         }
     }
 
-    /// Says whose run is shown, if it is not the connected unit's.
+    /// Names the unit whose run is shown, if another unit is connected.
     pub fn tell_other_unit(&self, ui: &mut Ui, words: &Words) {
         let Some(connected) = &self.followed.unit else {
             return;
@@ -92,7 +92,7 @@ impl RunList {
         }
     }
 
-    /// The run that was clicked.
+    /// Draws the list; returns the run that was clicked.
     fn list(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> Option<Id> {
         let chosen = self.shown;
         let words = context.words;
@@ -127,7 +127,7 @@ impl RunList {
         clicked
     }
 
-    /// The latest run of the connected unit that ended, or of any while none was connected.
+    /// The latest ended run of the connected unit, or of any unit while none was connected.
     fn foremost(&self) -> Option<Id> {
         let unit = self.followed.unit.as_ref();
         let mut runs = self.runs.items().iter();
@@ -137,7 +137,7 @@ impl RunList {
         Some(runs.find(is_it)?.id)
     }
 
-    /// What a person chose no longer holds when a run has ended or another unit is connected.
+    /// Drops the chosen run when a run has ended or another unit is connected.
     fn follow(&mut self, context: &PageContext<'_>) {
         let connected = context.units.chosen().serial();
         let followed = Followed {
@@ -150,7 +150,7 @@ impl RunList {
         }
     }
 
-    /// Asks when it was not asked yet, and when the data have changed since.
+    /// Asks for the list at first, and when the data have changed since.
     fn keep_up(&mut self, context: &PageContext<'_>) {
         let version = context.data_version();
         if self.version != Some(version) {
@@ -165,7 +165,7 @@ impl RunList {
         }
         self.runs.poll();
         self.follow(context);
-        // Until the newer list is there, what was shown stays.
+        // The shown run stays until the newer list is there.
         if !self.runs.is_stale() {
             self.shown = self.chosen.or_else(|| self.foremost());
         }
@@ -217,7 +217,7 @@ fn row(ui: &mut Ui, words: &Words, run: &RunSummary, chosen: bool) -> bool {
     let counts = count_text(&counts_of(run), words);
     let second = second.with_min_x(second.left() + x);
     cut_text(painter, second, counts.clone(), caption, palette.quiet);
-    // What is painted is read, too.
+    // Screen readers get the painted texts, too.
     for said in [verdict, &*counts] {
         let read = ui.interact(second, response.id.with(said), Sense::hover());
         read.widget_info(|| WidgetInfo::labeled(Role::Label, true, said));

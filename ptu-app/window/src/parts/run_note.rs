@@ -40,7 +40,7 @@ pub struct RunNoteForm {
 }
 
 impl RunNoteForm {
-    /// What a note has just been stored on.
+    /// Thing on which a note has just been stored.
     pub fn poll(&mut self, words: &Words, messages: &mut Messages) -> Option<NoteOn> {
         if !self.under_way.poll() {
             return None;

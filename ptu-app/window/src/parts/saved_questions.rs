@@ -10,14 +10,13 @@ use ptu_report::words::Words;
 /// Width of the field for a name, points.
 const FIELD: f32 = 200.0;
 
-/// A question and its name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SavedQuestion<T> {
     name: String,
     asked: T,
 }
 
-/// What the list, its entries and its buttons are called.
+/// Names of the list, its entries and its buttons.
 pub struct SavedSaid {
     pub list: &'static str,
     pub none: &'static str,

@@ -22,7 +22,7 @@ pub fn segments<'a, T: PartialEq>(
             (value, Face::new(look, name))
         })
         .collect();
-    // They stay together.
+    // The segments stay together.
     let wide: f32 = all.iter().map(|(_, face)| face.wide(ui)).sum();
     if ui.layout().main_wrap() && wide > ui.available_size_before_wrap().x {
         ui.end_row();

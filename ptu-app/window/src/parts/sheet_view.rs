@@ -20,7 +20,7 @@ use ptu_report::run::page::{self, DASH, HEIGHT, Ink, Item, MARGIN, Page, Text, W
 
 /// A page is so wide at least and at most, points of the window.
 const WIDE: RangeInclusive<f32> = 640.0..=1168.0;
-/// Its width is a multiple of this, so that few sizes of letters are made.
+/// Step of the sheet's width, so that few sizes of letters are made.
 const STEP: f32 = 16.0;
 /// Free beside and between pages.
 const BETWEEN: f32 = 12.0;
@@ -29,7 +29,7 @@ const UNIT: f32 = 1.13;
 const LOWEST: f32 = 150.0;
 /// Share of what is in view that a key scrolls by.
 const PAGE: f32 = 0.9;
-/// How far words reach above and below their base line, in sizes of the letters.
+/// Reach of words above and below their base line, in sizes of the letters.
 const ABOVE: f32 = 1.0;
 const BELOW: f32 = 0.4;
 

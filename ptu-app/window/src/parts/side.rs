@@ -1,4 +1,4 @@
-//! What stands at a side of a page: a list, a form, a strip. In a narrow window lists and strips are drawers.
+//! Side panels of a page: a list, a form, a strip. In a narrow window lists and strips are drawers.
 
 use eframe::egui::{Align2, Frame, Margin, Panel, Rangef, Ui};
 use egui_material_icons::icons::ICON_MENU_OPEN;
@@ -17,11 +17,11 @@ const LEFT: f32 = 440.0;
 /// Below what is in a drawer.
 const BELOW: f32 = 24.0;
 
-/// What stands at a side of a page; its divider can be dragged.
+/// Side panel of a page; its divider can be dragged.
 pub struct Side<'a> {
     /// Name of the list, form or strip; the button that opens its drawer has it.
     pub name: &'a str,
-    /// Its width until the divider is dragged, and that in a wide window, points.
+    /// Width until the divider is dragged, and the width in a wide window, points.
     pub wide: [f32; 2],
     pub at_right: bool,
 }
@@ -54,7 +54,7 @@ impl Side<'_> {
             };
             let panel = panel.default_size(wide).size_range(range);
             let shown = panel.frame(ground(ui)).show(ui, |ui| {
-                // It stays as large as it was made, whatever is in it.
+                // The panel keeps its size, whatever is in it.
                 ui.set_min_size(ui.available_size());
                 content(ui)
             });
@@ -90,7 +90,7 @@ pub fn form<R>(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui) -> R) -> R
     panel.show(ui, content).inner
 }
 
-/// What is pressed first in a form or a strip, below what scrolls in it.
+/// Main button of a form or a strip, below the part that scrolls.
 pub fn foot<R>(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     let panel = Panel::bottom(name.to_owned()).resizable(false);
     let frame = Frame::new().inner_margin(Margin::symmetric(0, 8));

@@ -28,10 +28,10 @@ pub struct Column<'a> {
     pub from: f32,
 }
 
-/// What stands in a row below a column.
+/// Content of a row below a column.
 pub enum Cell<'a> {
     Text(Cow<'a, str>, Color32),
-    /// The same over all columns that follow.
+    /// Coloured text over all columns that follow.
     Rest(Cow<'a, str>, Color32),
     State(MaterialIcon, &'a str, Color32),
     Limits(&'a Measurement),

@@ -1,4 +1,4 @@
-//! Whether a page shows one unit only.
+//! Choice of one unit, or of all, on a page.
 
 use eframe::egui::Ui;
 
@@ -8,7 +8,7 @@ use crate::PageContext;
 /// Width of the box, points.
 const BOX: f32 = 90.0;
 
-/// The unit connected last, and the one of which alone something is shown.
+/// The unit connected last, and the chosen unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct UnitFilter {
     connected: Option<String>,
@@ -16,7 +16,8 @@ pub struct UnitFilter {
 }
 
 impl UnitFilter {
-    /// Follows the connected unit, and offers it, these and all together; true when it takes others than before.
+    /// Follows the connected unit, and offers that unit, the known units and all together; true when the choice
+    /// has changed.
     pub fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>, known: &[String]) -> bool {
         let before = self.taken.clone();
         let connected = context.units.chosen().serial();
@@ -36,12 +37,12 @@ impl UnitFilter {
         before != self.taken
     }
 
-    /// Takes this one alone; none = all.
+    /// Chooses a unit; none = all.
     pub fn take(&mut self, unit: Option<String>) {
         self.taken = unit;
     }
 
-    /// The unit that is taken; none = all.
+    /// The chosen unit; none = all.
     pub fn taken(&self) -> Option<&str> {
         self.taken.as_deref()
     }

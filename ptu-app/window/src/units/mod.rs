@@ -108,7 +108,7 @@ impl Units {
         self.iter().map(|unit| unit.runs_ended).sum()
     }
 
-    /// What is looked at of the chosen one; of the others the bar.
+    /// Tells the benches what the window watches: pages of the chosen unit, the bar of the others.
     pub(super) fn watch(&self, watched: Watched) {
         for (place, unit) in self.iter().enumerate() {
             let watched = if place == self.chosen {

@@ -22,30 +22,30 @@ use ptu_runs::run::{BenchChoice, BenchSetup, SessionEvent, unit_text};
 const LOG: usize = 500;
 
 pub struct Unit {
-    /// Its own number in this window, never used again for another.
+    /// Number of the unit in this window, never used again.
     pub id: u64,
     pub choice: BenchChoice,
     pub bench: BenchWorker,
-    /// What its bench is made of, once it was asked to connect.
+    /// Content of the unit's bench, once it was asked to connect.
     pub setup: Request<BenchSetup>,
-    /// What it and TCMS logged outside runs, oldest first.
+    /// Events that the unit and TCMS logged outside runs, oldest first.
     pub log: VecDeque<UnitEvent>,
-    /// Its present or last run.
+    /// Present or last run of the unit.
     pub run: Option<Progress>,
-    /// Its case asked for that run.
+    /// The unit's case ordered that run.
     is_run_of_case: bool,
     pub(super) runs_ended: usize,
     /// The link to it is lost, which the person knows.
     lost: bool,
-    /// Its run broke off with the link, and nobody has ended it.
+    /// The run broke off with the link, and nobody has ended it.
     waits: bool,
-    /// That run is of another unit than the one connected now.
+    /// The run is of another unit than the one connected now.
     is_other: bool,
     /// Everything is being stopped, and it is not known to be safe yet.
     pub stopping: bool,
     /// Nothing is begun: no name has been given.
     pub(super) locked: bool,
-    /// It was let go without its outputs being confirmed safe.
+    /// The unit was let go without its outputs being confirmed safe.
     pub(super) not_safe: bool,
 }
 
@@ -69,7 +69,7 @@ impl Unit {
         })
     }
 
-    /// What its bench's thread is at.
+    /// State of the bench's thread.
     pub fn phase(&self) -> Phase {
         match self.setup {
             Request::Pending(_) => Phase::Connecting,
@@ -94,12 +94,12 @@ impl Unit {
         self.bench.live().identity
     }
 
-    /// Its serial number, once it has told it.
+    /// Serial number, once the unit has told it.
     pub fn serial(&self) -> Option<String> {
         self.identity().as_ref().map(unit_text::serial)
     }
 
-    /// What it is called: its serial number, or where it is.
+    /// Name of the unit: its serial number, or its port.
     pub fn name(&self) -> String {
         self.serial()
             .unwrap_or_else(|| self.choice.endpoint.clone())
@@ -139,7 +139,7 @@ impl Unit {
         true
     }
 
-    /// Its present or last run, if that is one of its case: a run that another page asked for says nothing of the case.
+    /// Present or last run, if the unit's case ordered it: a run that another page ordered says nothing of the case.
     pub fn run_of_case(&self) -> Option<&Progress> {
         self.run.as_ref().filter(|_| self.is_run_of_case)
     }
@@ -154,13 +154,13 @@ impl Unit {
         self.lost
     }
 
-    /// Its run that broke off with the link and can go on, and where it did.
+    /// The run that broke off with the link and can go on, and the place where it did.
     pub fn waiting_run(&self) -> Option<(&Progress, &Finding)> {
         let run = self.run.as_ref().filter(|_| self.waits)?;
         Some((run, link_loss(run)?))
     }
 
-    /// Its run that broke off is of another unit than the one that is connected now.
+    /// The run that broke off is of another unit than the one connected now.
     pub fn is_other(&self) -> bool {
         self.is_other
     }
@@ -182,7 +182,7 @@ impl Unit {
         }
     }
 
-    /// How it is reached: as was found out, or as far as is known before.
+    /// Connection: as found, or as far as it is known before.
     pub fn connection(&self) -> Connection {
         let found = self.bench.live().connection;
         found.unwrap_or_else(|| self.choice.connection())

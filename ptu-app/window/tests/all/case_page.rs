@@ -12,7 +12,7 @@ use ptu_window::{Density, Settings};
 /// Where the unit of these cases is brought to.
 const DEPOT: &str = "Sinnae 2";
 
-/// What is said of it.
+/// Symptom of the case.
 const SYMPTOM: &str = "brakes late or not at all";
 
 /// Clicks that a case may take.
@@ -22,7 +22,7 @@ const CLICKS: usize = 10;
 struct Counted {
     window: Window,
     clicks: usize,
-    /// Nothing but keys is used.
+    /// The window is used by keys alone.
     by_key: bool,
     /// What can be clicked is to be so high, points.
     lowest: f32,
@@ -67,7 +67,7 @@ impl Counted {
         self.click(case.find_part);
     }
 
-    /// As far as the dialog in which the sheet of a found part is signed.
+    /// Leads as far as the dialog in which the sheet of a found part is signed.
     fn open_sign(&mut self) {
         let case = &Language::English.words().case;
         self.look_for_part();
@@ -172,7 +172,7 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Den
     signed_sheet(window(language, size, density, "eb_relay.slow"));
 }
 
-/// The same by what a window is used by.
+/// Leads the window from the symptom to the signed sheet.
 fn signed_sheet(mut counted: Counted) {
     let settings = counted.window.app().settings();
     let (language, density) = (settings.language, settings.density);

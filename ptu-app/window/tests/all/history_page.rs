@@ -222,7 +222,7 @@ fn what_was_typed_for_one_fault_is_not_stored_on_another() {
     let id = other["id"].as_str().expect("an id").to_owned();
     let mut window = on(place, Page::Faults, Language::English);
     window.wait_for_part("2 of 2");
-    // Of the other fault the relay is the cause.
+    // The relay is the cause of the other fault.
     assert!(
         window.shows_part("(cause: EB relay)"),
         "{:#?}",
@@ -329,7 +329,7 @@ fn three_parts_are_shown_and_the_other_candidates_on_demand() {
         };
         candidates.iter().filter(is_shown).count()
     };
-    // Of each part its likeliest fault.
+    // Each part shows its likeliest fault.
     let parts: BTreeSet<_> = candidates
         .iter()
         .map(|one| one["part"].to_string())

@@ -205,7 +205,7 @@ pub fn complaints(window: &mut Window) -> Vec<String> {
     complaints_of(window, LOWEST)
 }
 
-/// The same where all that can be clicked is to be so high, points.
+/// Complaints where each thing that can be clicked has to be at least `lowest` points high.
 pub fn complaints_of(window: &mut Window, lowest: f32) -> Vec<String> {
     window.step();
     let harness = window.harness();
@@ -296,7 +296,7 @@ impl Input<'_> {
     }
 }
 
-/// It ends where something that is scrolled up and down does.
+/// The widget ends where an area that scrolls up and down ends.
 fn ends_with_scrolling(clip: Rect, bars: &[Rect]) -> bool {
     bars.iter().any(|bar| {
         let ends = (bar.top() - clip.top(), bar.bottom() - clip.bottom());
@@ -304,13 +304,13 @@ fn ends_with_scrolling(clip: Rect, bars: &[Rect]) -> bool {
     })
 }
 
-/// There is a bar by which this is scrolled up and down.
+/// Whether a bar scrolls this area up and down.
 fn scrolls(rect: Rect, bars: &[Rect]) -> bool {
     bars.iter()
         .any(|bar| bar.width() <= 20.0 && bar.height() >= 40.0 && bar.center().x >= rect.left())
 }
 
-/// There is a bar by which what is seen here is scrolled to the side.
+/// Whether a bar scrolls this area to the side.
 fn scrolls_sideways(seen: Rect, bars: &[Rect]) -> bool {
     bars.iter()
         .any(|bar| bar.height() <= 20.0 && bar.width() >= 40.0 && bar.center().y >= seen.top())

@@ -35,7 +35,7 @@ fn a_locked_window_shows_and_stops_and_begins_nothing() {
         window.click(frame.lock);
         window.wait_for(frame.locked);
         assert_eq!(complaints(&mut window), Vec::<String>::new());
-        // It goes on, and is still seen.
+        // The run goes on, and is still seen.
         window.page(Page::Bench);
         window.wait_for(words.bench.group_speed);
         assert_eq!(phase(&window), Phase::Running);

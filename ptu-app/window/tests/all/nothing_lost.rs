@@ -13,7 +13,7 @@ use ptu_report::words::{Language, Words};
 use ptu_runs::bench_worker::Phase;
 use ptu_window::Settings;
 
-/// As many buttons of a page are tried.
+/// Number of buttons of a page that are tried.
 const MOST: usize = 120;
 
 fn words() -> &'static Words {
@@ -67,7 +67,7 @@ fn files(window: &Window) -> usize {
     names.filter(is_one).count()
 }
 
-/// Until all that was asked of the database is done, and no run goes on.
+/// Waits until the database has answered every question, and no run goes on.
 fn settle(window: &mut Window) {
     for _ in 0..3 {
         let last = window.app().queries().run(|_| Ok(()));

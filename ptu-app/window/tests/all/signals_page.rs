@@ -37,7 +37,7 @@ fn what_the_generator_saves_is_opened_and_heard() {
         window.click(said.recording_of);
         window.click(said.open);
         window.wait_for_part("5a c3");
-        window.wait_for(said.spectrum);
+        window.wait_for(said.waveform);
         window.keep_picture(&format!("waves {language:?}"));
         // Never over one that is there.
         window.click(said.generator);

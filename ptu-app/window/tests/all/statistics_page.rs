@@ -46,7 +46,8 @@ fn the_figures_are_those_of_the_command_line_and_bars_lead_to_their_faults() {
     for language in Language::ALL {
         let place = depot();
         let stats = place.json("faults stats --json");
-        // Of each cause its cases, their share and that of all so far, in the order of the list.
+        // Each cause has its cases, their share, and the share of all causes so far, in the order
+        // of the list.
         let cases = |row: &Value| row["faults"].as_u64().expect("a number");
         let all: u64 = list(&stats).iter().map(cases).sum();
         let percent = |part: u64| (100.0 * part as f64 / all as f64).round_ties_even() as u64;

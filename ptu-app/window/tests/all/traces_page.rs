@@ -21,10 +21,10 @@ fn window(settings: Settings) -> Window {
     Window::with(place, scripts(), settings)
 }
 
-/// Has the view written as CSV, and reads it: heads and rows.
+/// Writes the view as CSV, and reads it: heads and rows.
 fn csv(window: &mut Window, save: &str, field: &str) -> (Vec<String>, Vec<Vec<String>>) {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
-    // Its own name each time: what was said of the last one is still shown.
+    // A new name each time: the message about the last file is still shown.
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     let name = window.place.text_path(&format!("view-{count}"));
     window.click(window.app().settings().language.words().traces.save);
@@ -130,7 +130,7 @@ fn over_distance_cursors_keep_their_rows_and_differences_are_told() {
     window.click("Cursor B");
     let (a, b) = (told_place(&window, "A"), told_place(&window, "B"));
     assert!(b > a, "{a} {b}");
-    // That of the traces: the page of that name stands before it.
+    // The last text is that of the traces; the page called Statistics stands before it.
     window.click_last("Statistics");
     window.wait_for(&format!("between the cursors: {:.2} s", b - a));
 

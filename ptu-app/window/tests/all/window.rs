@@ -265,7 +265,7 @@ fn what_is_over_is_no_longer_said() {
     window.click("Run");
     window.until("the run", running);
     window.key(Key::F12);
-    // That it stops is over sooner than the next picture, where the machine is slow.
+    // On a slow machine the message that the run stops is over before the next picture.
     window.wait_for_part("Run over: aborted");
     window.click("Run");
     window.until("the next run", running);
@@ -292,7 +292,7 @@ fn letting_go_in_a_run_closes_its_record_first() {
 
 #[test]
 fn reaching_a_unit_can_be_given_up() {
-    // It never answers, so that it is still being reached however slowly the window is drawn.
+    // The server never answers: the unit is still being reached however slowly the window is drawn.
     let silent = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
     let mut settings = settings(Page::Bench);
     settings.unit.endpoint = format!("tcp:{}", silent.local_addr().expect("its address"));

@@ -14,7 +14,7 @@ use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt, EventMask};
 /// Patience with a busy machine that paints in software.
 pub const PATIENCE: Duration = Duration::from_secs(300);
 
-/// Of the dump in the frame buffer file (XWDFile.h).
+/// Version of the dump in the frame buffer file (XWDFile.h).
 const DUMP_VERSION: u32 = 7;
 
 /// A private X server; ends with the value.
@@ -79,7 +79,7 @@ impl Display {
         Picture { width, height, rgb }
     }
 
-    /// There is no window manager here, so the test sends what one would send.
+    /// The test sends what a window manager would send; none runs here.
     pub fn ask_to_close(&self) {
         let (connection, screen) = x11rb::connect(Some(&self.name)).expect("the server");
         let atom = |name: &str| {

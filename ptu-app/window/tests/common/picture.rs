@@ -12,7 +12,7 @@ use eframe::egui::{
 };
 use egui_kittest::TestRenderer;
 
-/// What is on a screen.
+/// Pixels of a screen.
 #[derive(PartialEq)]
 pub struct Picture {
     pub width: u32,

@@ -28,7 +28,7 @@ const STEP: Duration = Duration::from_millis(15);
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
 /// No page has more to press.
 const MOST_STOPS: usize = 200;
-/// So far around it is marked what has the keyboard, points.
+/// Width around a widget within which the mark of the keyboard lies, points.
 const AROUND: f32 = 4.0;
 
 /// A window in a place of its own.
@@ -65,7 +65,7 @@ impl Window {
         Self::on(size, place, paths, settings)
     }
 
-    /// Another one on the history of this one.
+    /// A second window on the history of this one.
     pub fn beside(&self, settings: Settings) -> Self {
         let scripts = ScriptsDirectory::find(Some(&scripts())).expect("scripts");
         let paths = DataPaths::new(self.place.path("history.db"), scripts);
@@ -187,7 +187,7 @@ impl Window {
         self.click_once_still(label, |places| places.first().copied(), 2);
     }
 
-    /// The same here, whatever is here.
+    /// Double-clicks at this position, whatever is there.
     pub fn double_click_at(&mut self, pos: Pos2) {
         self.pass(MOMENT_S);
         self.click_at(pos, 2);
@@ -446,7 +446,7 @@ impl Window {
         }
     }
 
-    /// What the last frame looks like.
+    /// Pixels of the last frame.
     pub fn picture(&self) -> Picture {
         let context = &self.harness.ctx;
         let ground = eframe::App::clear_color(self.app(), &context.global_style().visuals);

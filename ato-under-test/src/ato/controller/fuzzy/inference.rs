@@ -7,13 +7,13 @@
 
 /// Sets of the error: nb, ns, zc, ps, pb; also of the output: nvh, nh, zero, ph, pvh.
 const SETS: usize = 5;
-/// Distance of their peaks.
+/// Distance between the sets' peaks.
 const SPACING: f64 = 0.5;
 
 /// Output set of each rule [S1 table 1]; rows: change negative, none, positive; columns: error nb .. pb.
 const RULES: [[usize; SETS]; 3] = [[0, 1, 2, 3, 3], [0, 1, 2, 3, 4], [1, 1, 2, 3, 4]];
 
-/// Output for an error and its change. What is no number is the hardest brake.
+/// Output for an error and its change. NaN gives the hardest brake.
 pub(super) fn infer(error: f64, change: f64) -> f64 {
     if error.is_nan() || change.is_nan() {
         return -1.0;

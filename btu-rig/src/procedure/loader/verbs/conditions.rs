@@ -14,7 +14,7 @@ use crate::procedure::plan::{Action, Comparison, Condition, Expectation, Operand
 
 /// Time for something to become true if a script gives none.
 const BECOMES_WITHIN: Duration = Duration::from_ms(2000);
-/// The same for `until`.
+/// Time that `until` waits if a script gives none.
 const UNTIL_WITHIN: Duration = Duration::from_ms(10_000);
 
 const TIME: ParamType = ParamType::Amount(Dimension::Time);
@@ -251,7 +251,7 @@ fn parts(args: &Args<'_>) -> Result<Vec<Condition>, String> {
     Ok(parts)
 }
 
-/// What `signal` is compared with, or limited by, checked against its kind and unit.
+/// Value that `signal` is compared with or limited by, checked against its kind and unit.
 pub(super) fn operand(signal: Signal, item: &Item) -> Result<Operand, String> {
     let definition = signal.definition();
     let wrong = |end: String| {

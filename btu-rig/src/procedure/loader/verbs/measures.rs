@@ -13,7 +13,8 @@ use crate::procedure::plan::{Measure, Operand, TimeFrom, What};
 
 /// Time a measurement waits for its condition if neither `within` nor `high` says.
 const MEASURE_WITHIN: Duration = Duration::from_ms(10_000);
-/// How much longer than its upper limit a time is waited for, so that a late one has a value.
+/// Time beyond its upper limit for which a measured time is waited for, so that a late one has a
+/// value.
 const BEYOND_LIMIT_MS: f64 = 1000.0;
 
 const TIME: ParamType = ParamType::Amount(Dimension::Time);

@@ -2,7 +2,7 @@
 //! for the unit's answer.
 
 use super::bench::{LEVEL, MARKER, RAW_SIGNAL, code_signal, marker, raw_signal, speed};
-use super::track::{Place, STATION, station};
+use super::track::{STATION, StandsAt, station};
 use super::with_wait;
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
@@ -47,14 +47,14 @@ pub(super) static VERBS: &[Verb] = &[
     }),
     request!("ptu.twc", STATION, |args| Stimulus::PtuTwc(station(
         args,
-        Place::Departure
+        StandsAt::Departure
     )?)),
     request!("ptu.at_departure", STATION, |args| Stimulus::PtuTwc(
-        station(args, Place::Departure)?
+        station(args, StandsAt::Departure)?
     )),
     request!("ptu.at_arrival", STATION, |args| Stimulus::PtuTwc(station(
         args,
-        Place::Arrival
+        StandsAt::Arrival
     )?)),
 ];
 

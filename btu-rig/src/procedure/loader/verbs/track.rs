@@ -39,13 +39,13 @@ const LONGEST_M: f64 = 20_000.0;
 pub(super) static VERBS: &[Verb] = &[
     stimulus!("twc.station", STATION, |args| Stimulus::Station(station(
         args,
-        Place::Departure
+        StandsAt::Departure
     )?)),
     stimulus!("twc.at_departure", STATION, |args| Stimulus::Station(
-        station(args, Place::Departure)?
+        station(args, StandsAt::Departure)?
     )),
     stimulus!("twc.at_arrival", STATION, |args| Stimulus::Station(
-        station(args, Place::Arrival)?
+        station(args, StandsAt::Arrival)?
     )),
     stimulus!("twc.orders", ORDERS, |args| Stimulus::Orders(Some(orders(
         args
@@ -64,13 +64,13 @@ pub(super) static VERBS: &[Verb] = &[
 
 /// Where the train stands in a section.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum StandsAt {
     Departure,
     Arrival,
 }
 
 /// Station data of a place, with what the script gives in place of it.
-pub(super) fn station(args: &Args<'_>, place: Place) -> Result<StationData, String> {
+pub(super) fn station(args: &Args<'_>, place: StandsAt) -> Result<StationData, String> {
     let line = &args.context.line;
     let section = match args.section("section") {
         Some(number) => line.section(number),
@@ -126,9 +126,9 @@ fn orders(args: &Args<'_>) -> Result<OrderData, String> {
     })
 }
 
-fn defaults(section: &Section, place: Place, line: &Line) -> StationData {
+fn defaults(section: &Section, place: StandsAt, line: &Line) -> StationData {
     match place {
-        Place::Departure => StationData::at_departure(section),
-        Place::Arrival => StationData::at_arrival(section, line.station_after(section)),
+        StandsAt::Departure => StationData::at_departure(section),
+        StandsAt::Arrival => StationData::at_arrival(section, line.station_after(section)),
     }
 }

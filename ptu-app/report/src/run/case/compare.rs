@@ -1,4 +1,4 @@
-//! What failed before the repair, beside the same after it.
+//! Failures before the repair, beside the same checks after it.
 
 use fault_db::StepRecord;
 

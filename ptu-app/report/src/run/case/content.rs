@@ -1,5 +1,5 @@
-//! What stands behind the first page of a repair sheet: what failed, the faults of the case, what was done, and on
-//! request all that both runs say.
+//! Pages of a repair sheet behind its first: failures, faults of the case, work done, and on request all of both
+//! runs.
 
 use fault_db::{FaultEvent, FaultSummary, StepRecord};
 
@@ -89,7 +89,7 @@ impl CaseSheet {
         moves.then(|| Block::Plot(Box::new(speeds)))
     }
 
-    /// What the diagnosis of the run before concluded.
+    /// Conclusion of the diagnosis of the run before.
     fn concluded(&self, words: &Words) -> Vec<Block> {
         let report = &words.report;
         let Ok(answer) = &self.before.diagnosis else {
@@ -137,7 +137,7 @@ impl CaseSheet {
         blocks
     }
 
-    /// What was done, the last of it, and what was said of the last run: who checked it.
+    /// Work that was done last, and who checked the last run.
     fn done(&self, words: &Words) -> Vec<Block> {
         let (common, report) = (&words.common, &words.report);
         let seen_again = |event: &&FaultEvent| event.kind != "recurred";

@@ -158,7 +158,7 @@ impl CaseSheet {
             .collect()
     }
 
-    /// What was wrong with the unit, as who brought it said.
+    /// Symptom as reported with the unit.
     fn symptom_said(&self, words: &Words) -> String {
         let said = self.symptom.as_ref();
         said.map_or_else(
@@ -188,7 +188,7 @@ impl CaseSheet {
         }
     }
 
-    /// What of it was no unit in service: which run was on a simulated unit, or had injected faults.
+    /// Which run was on a simulated unit or had injected faults: practice, no unit in service.
     fn practice(&self, words: &Words) -> String {
         let report = &words.report;
         let told = |sheet: &Sheet, when: &str| {
@@ -259,7 +259,7 @@ fn or_dash(text: &str) -> &str {
     if text.is_empty() { "–" } else { text }
 }
 
-/// At most this many letters.
+/// The first `most` letters.
 pub(super) fn clipped(text: &str, most: usize) -> String {
     let text = text.trim();
     match text.char_indices().nth(most) {

@@ -101,8 +101,8 @@ fn leading(store: &Store, asked: FaultDetail) -> Result<FaultDetail, Failure> {
     }
 }
 
-/// What was said when the unit was brought: with the run before, or with an earlier one that saw the fault since it was
-/// last settled. One that the scripts directory no longer has goes by its identifier.
+/// Symptom reported with the unit: in the run before, or in an earlier one that saw the fault since it was last
+/// settled. A symptom that the scripts directory no longer has goes by its identifier.
 fn symptom(
     store: &Store,
     directory: &ScriptsDirectory,

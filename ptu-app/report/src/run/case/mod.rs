@@ -28,19 +28,19 @@ pub struct CaseSheet {
     pub fault: FaultDetail,
     /// Where the unit is kept; empty: a line to write on.
     pub depot: String,
-    /// With all that the two runs say.
+    /// The sheet has an annex with all that the two runs say.
     pub with_annex: bool,
     /// The run that saw it.
     pub before: Sheet,
     /// Steps of that run that saw a fault of the case, by their place.
     pub steps: Vec<u32>,
-    /// What was wrong with the unit, as who brought it said; the run before says it, or an earlier one of the case.
+    /// Symptom reported with the unit; the run before has it, or an earlier one of the case.
     pub symptom: Option<Symptom>,
     pub repair: Option<Repair>,
     /// Runs that passed since the repair, oldest first.
     pub passed: Vec<Id>,
     pub after: Option<Sheet>,
-    /// What is said of the repair.
+    /// Standing of the repair.
     pub standing: Standing,
 }
 
@@ -52,18 +52,17 @@ pub struct Repair {
     pub at_us: i64,
 }
 
-/// What is said of a repair.
+/// How far a repair is proved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// Runs have proved it.
     Proved,
     /// A person says it holds: who, when and why.
     Vouched(String, i64, String),
-    /// It was recorded, and no run proves it yet.
+    /// The repair is recorded, and no run proves it yet.
     Claimed,
     /// The fault was seen again after it.
     CameBack,
-    /// There is none.
+    /// No repair is recorded.
     NotRepaired,
 }
 
@@ -97,7 +96,7 @@ impl CaseSheet {
 }
 
 impl Standing {
-    /// Its word in JSON.
+    /// Word of the standing in JSON.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Proved => "proved",

@@ -26,9 +26,9 @@ pub use text::{comparison_json, comparison_text};
 pub struct Compared<'a> {
     /// The step of the first run, if that has it.
     pub step_before: Option<&'a StepRecord>,
-    /// The same step of the second run.
+    /// This step in the second run.
     pub step_after: Option<&'a StepRecord>,
-    /// What it measured; none if the row is about the step.
+    /// Measurement of the first run; none if the row is about the step.
     pub before: Option<&'a MeasurementRecord>,
     pub after: Option<&'a MeasurementRecord>,
 }
@@ -52,7 +52,7 @@ impl<'a> Compared<'a> {
         }
     }
 
-    /// By how much the value is greater in the second run; none where either has none, or another unit of measure.
+    /// Increase of the value in the second run; none where either run has no value, or another unit of measure.
     pub fn change(&self) -> Option<f64> {
         let (before, after) = (self.before?, self.after?);
         let change = after.value? - before.value?;
@@ -72,27 +72,28 @@ impl StepPair<'_> {
         [self.step.step_before, self.step.step_after].map(|step| Some(step?.verdict))
     }
 
-    /// It passed in both runs: there is little to say of it.
+    /// The step passed in both runs: there is little to say of it.
     pub fn passed_in_both(&self) -> bool {
         self.verdicts() == [Some(Verdict::Passed); 2]
     }
 }
 
-/// How many steps changed, and how.
+/// Numbers of steps that changed, by direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// They did not pass in A and pass in B.
+    /// Steps that did not pass in A and pass in B.
     pub pass_now: usize,
-    /// They passed in A and do not pass in B.
+    /// Steps that passed in A and do not pass in B.
     pub passed_before: usize,
-    /// They pass in neither.
+    /// Steps that pass in neither.
     pub in_neither: usize,
     pub only_a: usize,
     /// B alone has them.
     pub only_b: usize,
 }
 
-/// Why two runs say less about each other than two of one unit with the same scripts.
+/// Differences by which two runs say less about each other than two of one unit with the same
+/// scripts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Differs {
     /// Serial numbers.
@@ -112,7 +113,7 @@ pub enum Differs {
 pub struct RunComparison {
     pub a: RunDetail,
     pub b: RunDetail,
-    /// What is shown has the steps that passed in both, too.
+    /// Steps that passed in both runs are shown, too.
     pub all: bool,
 }
 
@@ -146,7 +147,7 @@ impl RunComparison {
         pairs
     }
 
-    /// How many steps changed, and how; what was skipped counts in neither direction, and what is outside steps is none.
+    /// Numbers of steps that changed. A skipped step counts in no direction, and an entry outside steps is no step.
     pub fn tally(&self) -> Tally {
         let mut tally = Tally::default();
         let is_step =
@@ -167,7 +168,7 @@ impl RunComparison {
         tally
     }
 
-    /// What makes them hard to compare.
+    /// Differences that make the runs hard to compare.
     pub fn differs(&self) -> Vec<Differs> {
         let (a, b) = (&self.a.run, &self.b.run);
         let two = |a: &String, b: &String| (a.clone(), b.clone());
@@ -226,7 +227,7 @@ fn in_order(steps: &[StepRecord]) -> Vec<Key<'_>> {
     keys.filter(|key| seen.insert(*key)).collect()
 }
 
-/// Steps by their names; of several the one that tells.
+/// Steps by their names; of several records of one step, the one with the highest rank.
 fn by_name(steps: &[StepRecord]) -> BTreeMap<Key<'_>, &StepRecord> {
     let mut all: BTreeMap<_, &StepRecord> = BTreeMap::new();
     for step in steps {
@@ -236,7 +237,7 @@ fn by_name(steps: &[StepRecord]) -> BTreeMap<Key<'_>, &StepRecord> {
     all
 }
 
-/// Of the same step twice the one that stands, the earlier of two alike.
+/// Of two records of one step, the one with the higher rank; `one` if the ranks are equal.
 fn telling<'a>(one: &'a StepRecord, other: &'a StepRecord) -> &'a StepRecord {
     match rank(other.verdict) > rank(one.verdict) {
         true => other,
@@ -276,13 +277,13 @@ pub(super) fn pair<'a>(
     StepPair { step, measurements }
 }
 
-/// The same step in another run; of several the one that tells.
+/// The record of this step in another run; of several the one that [`telling`] chooses.
 pub(super) fn same_step<'a>(step: &StepRecord, run: &'a RunDetail) -> Option<&'a StepRecord> {
     let all = run.steps.iter().filter(|other| is_same(other, step));
     all.reduce(telling)
 }
 
-/// The same step, in whichever run.
+/// Whether two records are of one step, in whichever run.
 pub(super) fn is_same(one: &StepRecord, other: &StepRecord) -> bool {
     key(one) == key(other)
 }

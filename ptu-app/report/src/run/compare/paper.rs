@@ -10,7 +10,7 @@ use crate::words::{Words, fill};
 use ptu_runs::clock::local;
 
 impl RunComparison {
-    /// How many steps changed and how, as a sentence.
+    /// Sentence with the numbers of changed steps.
     pub fn headline(&self, words: &Words) -> String {
         let report = &words.report;
         let tally = self.tally();
@@ -34,7 +34,7 @@ impl RunComparison {
         said
     }
 
-    /// What makes the two hard to compare, a sentence each.
+    /// Warnings of differences that make the two hard to compare, a sentence each.
     pub fn warnings(&self, words: &Words) -> Vec<String> {
         let report = &words.report;
         let two = |wording, a: &String, b: &String| fill(wording, &[("a", a), ("b", b)]);
@@ -85,7 +85,7 @@ impl RunComparison {
         blocks
     }
 
-    /// How many steps are not shown; none if all are.
+    /// Sentence with the number of steps that are not shown; none if all are.
     pub(super) fn rest(&self, words: &Words) -> Option<String> {
         let pairs = self.steps();
         let rest = pairs.iter().filter(|pair| pair.passed_in_both()).count();

@@ -1,4 +1,4 @@
-//! What was tested twice as a table: before and after with limits, and of two runs the change.
+//! Table of steps that were tested twice: before and after with limits, and of two runs the change.
 
 use fault_db::{MeasurementRecord, StepRecord, Verdict};
 use ptu_runs::stored::outside_of;
@@ -114,7 +114,7 @@ fn cells(one: &Compared<'_>, name: String, words: &Words) -> [Cell; 7] {
     ]
 }
 
-/// What is allowed; both where it changed.
+/// Limits of a measurement as text; both where they changed.
 pub(super) fn allowed(one: &Compared<'_>, words: &Words) -> String {
     match [one.before, one.after].map(|value| value.map(|value| limits(value, words))) {
         [Some(then), Some(now)] if now != then => fill(
@@ -125,7 +125,7 @@ pub(super) fn allowed(one: &Compared<'_>, words: &Words) -> String {
     }
 }
 
-/// By how much a value is greater now, with its sign.
+/// Increase of a value, with its sign.
 pub(super) fn change(one: &Compared<'_>) -> Option<String> {
     let change = short(one.change()?);
     Some(match change.as_str() {
@@ -151,7 +151,6 @@ fn shown(measured: &MeasurementRecord, words: &Words) -> [Cell; 2] {
     [Cell::Text(tone, value(measured, words)), Cell::Gauge(gauge)]
 }
 
-/// What is allowed, in words.
 fn limits(measured: &MeasurementRecord, words: &Words) -> String {
     let report = &words.report;
     let unit = &words.unit(&measured.unit);
@@ -166,7 +165,6 @@ fn limits(measured: &MeasurementRecord, words: &Words) -> String {
     }
 }
 
-/// What a step is called.
 pub fn name_of(step: &StepRecord, words: &Words) -> String {
     match outside_of(step) {
         Some(place) => words.common.outside(place).to_owned(),

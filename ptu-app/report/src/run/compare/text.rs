@@ -75,7 +75,7 @@ fn row(one: &Compared<'_>, words: &Words) -> [String; 5] {
     [name, a, b, change, allowed(one, words)]
 }
 
-/// The same as data, with every step.
+/// The comparison as data, with every step.
 pub fn comparison_json(of: &RunComparison) -> Value {
     let words = Language::English.words();
     let tally = of.tally();

@@ -9,7 +9,7 @@ use crate::run::code::Code;
 /// Size of running words, and from line to line.
 const SIZE: f32 = 8.2;
 const LINE: f32 = 11.2;
-/// Names of facts take so much.
+/// Width of the names of facts.
 const NAMES: f32 = 130.0;
 
 /// Edge of a code for a scanner: 34 mm.

@@ -19,7 +19,7 @@ impl FontMetrics {
     /// Reads the shipped font.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// The font cannot be read.
     pub fn new() -> Result<Self, Failure> {
         let face = Face::parse(PRETENDARD, 0)
             .map_err(|error| Failure::bench(FileTrouble::FontUnread(Why::of(error))))?;
@@ -117,7 +117,7 @@ impl FontMetrics {
     }
 }
 
-/// What is written for a letter that the font lacks: Chinese, Japanese, pictures.
+/// Text in place of a letter that the font lacks: Chinese, Japanese, pictures.
 fn code(letter: char) -> String {
     format!("[U+{:04x}]", u32::from(letter))
 }

@@ -19,12 +19,12 @@ pub(super) const BOTTOM: f32 = 48.0;
 /// Width of what is printed.
 pub(super) const INSIDE: f32 = WIDTH - 2.0 * MARGIN;
 
-/// What something is drawn in.
+/// Colour of a drawn item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
     /// Words.
     Black,
-    /// Less weight.
+    /// Text of less weight.
     Soft,
     /// Passed.
     Good,
@@ -69,7 +69,7 @@ pub enum Item {
 pub struct Text {
     /// From the left to the anchor.
     pub x: f32,
-    /// Which point of each line that is.
+    /// Point of each line that lies there.
     pub anchor: Anchor,
     /// Height of letters.
     pub size: f32,
@@ -111,7 +111,7 @@ impl Item {
         })
     }
 
-    /// The same with weight, where it is words.
+    /// The item in bold type, if it is text.
     pub(crate) fn strong(mut self) -> Self {
         if let Self::Text(text) = &mut self {
             text.strong = true;
@@ -119,7 +119,7 @@ impl Item {
         self
     }
 
-    /// The same with its place at the right end of each line, where it is words.
+    /// The item with each line set to its right end, if it is text.
     pub(crate) fn ending(mut self) -> Self {
         if let Self::Text(text) = &mut self {
             text.anchor = Anchor::End;
@@ -136,7 +136,7 @@ impl Item {
         }
     }
 
-    /// The same, so much further down.
+    /// The item moved down by `by`.
     pub(crate) fn lowered(mut self, by: f32) -> Self {
         match &mut self {
             Self::Text(text) => text.lines.iter_mut().for_each(|line| line.0 += by),
@@ -153,7 +153,7 @@ impl Item {
 /// Items that stay together, from 0 down to `height`.
 #[derive(Clone, Debug, Default)]
 pub struct Piece {
-    /// What is drawn; left edges are the page's, heights the piece's own.
+    /// Items of the piece: x from the page's left edge, y from the top of the piece.
     pub items: Vec<Item>,
     pub height: f32,
     /// Stays on a page with at least the beginning of what follows.
@@ -164,6 +164,6 @@ pub struct Piece {
     pub under_repeated: bool,
     /// Begins a page.
     pub on_new_page: bool,
-    /// Its words go on from those of the piece before, and are one text with them where both are on one page.
+    /// The text goes on from the piece before, and is one text with that piece where both are on one page.
     pub goes_on: bool,
 }

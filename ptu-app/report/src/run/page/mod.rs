@@ -26,7 +26,7 @@ const FOOTER: f32 = HEIGHT - 26.0;
 const BELOW_FOOTER: f32 = FOOTER + 9.0;
 const SIZE: f32 = 7.4;
 
-/// What is on a page, in the order in which it is drawn.
+/// Items of a page, in the order in which they are drawn.
 pub type Page = Vec<Item>;
 
 /// Largest letters of what stands across a page, and the share of its width that they take.
@@ -40,7 +40,7 @@ pub fn pages(sheet: &impl Printed, words: &Words) -> Result<Vec<Page>, Failure> 
     pages_of(&sheet.paper(words), words).map(|(pages, _)| pages)
 }
 
-/// The same of what was made for printing, and the letters that are written as codes.
+/// Pages of a paper, and the letters that are written as codes.
 pub(super) fn pages_of(
     paper: &Paper,
     words: &Words,
@@ -100,7 +100,7 @@ pub fn drawings(plots: &[Plot], wide: f32, scale: f32) -> (Page, f32) {
     (page, height)
 }
 
-/// How many pages blocks take; none where the shipped font does not serve.
+/// Number of pages that the blocks take; none where the shipped font does not serve.
 pub(super) fn count(blocks: &[Block]) -> usize {
     FontMetrics::new().map_or(0, |letters| {
         flow::pages(&blocks::pieces(blocks, &letters)).len()

@@ -67,7 +67,7 @@ fn items(mark: &Mark, scale: f32) -> Vec<Item> {
                     points: piece.iter().copied().map(place).collect(),
                     ink: ink(*role),
                     width: thickness(*role),
-                    dashed: matches!(role, Role::Dashed(_) | Role::Place),
+                    dashed: matches!(role, Role::Dashed(_) | Role::AxisMark),
                 })
                 .collect()
         }
@@ -112,7 +112,7 @@ fn ink(role: Role) -> Ink {
     match role {
         Role::Title => Ink::Black,
         Role::Label | Role::Tick | Role::Legend | Role::Note => Ink::Soft,
-        Role::Place => Ink::Bad,
+        Role::AxisMark => Ink::Bad,
         Role::Grid => Ink::Grid,
         Role::Zero | Role::Frame => Ink::Rule,
         Role::Shaded => Ink::Shade,

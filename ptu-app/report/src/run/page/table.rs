@@ -10,7 +10,7 @@ const LINE: f32 = 10.0;
 /// Free above and below a row's words, and between columns.
 const ABOVE: f32 = 2.2;
 const BETWEEN: f32 = 8.0;
-/// Details begin so much further right.
+/// Indent of details.
 const INDENT: f32 = 10.0;
 /// Width and height of a bar.
 const BAR: (f32, f32) = (64.0, 5.0);
@@ -93,7 +93,7 @@ fn row(row: &Row, columns: &[Column], letters: &FontMetrics) -> Piece {
     }
 }
 
-/// What is allowed as a band, the value as a mark: a disc inside, a square outside.
+/// Bar with the limits as a band, and the value as a mark: a disc inside, a square outside.
 fn bar(gauge: &Gauge, x: f32, width: f32) -> Vec<Item> {
     let at = |share: f64| x + share as f32 * width;
     let middle = ABOVE + LINE / 2.0;
@@ -116,7 +116,7 @@ fn bar(gauge: &Gauge, x: f32, width: f32) -> Vec<Item> {
     ]
 }
 
-/// What words of this tone are written in.
+/// Ink of words in this tone.
 pub fn ink(tone: Tone) -> Ink {
     match tone {
         Tone::Plain => Ink::Black,

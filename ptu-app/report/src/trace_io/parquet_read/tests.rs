@@ -14,7 +14,8 @@ use protocol::Random;
 use super::super::series::plain;
 use super::*;
 
-/// How a table stores the whole number `n`, what stands before and behind the column's name, and by what the number is divided.
+/// Stored form of the whole number `n` in a table: text before and behind the column's name, and the divisor of the
+/// number.
 type Layout = (&'static str, &'static str, f64);
 const NUMBERS: [Layout; 14] = [
     ("int32", "", 1.0),
@@ -32,7 +33,7 @@ const NUMBERS: [Layout; 14] = [
     ("fixed_len_byte_array(2)", "(FLOAT16)", 1.0),
     ("boolean", "", 1.0),
 ];
-/// The same of times, and how many µs one is.
+/// Layouts of times, each with the µs in its unit.
 const TIMES: [Layout; 5] = [
     ("int32", "(TIME(MILLIS,true))", 1e-3),
     ("int64", "(TIME(MICROS,true))", 1.0),
@@ -90,7 +91,7 @@ impl Column {
         }
     }
 
-    /// Its line in the table's schema.
+    /// Line of the column in the table's schema.
     fn declared(&self) -> String {
         let (before, behind, _) = self.layout;
         let is_whole = self.numbers.iter().all(Option::is_some);

@@ -79,7 +79,7 @@ impl TracePlot {
     }
 }
 
-/// The same for the trace behind; one without distance has none of its rows in view.
+/// Axis of the trace behind; of a trace without distance no row is in view.
 pub(super) fn behind_axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Axis {
     axis(view, kind, shift_rows).unwrap_or_else(|| Axis::Distance {
         at_m: Vec::new(),

@@ -1,18 +1,14 @@
-//! What a diagnosis comes to, and what to run next: a sentence in both languages for each kind.
+//! Conclusions of a diagnosis, and the next check: a sentence in both languages for each kind.
 
 use diagnosis::{Conclusion, NextCheck};
 use protocol::LruId;
 use protocol::injection::Lru;
 
 use super::super::names;
-use super::diagnosis::{Both, checked};
+use super::both::{Both, both, checked};
 
 /// Parts named at most where it cannot be told which one has failed.
 const MOST_NAMED: usize = 3;
-
-pub(super) fn both<const N: usize>(texts: [(&str, &str); N]) -> [Both; N] {
-    texts.map(|(english, korean)| [english.to_owned(), korean.to_owned()])
-}
 
 pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names: &[Lru]) -> Both {
     let [said, said_ko] = answered(conclusion, next.is_some(), names);
@@ -20,7 +16,8 @@ pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names
         Conclusion::Found { .. }
         | Conclusion::OfBench { .. }
         | Conclusion::NoFault { .. }
-        | Conclusion::NotWeighed => None,
+        | Conclusion::NotWeighed
+        | Conclusion::BenchFailed { .. } => None,
         // A measurement tells which.
         Conclusion::OneOf { group, .. } if !group.measure.english.is_empty() => {
             next.map(|next| run_next(next, names))
@@ -105,6 +102,10 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
             )]);
             said
         }
+        Conclusion::BenchFailed { bench } => [
+            format!("the bench failed, not the unit: `ptu doctor --bench {bench}`"),
+            format!("장치가 아니라 시험대의 이상입니다: `ptu doctor --bench {bench}`"),
+        ],
         Conclusion::NotWeighed => {
             let [said] = both([(
                 "cannot tell: the run did not pass, and what did not pass was not run to its end or is not in the dictionary",
@@ -115,7 +116,7 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
     }
 }
 
-/// Which of these parts, and so many more, has failed.
+/// Sentence which says that one of these parts, or of `more` others, has failed.
 fn cannot_tell(shown: &[Both], more: usize, can_go_on: bool) -> Both {
     let [more, more_ko] = match more {
         0 => [String::new(), String::new()],
@@ -152,7 +153,7 @@ fn unlike_any([said, said_ko]: &Both) -> Both {
     ]
 }
 
-/// What is left where no check tells the likely parts apart.
+/// Advice where no check tells the likely parts apart.
 fn swap(conclusion: &Conclusion, names: &[Lru]) -> Both {
     let likeliest = conclusion.parts().into_iter().next();
     let of_bench = |part: &LruId| {
@@ -194,7 +195,7 @@ fn run_next(next: &NextCheck, names: &[Lru]) -> Both {
     ]
 }
 
-/// What a check tells that passes where some parts have failed, and does not pass where others have.
+/// Meaning of a check that passes where some parts have failed, and does not pass where others have.
 pub(super) fn tells(next: &NextCheck, names: &[Lru]) -> Both {
     let all = |parts: &[LruId]| {
         let named: Vec<_> = parts.iter().map(|part| called(part, names)).collect();

@@ -40,7 +40,7 @@ pub fn korean(condition: &Condition) -> String {
     }
 }
 
-/// What a step waits for.
+/// Condition that a step waits for, as text.
 pub fn expectation(expected: &Expectation) -> String {
     match expected {
         Expectation::Becomes { condition, within } => {
@@ -84,7 +84,7 @@ pub fn logged(event: Event, [low, high]: [i32; 2]) -> String {
     }
 }
 
-/// What an event's parameter says; empty for an event that has none.
+/// Parameter of an event as text; empty for an event without one.
 pub fn parameter(event: Event, number: i32) -> String {
     if event.definition().parameter.is_empty() {
         return String::new();
@@ -96,7 +96,7 @@ pub fn parameter(event: Event, number: i32) -> String {
     content::korean(&name).into_owned()
 }
 
-/// What a signal is called in few words.
+/// Name of a signal in few words.
 pub fn signal(name_of: &str) -> Option<String> {
     Signal::from_name(name_of).map(name)
 }

@@ -1,4 +1,5 @@
-//! What a check of the history found and what to do about it, in the words of a window: without commands, and in Korean.
+//! Findings of a check of the history, and their remedies, in the words of a window: without commands, and in
+//! Korean.
 
 use fault_db::{Advice, ProblemKind};
 use ptu_runs::words::noun;

@@ -1,4 +1,4 @@
-//! What a diagnosis comes to, why, and what to bear in mind: a sentence in both languages for each kind.
+//! Conclusions of a diagnosis, their reasons and warnings: a sentence in both languages for each kind.
 
 use diagnosis::{CheckName, FaultText, NextCheck, Reason};
 use fault_db::RunDetail;
@@ -6,17 +6,15 @@ use protocol::LruId;
 use protocol::injection::Lru;
 use ptu_runs::run_diagnosis::Answer;
 
-use super::super::{Words, content};
+use super::super::Words;
+use super::both::checked;
 use super::conclusion::{all_called, concluded, tells};
 use super::reasons::{
     deviated, deviated_share, fault_text, logged, step_expected, step_found, told,
 };
 
-/// The same in English and in Korean.
-pub(super) type Both = [String; 2];
-
 impl Words {
-    /// What a diagnosis comes to, and what to run next.
+    /// Conclusion of a diagnosis, and the next check.
     pub fn concluded(&self, answer: &Answer) -> String {
         let diagnosis = &answer.diagnosis;
         let next = diagnosis.next_check.as_ref();
@@ -28,7 +26,7 @@ impl Words {
         self.choose(all_called(parts, names))
     }
 
-    /// What a check tells; empty if that is not known.
+    /// What a check would tell, as text; empty if that is not known.
     pub fn tells(&self, next: &NextCheck, names: &[Lru]) -> String {
         self.choose(tells(next, names))
     }
@@ -38,7 +36,7 @@ impl Words {
         self.choose(checked(check))
     }
 
-    /// What is wrong under a fault.
+    /// Sentence that says what is wrong under a fault.
     pub fn fault_text(&self, text: &FaultText) -> String {
         self.choose(fault_text(text))
     }
@@ -50,7 +48,7 @@ impl Words {
         path + &self.reason_in_procedure(reason, run)
     }
 
-    /// The same without the path of its procedure.
+    /// Reason as text, without the path of its procedure.
     pub fn reason_in_procedure(&self, reason: &Reason, run: &RunDetail) -> String {
         self.choose(match reason {
             Reason::Step(step) => step_found(step, run),
@@ -70,10 +68,4 @@ impl Words {
             Reason::Logged(_) | Reason::Known(_) => None,
         }
     }
-}
-
-/// Procedure and step.
-pub(super) fn checked(check: &CheckName) -> Both {
-    let korean = content::korean(&check.step);
-    [check.to_string(), format!("{}: {korean}", check.procedure)]
 }

@@ -1,4 +1,4 @@
-//! How automatic runs end, and what happens on the way.
+//! Ends of automatic runs, and events on the way.
 
 use btu_rig::drive::{Ending, Mark};
 use btu_rig::procedure::describe::meanings;
@@ -10,7 +10,7 @@ use super::condition;
 use ptu_runs::words::link_korean;
 
 impl Words {
-    /// How an automatic run ended.
+    /// Sentence that says how a drive ended.
     pub fn ending(&self, ending: &Ending) -> String {
         match self.language {
             Language::English => ending.to_string(),

@@ -1,4 +1,5 @@
-//! What a run found, in Korean: one sentence for each kind, which does not compile without one.
+//! Findings of a run in Korean: one sentence for each kind; a kind without a sentence does not
+//! compile.
 
 use btu_rig::procedure::EventSource;
 use btu_rig::procedure::describe::meanings;
@@ -45,7 +46,7 @@ fn missing(data: &MissingData) -> String {
     }
 }
 
-/// Why, behind what.
+/// The reason, as an addition to a sentence.
 fn because(why: Option<String>) -> String {
     why.map_or_else(String::new, |why| format!(". {why}"))
 }
@@ -214,12 +215,19 @@ pub fn korean(finding: &Finding) -> String {
             of,
             left,
             instrument,
+            bench,
         } => {
+            let bench = bench
+                .as_ref()
+                .map_or_else(String::new, |name| format!("{name} "));
             let what = instrument.as_ref().map_or_else(
                 || "연결 끊김".to_owned(),
-                |name| format!("시험대 계측기 {name} 고장"),
+                |name| format!("시험대 {bench}계측기 {name} 고장"),
             );
-            format!("{of}개 단계 중 {run}번째에서 {what}; {left}개 미실행")
+            match run {
+                0 => format!("{of}개 단계 시작 전에 {what}"),
+                _ => format!("{of}개 단계 중 {run}번째에서 {what}; {left}개 미실행"),
+            }
         }
         Finding::NotAcceptance { run, of } => {
             format!("인수 판정이 아님: {of}개 단계 중 {run}개 수행, 모두 합격")
@@ -311,7 +319,7 @@ fn seen_bits(of: &Condition, bits: u16) -> String {
     condition::bits(*signal, bits).map_or_else(String::new, |bits| format!(" (실제 {bits})"))
 }
 
-/// Who logged what.
+/// Sentence on a logged event: who logged it, and which it is.
 fn logged(entry: &LoggedEvent) -> String {
     let (who, code) = (condition::who(entry.source), entry.code);
     let Some(event) = entry.event() else {
@@ -325,7 +333,7 @@ fn logged(entry: &LoggedEvent) -> String {
     )
 }
 
-/// What an event is, with what its parameter says.
+/// Event, with its parameter, as text.
 fn happened(entry: &LoggedEvent) -> String {
     let Some(event) = entry.event() else {
         return format!("알 수 없는 이벤트 {} (값 {})", entry.code, entry.parameter);

@@ -1,5 +1,6 @@
 //! Sentences that are made of data, one match for each kind: what is added to the data does not compile without its words.
 
+mod both;
 mod conclusion;
 pub(super) mod condition;
 mod damage;
@@ -24,7 +25,7 @@ use ptu_runs::stored;
 use super::{Language, Words};
 
 impl Words {
-    /// What was found in one place, as a sentence.
+    /// Findings in one place, as a sentence.
     pub fn findings(&self, all: &Findings) -> String {
         match self.language {
             Language::English => format!("{all:#}"),
@@ -39,7 +40,7 @@ impl Words {
         }
     }
 
-    /// What an action waits for.
+    /// Condition that an action waits for, as text.
     pub fn awaited(&self, action: &Action) -> String {
         match (action, self.language) {
             (Action::Until { condition, .. }, Language::English) => format!("{condition:#}"),
@@ -64,7 +65,7 @@ impl Words {
         }
     }
 
-    /// What is on record: a step, or where something failed that is none.
+    /// Name of a record: a step, or the place of a failure outside steps.
     pub fn record(&self, of: &StepRecord) -> String {
         match stored::outside_of(of) {
             Some(place) => self.common.outside(place).to_owned(),
@@ -72,7 +73,7 @@ impl Words {
         }
     }
 
-    /// The same of a run that is under way.
+    /// Name of a step of a run that is under way, as in [`Self::record`].
     pub fn result(&self, of: &StepResult) -> String {
         match outside_place(of) {
             Some(place) => self.common.outside(place).to_owned(),
@@ -80,7 +81,7 @@ impl Words {
         }
     }
 
-    /// What an event's parameter says; empty for an event that has none.
+    /// Parameter of an event as text; empty for an event without one.
     pub fn parameter(&self, event: Event, number: i32) -> String {
         match self.language {
             Language::English => event_text::parameter(event, number),
@@ -88,7 +89,7 @@ impl Words {
         }
     }
 
-    /// What was found, as it is stored: `message` where its data are none, or of another version.
+    /// Finding as stored: `message` where it has no data, or data of another version.
     pub fn found<'a>(&self, data: &Option<String>, message: &'a str) -> Cow<'a, str> {
         let all = stored::findings(data);
         match all.is_empty() {

@@ -1,4 +1,4 @@
-//! Why a diagnosis comes to what it does, and what to bear in mind, in both languages.
+//! Reasons and warnings of a diagnosis, in both languages.
 
 use btu_rig::procedure::{Finding, spoken};
 use diagnosis::{FaultText, Known, Repaired, Sign, StepReason};
@@ -8,8 +8,7 @@ use ptu_runs::clock::local_day;
 use ptu_runs::stored::findings;
 
 use super::super::{Language, content, names};
-use super::conclusion::both;
-use super::diagnosis::{Both, checked};
+use super::both::{Both, both, checked};
 use super::finding;
 
 pub(super) fn fault_text(text: &FaultText) -> Both {
@@ -124,7 +123,8 @@ pub(super) fn deviated(signal: &str) -> Both {
     ]
 }
 
-/// The same with the shares of traces in which that signal is the first, under the fault and under any.
+/// Sentence on a deviation, with the shares of traces in which the signal deviates first: under the
+/// fault, and under any fault.
 pub(super) fn deviated_share(signal: &str, shares: [f64; 2]) -> Both {
     let [said, said_ko] = deviated(signal);
     let [own, any] = shares.map(|share| format!("{:.0} %", 100.0 * share));

@@ -1,4 +1,4 @@
-//! What went wrong, as a window says it, without commands, or as the command line does.
+//! Troubles as a window says them, without commands, or as the command line does.
 
 use std::sync::Arc;
 
@@ -12,12 +12,12 @@ use super::super::{Language, Words};
 use super::condition;
 
 impl Words {
-    /// Why something could not be done, and the next move.
+    /// Sentence on a trouble, and the next move.
     pub fn trouble(&self, what: &impl Say) -> String {
         what.say(self.manner(false))
     }
 
-    /// Why something could not be done, with the commands that help.
+    /// Sentence on a trouble, with the commands that help.
     pub fn told(&self, what: &impl Say) -> String {
         what.say(self.manner(true))
     }

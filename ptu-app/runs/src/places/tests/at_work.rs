@@ -108,7 +108,7 @@ fn each_fault_of_an_instrument_is_named() {
         ("stuck", "", "io", "the relay of hcr is stuck"),
         ("", "slow", "gen", "slow: it took"),
         ("", "mute", "gen", "no answer within 0.40 s"),
-        ("", "leaves", "gen", "disconnected"),
+        ("", "leaves", "gen", "it closed the connection"),
         ("", "drips", "gen", "no answer within 0.40 s"),
         ("", "model", "gen", "wrong model: ACME,SCALE,G-1,1 answers"),
         ("", "serial", "gen", "another instrument: serial number G-2"),

@@ -93,6 +93,52 @@ fn doors_and_waits_are_fitted() {
     }
 }
 
+/// Goal: what a person reads is asked for, in place of waiting and of looking, and the source says by how much longer that
+/// takes; a time of it is too quick for a person.
+#[test]
+fn a_person_reads_a_contact_where_the_time_allows_it() {
+    let text = BENCH.replace("MODULE", "1").replace("GENERATOR", "2");
+    let by_person = "eb = { at = \"operator\", within_s = 30 }";
+    let places = bench(&text.replace(
+        "eb = { at = \"io\", input = 16, inverted = true }",
+        by_person,
+    ));
+    let fitted = places
+        .expect("a bench")
+        .fit(procedures(&setup(&[])), &ENGLISH);
+    let asks = |action: &Action| matches!(action, Action::Prompt { text, .. } if text.starts_with("Please look: eb = released"));
+    let seen = fitted
+        .iter()
+        .find(|one| one.id == "atp/speed_input")
+        .expect("it");
+    assert_eq!(seen.lacks, None);
+    assert!(seen.setup.iter().any(asks), "{:?}", seen.setup);
+    let released = step(&fitted, "ptu/at_rest", "the emergency brake is released");
+    assert_eq!(released.lacks, None);
+    assert!(released.actions.iter().any(asks), "{:?}", released.actions);
+    let sources = format!("{:?}", released.origin);
+    assert!(
+        sources.contains("a person (limits wider by 30 s)"),
+        "{sources}"
+    );
+    for (name, why) in [
+        (
+            "at rest for five seconds",
+            "a person reads eb, too slowly for this step",
+        ),
+        (
+            "emergency brake released again with a cab",
+            "does not read eb_loop",
+        ),
+    ] {
+        let lacks = step(&fitted, "atp/power_up", name).lacks.as_deref();
+        assert!(
+            lacks.is_some_and(|lacks| lacks.ends_with(why)),
+            "{name}: {lacks:?}"
+        );
+    }
+}
+
 /// Goal: a step that continues a moving one is wider by the motion, too. Method: a step that measures at a moment of a motion,
 /// and the same again without its motion.
 #[test]

@@ -1,4 +1,4 @@
-//! Who may read a file, and which file it is.
+//! Access rights and identity of files.
 
 use std::fs::{DirBuilder, File, Metadata, Permissions};
 use std::io::Result;
@@ -16,7 +16,8 @@ pub fn keep_to_owner(file: &File) -> Result<()> {
     file.set_permissions(Permissions::from_mode(0o600))
 }
 
-/// What to say of a file that others can read or write, if they can: its rights, and how to take them back.
+/// Rights of a file that others can read or write, and the command that takes them back; none if they
+/// cannot.
 pub fn readable_by_others(file: &Path) -> Option<(String, String)> {
     let mode = std::fs::metadata(file).ok()?.permissions().mode() & 0o777;
     let shown = file.display();
@@ -28,7 +29,7 @@ pub fn identity(file: &Metadata) -> u64 {
     file.ino()
 }
 
-/// What a stream of the process reads or writes, as a file.
+/// The file that a stream of the process reads or writes.
 pub fn same_file(stream: &impl AsFd) -> Result<File> {
     stream.as_fd().try_clone_to_owned().map(File::from)
 }

@@ -6,7 +6,7 @@ use std::process::ChildStdin;
 #[cfg(target_os = "linux")]
 const LEAST: usize = 4_096;
 
-/// As few bytes as possible wait in the pipe: what is in it is still heard when this process has ended. A system that
+/// Makes the pipe as short as possible: bytes in the pipe are still heard when this process has ended. A system that
 /// refuses has its usual pipe.
 #[cfg(target_os = "linux")]
 pub fn shorten_pipe(to: &ChildStdin) {

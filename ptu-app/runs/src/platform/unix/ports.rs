@@ -13,7 +13,7 @@ use rustix::fs::{Access, OFlags, access};
 use rustix::termios::ioctl_tiocnxcl;
 use serialport::SerialPort;
 
-/// Opens a port and locks it until it is closed. Reads and writes wait for so long.
+/// Opens a port and locks it until it is closed. Reads and writes wait for `waits` at most.
 pub fn open_alone(
     path: &str,
     baud: u32,
@@ -33,7 +33,7 @@ pub fn open_alone(
     Ok(port)
 }
 
-/// By its name on Linux, or on macOS.
+/// Whether the path is a pseudo-terminal, by its name on Linux or macOS.
 fn is_pseudo_terminal(path: &str) -> bool {
     let places = ["/dev/pts/", "/dev/ttys"];
     std::fs::canonicalize(path).is_ok_and(|real| {
@@ -42,7 +42,7 @@ fn is_pseudo_terminal(path: &str) -> bool {
     })
 }
 
-/// The same device once more, without waiting for it or becoming its terminal.
+/// Opens the port a second time, without waiting for it or becoming its terminal.
 fn open_beside(path: &str) -> Option<File> {
     let flags = (OFlags::NOCTTY | OFlags::NONBLOCK).bits();
     OpenOptions::new()
@@ -86,13 +86,13 @@ fn locked_by(place: &str) -> Option<String> {
     })
 }
 
-/// Other systems do not tell.
+/// Systems other than Linux do not tell.
 #[cfg(not(target_os = "linux"))]
 pub fn holder(_: &str) -> Option<String> {
     None
 }
 
-/// Whether this user may not read and write a port that is there: then the group whose members may, if there is one.
+/// Whether this user may not read and write an existing port; if so, the group whose members may, if there is one.
 pub fn closed_to_user(path: &str) -> Option<Option<String>> {
     if access(path, Access::READ_OK | Access::WRITE_OK).is_ok() {
         return None;

@@ -8,7 +8,6 @@ use std::process::Command;
 use rustix::process::getpgrp;
 use rustix::termios::tcgetpgrp;
 
-/// What this computer is called.
 pub fn computer_name() -> String {
     let about = rustix::system::uname();
     about.nodename().to_string_lossy().into_owned()

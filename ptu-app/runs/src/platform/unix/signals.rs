@@ -47,7 +47,7 @@ async fn received(signal: Option<&mut Signal>) {
 /// Lets a write beyond the largest size that files may have (`ulimit -f`) fail with the system's words, where the
 /// process would end without any. For good, from before this returns.
 pub fn survive_file_limit() {
-    /// Of Linux, macOS and the BSDs.
+    /// Number of the signal on Linux, macOS and the BSDs.
     const SIGXFSZ: i32 = 25;
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_io()

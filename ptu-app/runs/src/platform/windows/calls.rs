@@ -16,7 +16,7 @@ use windows_sys::Win32::System::JobObjects::{
 };
 use windows_sys::Win32::System::Threading::GetCurrentProcess;
 
-/// What a process is bound to.
+/// A limit that Windows puts on this process, and on each of its children.
 pub enum JobLimit {
     /// Memory that it may have, bytes.
     Memory(usize),

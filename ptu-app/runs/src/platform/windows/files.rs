@@ -1,5 +1,4 @@
-//! Who may read a file, and which file it is. A user's folders are closed to other users already, and what is made in
-//! them is, too.
+//! Access rights and identity of files. Windows closes a user's folders, and what is made in them, to other users.
 
 use std::fs::{DirBuilder, File, Metadata};
 use std::io::Result;
@@ -30,7 +29,7 @@ pub fn identity(file: &Metadata) -> u64 {
     since.map_or(0, |since| since.as_micros() as u64)
 }
 
-/// What a stream of the process reads or writes, as a file.
+/// The file that a stream of the process reads or writes.
 pub fn same_file(stream: &impl AsHandle) -> Result<File> {
     stream.as_handle().try_clone_to_owned().map(File::from)
 }

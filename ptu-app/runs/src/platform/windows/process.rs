@@ -5,7 +5,6 @@ use std::process::Command;
 
 use super::calls;
 
-/// What this computer is called.
 pub fn computer_name() -> String {
     let name = std::env::var_os("COMPUTERNAME").unwrap_or_default();
     name.to_string_lossy().into_owned()

@@ -8,7 +8,7 @@ use super::Session;
 
 /// Frames that come later than this after a pause are of the time after it.
 const AFTER: Duration = Duration::from_us(3 * SCAN.as_us());
-/// What a frame's way may differ by, ms.
+/// Tolerance of a frame's time on its way, ms.
 const JITTER_MS: i64 = 20;
 /// The most that the unit stands still for longer than the bench, ms.
 const MOST_MS: i64 = 1000;

@@ -201,7 +201,7 @@ impl<L: UnitLink> Session<L> {
         }
     }
 
-    /// Hands rows on once there are so many.
+    /// Hands rows on once there are `at_least` of them.
     fn hand_rows(&mut self, at_least: usize, sink: &mut dyn FnMut(SessionEvent)) {
         if let Some(rows) = self.rows.as_mut().filter(|rows| rows.len() >= at_least) {
             sink(SessionEvent::Rows(std::mem::take(rows)));
@@ -260,7 +260,7 @@ impl<L: UnitLink> Session<L> {
         }
     }
 
-    /// What a step did that passed is to be seen beside what it did when it failed.
+    /// Keeps a trace of a step that passed, to be seen beside the trace of its failure.
     fn keep_trace(
         &mut self,
         now: Instant,

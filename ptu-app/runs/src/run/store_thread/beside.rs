@@ -1,4 +1,4 @@
-//! What becomes of a run that its history does not hold at the end: a file beside, which is named.
+//! File beside the history for a run that the history does not hold at the end.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -21,7 +21,7 @@ const WINDOW: [Manner; 2] = [
 
 /// The sentences of a window: what helps at a command line stands before them.
 fn told() -> &'static str {
-    let begin = SOURCE.find("/// What the store says").expect("there");
+    let begin = SOURCE.find("pub(super) fn in_window").expect("there");
     &SOURCE[begin..]
 }
 

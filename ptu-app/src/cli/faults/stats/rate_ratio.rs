@@ -2,7 +2,7 @@
 
 use ptu_report::words::Words;
 
-/// How many times as often something was seen in the later half of a course as in the earlier half.
+/// Ratio of the counts in the later half of a course to those in the earlier half.
 pub(super) struct RateRatio {
     pub(super) ratio: f64,
     /// 95 % interval.
@@ -11,8 +11,8 @@ pub(super) struct RateRatio {
 }
 
 impl RateRatio {
-    /// Of counts by day or month; of an odd number of them the one in the middle counts for neither half. Where
-    /// neither half has anything there is no ratio.
+    /// Ratio of the rates in both halves of counts by day or month; of an odd number of counts the middle one
+    /// belongs to neither half. None where both halves are empty.
     ///
     /// The logarithm of a ratio of two Poisson counts is nearly normal with variance `1/a + 1/b`; half a count is
     /// added to each, so that none divides by zero (Haldane, Anscombe).

@@ -139,7 +139,7 @@ impl StatsArguments {
         )
     }
 
-    /// What the numbers are of.
+    /// Caption that says what the numbers count.
     fn caption(&self, stats: &[FaultStat]) -> String {
         let words = Words::shown();
         let counts = &words.counts;

@@ -1,4 +1,4 @@
-//! The care of the history: exchange with a server, import of another file, backup, check.
+//! Maintenance of the history: sync with a server, import of another file, backup, check.
 
 mod work;
 
@@ -13,21 +13,21 @@ use crate::{PageContext, Palette};
 use ptu_report::words::fill;
 use ptu_runs::clock;
 
-/// Width of its fields, points.
+/// Width of the dialog's fields, points.
 const FIELD: f32 = 380.0;
 
-/// The dialog, and what it does.
+/// State of the dialog and of its work.
 #[derive(Default)]
 pub struct Care {
     open: bool,
     address: String,
-    /// The address was proposed once: what is typed in its place stays.
+    /// The address was proposed once: an address typed in its place stays.
     proposed: bool,
     without_traces: bool,
     file: String,
     job: Job,
     last: CachedResponse<Vec<LastSync>>,
-    /// Of which data the last syncs are known.
+    /// Data whose last syncs are known.
     asked: Option<(usize, u64)>,
 }
 
@@ -36,7 +36,7 @@ impl Care {
         self.open = !self.open;
     }
 
-    /// Takes what has come, and shows the dialog while it is open.
+    /// Takes results that have arrived, and shows the dialog while it is open.
     pub fn show(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         if self.job.poll(context, words.care.failed) {
@@ -130,7 +130,8 @@ impl Care {
             }
         }
         if let (false, Some(last)) = (self.proposed, self.last.get().value()) {
-            // As it was typed: a stored one tells where the server is, and not how it is reached.
+            // The address as typed: a stored address tells where the server is, not how this
+            // computer reaches it.
             let latest = last.first().map(|sync| sync.server.clone());
             let typed = typed(&context.settings.server);
             self.address = typed.or(latest).unwrap_or_default();

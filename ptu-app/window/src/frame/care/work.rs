@@ -1,4 +1,4 @@
-//! What the dialog has done on a thread of its own.
+//! Work of the dialog, on a thread of its own.
 
 use std::path::{Path, PathBuf};
 
@@ -69,7 +69,7 @@ pub fn backup(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
             Err(StoreError::Stopped) => return Ok(stopped(words)),
             done => done.map_err(|error| of_file(&file, error))?,
         }
-        // Of the copy: another program may have recorded more into the file meanwhile.
+        // Head of the copy: another program may have recorded more into the file meanwhile.
         let head = Store::open_read_only(&file)?.head()?;
         let text = fill(words.care.backed_up, &[("file", &shown)]);
         let notes = head.map(|head| care::chain(&head, words));

@@ -9,10 +9,10 @@ use ptu_runs::bench_worker::{BenchWorker, Phase};
 #[derive(Debug, Default)]
 pub struct BenchSnapshot {
     pub phase: Phase,
-    /// Goes up when a bench is made again or made safe.
+    /// Counts up when a bench is made again or made safe.
     pub bench_epoch: u64,
     pub sample: Sample,
-    /// What the last self-test asked for found.
+    /// Results of the last requested self-test.
     pub self_test: Vec<SelfTestItem>,
 }
 

@@ -32,16 +32,16 @@ const STIMULI: f32 = 324.0;
 /// Least height of log and plot, and what stands around them.
 const LOWEST: f32 = 100.0;
 const AROUND: f32 = 30.0;
-/// What the plot's heading has more than the log's.
+/// Height by which the plot's heading exceeds the log's.
 const HEADING: f32 = 8.0;
 /// Share of the log in the width.
 const LOG_SHARE: f32 = 0.4;
 
-/// What is filled in and remembered for one unit's bench.
+/// Forms and memory of one unit's bench.
 struct Sheet {
     /// Checksums of the unit's configuration and line.
     of: (u32, u32),
-    /// Of the bench when something was given.
+    /// Epoch of the bench when a stimulus was given.
     bench_epoch: u64,
     forms: Forms,
     given: StimuliGiven,
@@ -49,7 +49,7 @@ struct Sheet {
 
 #[derive(Default)]
 pub struct BenchPage {
-    /// By the unit's id.
+    /// Sheets by the unit's id.
     sheets: BTreeMap<u64, Sheet>,
     plot: Plot,
 }

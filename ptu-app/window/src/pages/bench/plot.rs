@@ -227,7 +227,7 @@ fn rects(curves: Rect, lanes: &[Lane]) -> impl Iterator<Item = Rect> {
     })
 }
 
-/// What the plot is painted on.
+/// Surface of the plot, with what is painted on it.
 struct Sheet<'a> {
     painter: Painter,
     area: Rect,

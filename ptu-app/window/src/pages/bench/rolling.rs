@@ -7,16 +7,16 @@ use ptu_runs::bench_worker::LiveData;
 
 /// Times that can be chosen, s.
 pub const SPANS_S: [u32; 4] = [10, 30, 60, 120];
-/// As many signals as can be told apart.
+/// Number of signals that can be told apart.
 pub const MOST: usize = 12;
 
-/// What a lane shows, as places among the chosen signals.
+/// Signals of a lane, as places among the chosen ones.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Lane {
     /// Quantities of one unit of measure, on one scale.
     Quantities(Vec<usize>),
     Choice(usize),
-    /// On or off.
+    /// A signal that is on or off.
     Bit(usize),
 }
 

@@ -8,7 +8,7 @@ const ROOM_KMH: f64 = 15.0;
 /// The dial's scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dial {
-    /// Its last number, km/h.
+    /// Last number of the dial, km/h.
     pub full_kmh: f64,
 }
 
@@ -39,7 +39,7 @@ impl Dial {
     }
 }
 
-/// How far a bar goes from its middle, −1 to 1.
+/// Length of a bar from its middle, −1 to 1.
 pub fn from_middle(value: f64, full: f64) -> f32 {
     (value / full).clamp(-1.0, 1.0) as f32
 }

@@ -67,8 +67,8 @@ fn section_of_wayside<'a>(line: &'a Line, seen: &BenchSnapshot) -> Option<&'a Se
     departing.or_else(|| sections.iter().find(|s| ends((s.to_station, s.to_loop))))
 }
 
-/// What no signal tells of the wayside's frame: known from what was given by hand as long as the
-/// wayside still sends that, else from the line.
+/// Fields of the wayside's frame that no signal tells: taken from the stimulus given by hand as
+/// long as the wayside still sends that, else from the line.
 #[derive(Debug, Default, PartialEq)]
 pub struct WaysideFrame {
     pub next_station: Option<u16>,

@@ -8,7 +8,7 @@ use crate::Palette;
 use crate::parts::lane::cut_text;
 use ptu_report::naming::{self, PartNames};
 use ptu_report::words::Words;
-use ptu_runs::structure::{Chain, Made};
+use ptu_runs::structure::{Chain, LinkOutput};
 
 /// Size of a box, and of the arrow before it, points.
 const BOX: [f32; 2] = [172.0, 62.0];
@@ -67,8 +67,8 @@ fn boxes(chain: &Chain, part: &str, names: &PartNames, words: &Words) -> Vec<Sho
             .map(|id| name(id.as_str()))
             .collect();
         let makes = match link.made {
-            Made::Signal(signal) => naming::signal(signal.name(), words),
-            Made::Event(event) => {
+            LinkOutput::Signal(signal) => naming::signal(signal.name(), words),
+            LinkOutput::Event(event) => {
                 let event = event.definition();
                 naming::event(event.code.into(), event.name, words)
             }
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn the_part_and_all_after_it_are_marked_by_words() {
         let link = |signal, parts: &[&str]| Link {
-            made: Made::Signal(signal),
+            made: LinkOutput::Signal(signal),
             parts: parts.iter().map(|part| part.parse().unwrap()).collect(),
         };
         let chain = Chain {

@@ -1,4 +1,5 @@
-//! What shows that it is this part: its place in the structure, and the trace of the failed check beside that of a good unit.
+//! Evidence for the named part: its place in the structure, and the trace of the failed check beside that of a good
+//! unit.
 
 use std::sync::Arc;
 
@@ -23,7 +24,7 @@ use ptu_runs::structure::{Chain, Structure};
 /// Signals of the check that are drawn, at most.
 const SIGNALS: usize = 4;
 
-/// What is read, and what is drawn of it.
+/// Data that are read, and drawings made of them.
 pub struct Evidence {
     part: String,
     read: Request<Read>,

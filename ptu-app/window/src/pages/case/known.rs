@@ -1,4 +1,4 @@
-//! What the history knows of a unit: open faults and earlier repairs.
+//! History of a unit: open faults and earlier repairs.
 
 use eframe::egui::{RichText, Ui};
 use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord, StoreError};
@@ -11,9 +11,9 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
 use ptu_runs::failure::Failure;
 
-/// As many faults are read for their repairs, the latest first.
+/// Number of faults that are read for their repairs, the latest first.
 const MOST: u32 = 50;
-/// As many lines of each kind are shown.
+/// Number of lines of each kind that are shown.
 const SHOWN: usize = 5;
 
 /// The history of one unit, read when it is asked for.
@@ -55,13 +55,13 @@ impl KnownUnit {
         last.and_then(|(_, repair)| repair.serial_new.clone())
     }
 
-    /// What people call a part.
+    /// Name of a part, for people.
     pub fn part_name<'a>(&'a self, id: &'a str, words: &Words) -> &'a str {
         let history = self.history.get().value();
         history.map_or(id, |known| known.parts.name(id, words.language))
     }
 
-    /// How many faults are open, and how often it was repaired.
+    /// Numbers of open faults and of repairs.
     pub fn facts(&self, ui: &mut Ui, words: &Words) {
         if let Some(history) = self.history.get().value() {
             let number = |n: usize| match n {

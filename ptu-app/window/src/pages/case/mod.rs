@@ -24,7 +24,7 @@ use crate::request::Request;
 use crate::units::Unit;
 use crate::{Destination, PageContext, Palette, Sizes};
 use known::KnownUnit;
-use prove::Proof;
+use prove::RepairProof;
 use ptu_runs::bench_worker::{Phase, Progress};
 use repair::Repair;
 use result::Found;
@@ -45,11 +45,11 @@ pub struct CasePage {
     known: KnownUnit,
     units: SeenUnits,
     tiles: SymptomTiles,
-    /// Its last run that was looked at.
+    /// Last run of the case that was looked at.
     seen: Option<Id>,
     found: Option<Found>,
     repair: Repair,
-    proof: Proof,
+    proof: RepairProof,
 }
 
 impl CasePage {
@@ -109,7 +109,7 @@ impl CasePage {
         };
     }
 
-    /// Goes on when the run of this stage is over and it is known what it says.
+    /// Goes on when the run of this stage is over and its outcome is known.
     fn take_run(
         &mut self,
         concluded: Option<(Id, &Request<Concluded>)>,
@@ -137,7 +137,7 @@ impl CasePage {
         if next == Stage::Result {
             self.found = Some(Found::of(outcome, run, said, context));
             // Another repair is to be fitted and proved.
-            self.proof = Proof::default();
+            self.proof = RepairProof::default();
         } else {
             self.proof.ran(said, (run, outcome, proven), context.words);
         }
@@ -320,7 +320,7 @@ impl CasePage {
         }
     }
 
-    /// Who works on the case, where the strip does not say it.
+    /// Name of the person who works on the case, where the strip does not say it.
     fn name(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         if ui.ctx().content_rect().width() < STRIP[0] {
             ui.horizontal(|ui| name_field(ui, context));

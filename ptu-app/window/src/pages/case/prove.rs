@@ -24,16 +24,15 @@ use ptu_runs::clock::now_us;
 use ptu_runs::keys;
 use ptu_runs::run::Outcome;
 
-/// How far the proof is.
 #[derive(Default)]
-pub struct Proof {
+pub struct RepairProof {
     /// The part was fitted; the unit is connected again as soon as it is disconnected.
     reconnects: bool,
     fitted: bool,
-    /// What the last run says of the repair, or what it came to itself.
+    /// Statement of the last run on the repair, or its own outcome.
     said: Option<String>,
     verdict: Option<Verdict>,
-    /// The same in a word or two.
+    /// The verdict in a word or two.
     word: Option<&'static str>,
     /// Answers with the run that was signed, by whom, and whether with a key.
     signing: Request<(Id, String, bool)>,
@@ -43,7 +42,7 @@ pub struct Proof {
 /// Width of a field of the dialog, points.
 const FIELD: f32 = 300.0;
 
-impl Proof {
+impl RepairProof {
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         let locked = context.settings.locked;
         if locked || context.settings.page != Page::Case {
@@ -94,14 +93,14 @@ impl Proof {
         self.verdict.is_some()
     }
 
-    /// What the runs say of the repair.
+    /// Shows the runs' statement on the repair.
     pub fn told(&self, ui: &mut Ui) {
         if let Some(said) = &self.said {
             ui.label(RichText::new(said).size(Sizes::of(ui).lead).strong());
         }
     }
 
-    /// Who checked the sheet, or the button that asks who does.
+    /// Foot of the sheet: who checked it, or the button that asks.
     pub fn sign_foot(&mut self, ui: &mut Ui, run: Option<Id>, context: &mut PageContext<'_>) {
         let words = &context.words.case;
         if let Some((_, who, with_key)) = self.signing.value().filter(|(of, ..)| Some(*of) == run) {
@@ -174,7 +173,7 @@ impl Proof {
     }
 }
 
-/// What is chosen before a sheet is signed.
+/// Choices before a sheet is signed.
 #[derive(Default)]
 struct Sign {
     /// Key files of this computer, once they were looked for.
@@ -328,7 +327,7 @@ impl CasePage {
             unit.disconnect();
             (self.proof.fitted, self.proof.reconnects) = (true, true);
         }
-        // Its sheet says that the repair is not proved.
+        // The sheet of a run that did not pass says that the repair is not proved.
         let passed = self.proof.verdict == Some(Verdict::Passed);
         if passed && place.clicked(&Face::new(Look::Secondary, words.to_sheet).show(ui)) {
             self.stage = Stage::Sheet;

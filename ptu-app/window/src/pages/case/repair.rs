@@ -1,4 +1,4 @@
-//! What was done: part, serial numbers, note.
+//! The page of the repair: part, serial numbers, note.
 
 use std::collections::BTreeSet;
 
@@ -82,7 +82,7 @@ impl Repair {
         self.written.map(|written| written.fault)
     }
 
-    /// It is stored, and was not taken back.
+    /// The repair is stored, and was not taken back.
     pub fn is_written(&self) -> bool {
         self.written.is_some()
     }

@@ -1,4 +1,4 @@
-//! What a run found: the part, the values that show it, three reasons, and what to do next.
+//! Result of a run: the part, the values that show it, three reasons, and what to do next.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -27,13 +27,13 @@ const WIDE: f32 = 1600.0;
 /// Values that are drawn large, at most.
 const MOST_BARS: usize = 2;
 
-/// What was found in a run.
+/// Findings of a run.
 pub struct Found {
     pub run: Id,
     /// When it ended, µs since 1970.
     pub ended_us: i64,
     pub told: Told,
-    /// In the language of the window.
+    /// Headline in the language of the window.
     headline: String,
     /// The conclusion of the diagnosis, likewise.
     concluded: String,
@@ -42,7 +42,7 @@ pub struct Found {
     answer: Option<Arc<Answer>>,
     /// The first measured values that were out of their limits, with their step.
     shown_by: Option<(String, Vec<Measurement>)>,
-    /// How many of its steps came to what.
+    /// Counts of the steps by outcome.
     pub counts: StepCounts,
     evidence: Option<Evidence>,
     shown: Part,

@@ -12,7 +12,7 @@ use crate::{Density, PageContext, Palette, Sizes};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Phase, Progress};
 
-/// As many failures are shown, the latest first.
+/// Number of failures that are shown, the latest first.
 const FAILURES: usize = 4;
 
 impl CasePage {
@@ -32,7 +32,8 @@ impl CasePage {
         let unit = context.units.chosen();
         let waits = has_orders || self.is_over(context);
         let Some(run) = unit.run_of_case().filter(|_| !waits) else {
-            // It is about to begin, or it has ended, and what it says is worked out; or it never began.
+            // The run is about to begin, or has ended and its result is being worked out, or never
+            // began.
             title(
                 ui,
                 match waits || unit.phase() == Phase::Running {

@@ -11,9 +11,9 @@ use ptu_report::naming::DOT;
 use ptu_runs::clock;
 use ptu_runs::run::BenchChoice;
 
-/// As many runs are looked at, the latest first.
+/// Number of runs that are looked at, the latest first.
 const MOST: u32 = 200;
-/// As many units are offered.
+/// Number of units that are offered.
 const SHOWN: usize = 4;
 /// Least height of one, points.
 const HIGH: f32 = 40.0;

@@ -14,7 +14,7 @@ pub enum Stage {
     /// A run looks for the part.
     Find,
     Result,
-    /// What was done is written down.
+    /// The repair is written down.
     Repair,
     /// The part is fitted, and a run shows whether the fault is gone.
     Prove,

@@ -91,7 +91,7 @@ impl CasePage {
         }
     }
 
-    /// Why this step cannot be gone to.
+    /// Reason for which this stage cannot be gone to.
     fn blocked(&self, stage: Stage, context: &PageContext<'_>) -> Option<&'static str> {
         let words = &context.words.case;
         let unit = context.units.chosen();
@@ -120,7 +120,7 @@ impl CasePage {
         (!can && stage != self.stage).then_some(why)
     }
 
-    /// What a step came to, in few words.
+    /// Outcome of a stage, in few words.
     fn came_to(&self, stage: Stage, context: &PageContext<'_>) -> String {
         let words = context.words;
         let run = context.units.chosen().run_of_case();
@@ -159,7 +159,7 @@ impl CasePage {
         before.next()
     }
 
-    /// Why Back leads nowhere: what is said of the step before, if there is one.
+    /// Why Back is disabled: what blocks the step before; empty if there is no such step.
     pub(super) fn why_not_back(&self, context: &PageContext<'_>) -> Option<&'static str> {
         let mut before = (Stage::ALL.into_iter().rev()).filter(|stage| *stage < self.stage);
         let why = before.next().and_then(|stage| self.blocked(stage, context));
@@ -175,7 +175,7 @@ impl CasePage {
         fact(ui, words.common.unit, name);
         let found = self.found.as_ref();
         let run = match self.stage {
-            // Of the run that its sheet is of.
+            // The run that the sheet shows.
             Stage::Sheet => self.seen,
             _ => {
                 (found.map(|found| found.run)).or_else(|| unit.run_of_case().and_then(Progress::id))

@@ -1,4 +1,5 @@
-//! What a run comes to: a word, a headline, and what to do next. The run decides; a diagnosis adds a part to one that failed.
+//! Outcome of a run for the technician: a word, a headline, and what to do next. The run decides; a diagnosis adds a
+//! part to one that failed.
 
 use btu_rig::procedure::Verdict;
 use diagnosis::{Conclusion, Diagnosis};
@@ -12,7 +13,7 @@ use protocol::LruId;
 use crate::Palette;
 use ptu_report::words::Case;
 
-/// What a case is told at its result.
+/// Result of a case, as the page tells it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Told {
     /// A check failed, and these parts have.
@@ -21,14 +22,14 @@ pub enum Told {
     Unsure,
     /// A check failed, and no part explains it.
     NoPart,
-    /// What was run passed, and is not all.
+    /// All steps that were run passed, and some were not run.
     NotAll,
     NotTested,
     Stopped,
     NoFault,
 }
 
-/// What the accent button of a result does.
+/// Act of the accent button of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next {
     Repair,
@@ -40,7 +41,7 @@ pub enum Next {
 }
 
 impl Told {
-    /// Of a run, with the diagnosis of one that failed.
+    /// Verdict of a run, with the diagnosis of one that failed.
     pub fn of(run: Verdict, said: Option<&Conclusion>) -> Self {
         match run {
             Verdict::Failed => match said {
@@ -83,7 +84,7 @@ impl Told {
         }
     }
 
-    /// What stands below the word; of parts, steps and reasons it is completed with these.
+    /// Headline below the word; parts, steps and reasons complete it.
     pub fn headline(self, words: &Case) -> &'static str {
         match self {
             Self::Part => words.replace,

@@ -11,7 +11,7 @@ use crate::{Destination, PageContext, Palette};
 use ptu_report::diagnosis::{MOST_PARTS, MOST_REASONS, Possible, probability_of};
 use ptu_report::words::{Diagnosis, fill};
 
-/// What may be the cause, the likeliest first, and behind it the other faults.
+/// List of the possible causes, the likeliest first, and behind it the other faults.
 pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &NamedAnswer) {
     let words = &context.words.diagnosis;
     let diagnosis = &named.answer.diagnosis;
@@ -48,7 +48,7 @@ fn at_once<T>(all: &[T]) -> (&[T], &[T]) {
     all.split_at(all.len().min(MOST_REASONS))
 }
 
-/// What is shown when it is asked for.
+/// Parts of the page that are shown on demand.
 fn behind_more(
     ui: &mut Ui,
     words: &Diagnosis,

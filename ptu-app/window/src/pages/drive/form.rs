@@ -1,4 +1,4 @@
-//! What is to be driven: line, section, controller, train and day.
+//! Form of a drive: line, section, controller, train and day.
 
 use btu_rig::drive::Load;
 use eframe::egui::Ui;
@@ -10,14 +10,14 @@ use ptu_report::words::Words;
 use ptu_runs::drive::{Fixed, Request, S1, SectionChoice};
 use ptu_runs::failure::Failure;
 
-/// What the command line begins with, too.
+/// Line with which the command line begins, too.
 const LINE: &str = "line8";
 const SECTION: u16 = 61;
 const TRAIN: &str = "line6";
 const CONFIG: &str = "sg100";
 const SEED: u64 = 1;
 
-/// What there is to choose from.
+/// Lines with their sections, and trains.
 pub struct Offered {
     /// Lines with their sections.
     lines: Vec<(String, Vec<u16>)>,
@@ -96,7 +96,7 @@ impl Form {
         choose(ui, said.disturbance, &mut self.disturbed, disturbances);
     }
 
-    /// The same as the command line asks for.
+    /// Request for a drive, as the command line makes one.
     pub fn request(&self) -> Result<Request, Failure> {
         let disturbance = self.disturbed.then_some(S1);
         Ok(Request {

@@ -61,7 +61,7 @@ impl DrivePage {
         });
     }
 
-    /// What is to be driven, and the button that begins; true when it was clicked.
+    /// Form of the drive, and the button that begins it; true when it was clicked.
     fn form(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> bool {
         let words = context.words;
         let why_not = self.job.is_under_way().then_some(words.drive.under_way);

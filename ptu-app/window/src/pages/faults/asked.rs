@@ -10,7 +10,7 @@ use ptu_report::words::{Faults, Words, fill};
 /// Width of a field, points.
 const FIELD: f32 = 260.0;
 
-/// What is written before a fault is brought to a state.
+/// Entries that are made before a fault is brought to a state.
 pub struct Asked {
     pub to: FaultState,
     reason: Option<usize>,
@@ -19,10 +19,10 @@ pub struct Asked {
     pub serial_new: String,
 }
 
-/// Which button of the dialog was clicked.
+/// Button of the dialog that was clicked.
 pub enum Chosen {
     Cancel,
-    /// With this note.
+    /// Write the change, with this note.
     Write(String),
 }
 
@@ -39,7 +39,7 @@ pub fn going_with(detail: &FaultDetail, to: FaultState) -> Vec<&FaultSummary> {
 }
 
 impl Asked {
-    /// With a note that is there already.
+    /// A dialog with a note that is there already.
     pub fn new(to: FaultState, note: &str) -> Self {
         Self {
             to,
@@ -133,7 +133,7 @@ impl Asked {
         ui.add(field).labelled_by(label.id);
     }
 
-    /// What is written down; nothing while something is missing.
+    /// Text to be written down; none while something is missing.
     fn note(&self, said: &Faults, of_verified: bool) -> Option<String> {
         let note = self.note.trim().to_owned();
         if self.to == FaultState::Repaired {

@@ -24,13 +24,13 @@ const TOWARDS: [FaultState; 5] = [
 /// The form, and what becomes of it.
 #[derive(Default)]
 pub struct Change {
-    /// What is written about one fault.
+    /// The fault that is written about.
     of: Option<Id>,
     note: String,
     asked: Option<Asked>,
     /// Answers with the fault that was changed, and when.
     under_way: Request<Written>,
-    /// What is being recorded, as its button says it.
+    /// Change under way, as its button names it.
     what: &'static str,
     /// Whether what is being recorded takes a closing back, so that no undo is offered for it.
     takes_back: bool,
@@ -64,8 +64,8 @@ impl Change {
         }
     }
 
-    /// Shows it: only what the fault's state allows, and nothing while that state is being read again. Of a closed fault that
-    /// was seen again since, nothing.
+    /// Shows the changes that the fault's state allows; none while that state is being read again, and none of a
+    /// closed fault that was seen again since.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -186,7 +186,7 @@ impl Change {
     }
 }
 
-/// What a person wrote last about it is that it is closed.
+/// Whether the last entry of a person is that the fault is closed.
 fn was_closed_last(detail: &FaultDetail) -> bool {
     let mut written = detail.events.iter().rev();
     let last = written.find(|event| !event.who.is_empty());

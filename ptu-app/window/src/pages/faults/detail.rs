@@ -17,7 +17,7 @@ const MOST: usize = 50;
 /// Where a freeze frame has two signals beside each other, points.
 const TWO_BESIDE: f32 = 560.0;
 
-/// What the fault is and where it stands.
+/// Name and state of the fault.
 pub fn head(
     ui: &mut Ui,
     (words, parts): (&Words, &PartNames),
@@ -125,7 +125,7 @@ pub fn rest(
     }
 }
 
-/// To the trace, the sheet and the diagnosis of one time that it was seen.
+/// Links to the trace, the sheet and the diagnosis of one occurrence.
 fn ways(ui: &mut Ui, words: &Words, seen: &Occurrence, go_to: &mut Vec<Destination>) {
     let faults = &words.faults;
     let all = [

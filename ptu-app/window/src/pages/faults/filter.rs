@@ -13,12 +13,13 @@ pub struct Filter {
     pub days: Option<i64>,
     /// Something its code, name, part, unit or severity contains.
     pub text: String,
-    /// What a bar of the statistics stands for, until it is cleared.
+    /// Choice of a bar of the statistics, until it is cleared.
     pub of_bar: FaultsOf,
 }
 
 impl Filter {
-    /// As it is saved with the unit; what a bar of the statistics stands for is not.
+    /// Choices of the filter, as they are saved with the unit; the choice of a bar of the
+    /// statistics is not saved.
     pub fn question(&self, unit: Option<&str>) -> FaultsQuestion {
         FaultsQuestion {
             unit: unit.map(str::to_owned),
@@ -39,7 +40,7 @@ impl Filter {
         }
     }
 
-    /// Whether a fault is shown.
+    /// Whether the filter shows the fault.
     pub fn takes(&self, fault: &FaultSummary) -> bool {
         let text = self.text.trim().to_lowercase();
         let has = |what: &str| what.to_lowercase().contains(&text);

@@ -48,7 +48,7 @@ fn choose<T: Clone + PartialEq>(
     pick(ui, (what, FIELD), chosen, std::iter::once(any).chain(all));
 }
 
-/// What a bar of the statistics stands for, with a button that clears it.
+/// Choice of a bar of the statistics, with a button that clears it.
 pub fn of_bar(ui: &mut Ui, words: &Words, filter: &mut Filter, parts: &PartNames) {
     let of = &filter.of_bar;
     let cause = of.cause.as_deref().map(|cause| {
@@ -115,7 +115,7 @@ pub fn table(
     clicked
 }
 
-/// Of today the time says enough.
+/// Time of an event: without the day if it is today.
 fn of_today<'a>(when: &'a str, today: &str) -> &'a str {
     match (when.split_once(' '), today.split_once(' ')) {
         (Some((day, time)), Some((now, _))) if day == now => time,

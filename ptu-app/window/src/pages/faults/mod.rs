@@ -25,7 +25,7 @@ use ptu_report::naming::PartNames;
 use ptu_report::words::fill;
 use ptu_runs::clock;
 
-/// As many faults as are listed.
+/// Number of faults that are listed.
 const MOST: u32 = 20_000;
 /// Width of one fault in a window of this one, points; in a narrower one it takes the place of the table.
 const DETAIL: [[f32; 2]; 2] = [[1600.0, 440.0], [1100.0, 344.0]];
@@ -43,7 +43,7 @@ pub struct FaultsPage {
     question: String,
     units: UnitFilter,
     history: CachedResponse<History>,
-    /// What the history was asked for with: days, and its version.
+    /// Days and data version of the last query.
     asked: Option<(Option<i64>, (usize, u64))>,
     chosen: Option<Id>,
     detail: CachedResponse<FaultDetail>,
@@ -237,7 +237,7 @@ impl FaultsPage {
     }
 }
 
-/// The same fault, seen again after this one was closed.
+/// Whether another fault is the closed one, seen again.
 fn takes_its_place(other: &FaultSummary, closed: &FaultSummary) -> bool {
     let of = |fault: &FaultSummary| (fault.unit_serial.clone(), fault.code, fault.lru.clone());
     other.state != FaultState::Closed && of(other) == of(closed)

@@ -1,4 +1,4 @@
-//! What is said of a run that has ended: its diagnosis, or what it proves of repairs.
+//! Conclusion of an ended run: its diagnosis, or what it proves of repairs.
 
 use std::sync::Arc;
 
@@ -10,13 +10,13 @@ use ptu_runs::failure::Exit;
 use ptu_runs::run_diagnosis::{Answer, RepairProof, diagnose_run, prove_repairs};
 use ptu_runs::stored::findings;
 
-/// What is said of a run that has ended.
+/// Conclusion of an ended run.
 pub struct Concluded {
     /// The conclusion, or what the run says of repairs before it.
     pub text: String,
     /// The diagnosis of a run that failed.
     pub answer: Option<Arc<Answer>>,
-    /// Of a run that passed.
+    /// Proofs of repairs by a run that passed.
     pub proofs: Vec<RepairProof>,
 }
 

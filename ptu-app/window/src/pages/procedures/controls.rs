@@ -71,7 +71,7 @@ impl ProceduresPage {
     }
 }
 
-/// Why a unit cannot be run now.
+/// Reason for which a unit cannot be run now.
 pub fn why_not(unit: &Unit, words: &Words) -> &'static str {
     match unit.phase() {
         Phase::Idle => words.procedures.about_to_begin,

@@ -35,7 +35,7 @@ use wanted::Wanted;
 
 /// Least height of the live signals, points.
 const LIVE_LEAST: f32 = 140.0;
-/// What stands above the live signals beside their buttons: margins and a space, points.
+/// Height above the live signals beside their buttons: margins and a space, points.
 const LIVE_HEADING: f32 = 24.0;
 /// Least height that is left to the run above them, points.
 const RUN_LEAST: f32 = 120.0;
@@ -44,11 +44,10 @@ const LIVE_SHARE: f32 = 0.3;
 
 pub struct ProceduresPage {
     suite: Request<Arc<Suite>>,
-    /// What the suite was loaded for.
+    /// Choice for which the suite was loaded.
     loaded_for: Option<BenchChoice>,
-    /// Nothing = everything but what is on request.
+    /// Chosen procedures and steps; none = all except those on request.
     selection: Option<Selection>,
-    /// What people call the parts.
     parts: Request<PartNames>,
     find: String,
     repeat: u32,
@@ -56,13 +55,13 @@ pub struct ProceduresPage {
     orders: Vec<PendingOrder>,
     /// Times everything had been stopped when these were looked at last.
     stops: u64,
-    /// What to run as soon as the suite is there, on a unit by its own number.
+    /// Procedures to run as soon as the suite is there, and the number of the unit.
     wanted: Option<(Wanted, u64)>,
     shown: ResultsView,
     /// The conclusion of the diagnosis of the last run.
     conclusion: Request<Concluded>,
     concluded: Option<fault_db::Id>,
-    /// What the faults of that run said, with their traces.
+    /// Findings of that run's faults, with their traces.
     traced: Request<Vec<(Findings, fault_db::Id)>>,
     note: RunNoteForm,
     plot: Plot,
@@ -72,7 +71,7 @@ pub struct ProceduresPage {
 struct PendingOrder {
     /// The unit it is for, by its own number.
     unit: u64,
-    /// It is for a run of the unit's case.
+    /// The run belongs to the unit's case.
     of_case: bool,
     order: Request<Prepared>,
 }
@@ -171,7 +170,7 @@ impl ProceduresPage {
         self.wanted.is_some() || !self.orders.is_empty()
     }
 
-    /// What is said of the last run of the chosen unit, once it is known.
+    /// Conclusion of the last run of the chosen unit, once it is known.
     pub fn concluded(&self) -> Option<(fault_db::Id, &Request<Concluded>)> {
         Some((self.concluded?, &self.conclusion))
     }
@@ -221,7 +220,7 @@ impl ProceduresPage {
         self.conclude(context);
     }
 
-    /// What is chosen, or would be run without a choice.
+    /// Chosen procedures, or those that would run without a choice.
     fn chosen(&self, connection: Connection) -> Selection {
         let usual = || {
             let suite = self.suite.value();
@@ -231,7 +230,6 @@ impl ProceduresPage {
         chosen.unwrap_or_default()
     }
 
-    /// Has an order of what is chosen made for a unit.
     fn order(&mut self, unit: u64, adaptive: bool, context: &mut PageContext<'_>) {
         let how = RunSettings {
             operator: context.settings.operator.clone(),
@@ -325,7 +323,8 @@ impl ProceduresPage {
         let answer = present::present(ui, words, run, texts, true);
         let note = (&mut self.note, context.settings.operator.as_str());
         results::after_run(ui, (words, context.queries), run, note, context.go_to);
-        // It comes later: below what is written and clicked meanwhile, and in a place kept for it.
+        // The conclusion comes later, in a place kept for it, below what is written and clicked
+        // meanwhile.
         let conclusion = match &self.conclusion {
             Request::Ready(concluded) => Some(concluded.text.as_str()),
             Request::Pending(_) => Some(words.common.loading),

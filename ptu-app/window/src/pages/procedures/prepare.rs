@@ -12,16 +12,15 @@ use ptu_runs::run::{BenchChoice, RunPlan, Suite};
 use ptu_runs::run_diagnosis;
 use ptu_runs::symptoms::Symptom;
 
-/// How the chosen procedures are run.
 #[derive(Clone, Debug)]
 pub struct RunSettings {
     pub operator: String,
     pub repeat: u32,
     /// End after the first step that does not pass.
     pub stop_on_fail: bool,
-    /// As few steps as it takes to find the part.
+    /// The run takes as few steps as it takes to find the part.
     pub adaptive: bool,
-    /// What who brought the unit said is wrong with it.
+    /// Symptom reported with the unit.
     pub symptom: Option<Symptom>,
     /// The run that broke off, of which this is the rest.
     pub continues: Option<fault_db::Id>,
@@ -36,7 +35,7 @@ pub fn load(paths: &DataPaths, choice: &BenchChoice) -> Result<Suite, Failure> {
     Suite::load(&paths.scripts, &[], &setup)
 }
 
-/// What the page shows: a suite, and the choice of the unit it was evaluated for.
+/// The suite on the page, and the choice of the unit it was evaluated for.
 #[derive(Clone)]
 pub struct ShownSuite {
     pub suite: Arc<Suite>,

@@ -18,8 +18,8 @@ const BAR: f32 = 8.0;
 /// Lines shown before and after the script's present one.
 const AROUND: Range<u32> = 2..5;
 
-/// How far the run is, and the step under way, with the text of its script if there is one, or without the script's path
-/// for an operator; what the operator answers.
+/// Progress of the run, and the step under way, with the text of its script if there is one, or without the script's
+/// path for an operator; what the operator answers.
 pub fn present(
     ui: &mut Ui,
     words: &Words,

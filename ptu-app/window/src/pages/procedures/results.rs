@@ -337,7 +337,7 @@ pub fn source(
     }
 }
 
-/// What unit and train reported by themselves; failed checks stand among the steps.
+/// Faults that unit and train reported by themselves; failed checks stand among the steps.
 fn faults(ui: &mut Ui, (words, parts): (&Words, &PartNames), run: &Progress) {
     let reported = || run.faults.iter().filter(|fault| fault.code != CHECK_FAILED);
     if reported().next().is_none() {

@@ -10,7 +10,6 @@ use protocol::{Duration, LruId};
 use ptu_runs::bench_worker::Progress;
 use ptu_runs::run::Task;
 
-/// How much of something is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Share {
     None,
@@ -28,7 +27,8 @@ pub fn possible(procedure: &Procedure, connection: Connection) -> bool {
 pub struct Selection(BTreeMap<String, BTreeSet<String>>);
 
 impl Selection {
-    /// What a run without names runs: everything this connection can do but what is on request only.
+    /// Procedures of a run without names: all that this connection can do, except those on request
+    /// only.
     pub fn usual(procedures: &[Arc<Procedure>], connection: Connection) -> Self {
         let mut usual = Self::default();
         for procedure in procedures {
@@ -39,7 +39,7 @@ impl Selection {
         usual
     }
 
-    /// What shows whether a repair of `part` holds: these procedures, and those that suspect the part somewhere.
+    /// Procedures that show whether a repair of `part` holds: these, and those that suspect the part somewhere.
     pub fn proof(
         procedures: &[Arc<Procedure>],
         connection: Connection,
@@ -68,8 +68,8 @@ impl Selection {
         only
     }
 
-    /// What a run left that broke off: of the procedure under way the step that it broke off and those after it, as that
-    /// procedure is set up again, and all of those that were still to come.
+    /// Rest of a run that broke off: of the procedure under way the broken-off step and the steps after it, as the
+    /// procedure is set up again, and all procedures still to come.
     pub fn rest(run: &Progress) -> Self {
         let mut rest = Self::default();
         for of in &run.procedures {
@@ -88,7 +88,6 @@ impl Selection {
         rest
     }
 
-    /// How much of a procedure is chosen.
     pub fn share(&self, procedure: &Procedure) -> Share {
         let chosen = self.places(procedure).len();
         match chosen {
@@ -98,7 +97,7 @@ impl Selection {
         }
     }
 
-    /// How much of several procedures is chosen.
+    /// Share of several procedures that is chosen.
     pub fn share_of<'a>(&self, procedures: impl IntoIterator<Item = &'a Arc<Procedure>>) -> Share {
         let mut shares = procedures
             .into_iter()
@@ -140,7 +139,7 @@ impl Selection {
         }
     }
 
-    /// What is to be run, in order; procedures of which nothing is chosen are left out.
+    /// Tasks of the choice, in order; procedures of which nothing is chosen are left out.
     pub fn tasks(
         &self,
         procedures: &[Arc<Procedure>],

@@ -16,7 +16,7 @@ use crate::request::Request;
 use crate::{PageContext, Palette};
 use ptu_report::words::{Words, fill};
 
-/// What is done with all of the tree.
+/// Act on the whole tree.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Choice {
     All,

@@ -1,4 +1,4 @@
-//! What another page asks to be run: a step, the search for a part, the proof of a repair.
+//! Runs that another page asks for: a step, the search for a part, the proof of a repair.
 
 use std::collections::BTreeSet;
 
@@ -10,20 +10,20 @@ use crate::messages::told;
 use ptu_report::words::fill;
 use ptu_runs::symptoms::Symptom;
 
-/// What another page asks to be run.
+/// Run that another page asks for.
 pub(super) enum Wanted {
     Step {
         procedure: String,
         step: String,
     },
-    /// As few steps as it takes to find the faulty part, or else all.
+    /// Procedures for a faulty part: as few steps as it takes to find the part, or else all.
     Part {
         symptom: Option<Symptom>,
         adaptive: bool,
     },
-    /// What a run left that broke off with the link, once its unit is connected again.
+    /// Rest of a run that broke off with the link, once its unit is connected again.
     Rest,
-    /// These procedures, and those that suspect the part.
+    /// These procedures, and procedures that suspect the part.
     Prove {
         procedures: BTreeSet<String>,
         part: String,

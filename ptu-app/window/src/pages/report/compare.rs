@@ -9,14 +9,14 @@ use ptu_report::naming::DOT;
 use ptu_report::words::Words;
 use ptu_runs::clock;
 
-/// As many runs are offered, the latest first.
+/// Number of runs that are offered, the latest first.
 const MOST: usize = 50;
 
 #[derive(Default)]
 pub struct ComparedWith {
     /// The run it was chosen for, and the two in the order in which they were made.
     chosen: Option<(Id, [Id; 2])>,
-    /// Also what passed in both.
+    /// Steps that passed in both runs are shown, too.
     all: bool,
 }
 

@@ -25,7 +25,7 @@ pub fn named_after(of: SheetOf, before: &str) -> String {
     folder.join(name).to_string_lossy().into_owned()
 }
 
-/// What was typed, with this ending and from the root; none of nothing.
+/// Typed path, with this ending and from the root; none if the field is empty.
 pub fn with_ending(typed: &str, ending: &str) -> Option<PathBuf> {
     let typed = typed.trim();
     let lower = typed.to_ascii_lowercase();

@@ -40,7 +40,7 @@ pub struct ReportPage {
     with: ComparedWith,
 }
 
-/// What a sheet says besides what is stored.
+/// Data of a sheet besides the stored ones.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Asked {
     of: SheetOf,
@@ -76,7 +76,7 @@ impl SheetOf {
 struct Shown {
     of: SheetOf,
     pages: Vec<Page>,
-    /// Its traces with the faults each shows.
+    /// Traces of the run, each with the faults it shows.
     traces: Vec<(Id, String)>,
     /// Something in it did not pass.
     faulty: bool,

@@ -15,7 +15,7 @@ use crate::request::Request;
 use crate::{Destination, PageContext, Palette};
 use ptu_report::words::{Language, Words, fill};
 
-/// What is written, and which of it is pressed first.
+/// Files that can be written; the first is the main button.
 const ENDINGS: [(Look, &str); 3] = [
     (Look::Primary, ".pdf"),
     (Look::Secondary, ".html"),
@@ -79,7 +79,7 @@ impl ReportPage {
         }
     }
 
-    /// What was written, with the way to see and to print it.
+    /// File that was written, with buttons to see and to print it.
     fn open_written(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.report;
         let Some(path) = &self.written else { return };
@@ -119,7 +119,7 @@ fn name_of(words: &Words, ending: &str) -> &'static str {
     }
 }
 
-/// To the diagnosis and to the traces.
+/// Links to the diagnosis and to the traces.
 fn ways_on(ui: &mut Ui, words: &Words, shown: &Shown, go_to: &mut Vec<Destination>) {
     let words = &words.report;
     let diagnosis = Face::new(Look::Quiet, words.to_diagnosis).icon(ICON_TROUBLESHOOT);

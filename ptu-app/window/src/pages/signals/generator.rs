@@ -16,7 +16,7 @@ use ptu_runs::signal::{self, SAMPLE_HZ, Strength, Wave};
 
 /// Room for the value beside a slider, points.
 const VALUE: f32 = 72.0;
-/// How much of a waveform is sketched, s.
+/// Length of the sketched waveform, s.
 const SKETCHED_S: f64 = 0.5;
 /// Height of the sketch, points.
 const SKETCH: f32 = 320.0;
@@ -36,7 +36,7 @@ pub struct Generator {
     sketch: Sketch,
 }
 
-/// How it looks, and what it is the look of.
+/// Sketch of a waveform, and the waveform that it shows.
 #[derive(Default)]
 struct Sketch {
     of: Option<(Wave, Strength)>,
@@ -58,14 +58,14 @@ impl Default for Generator {
     }
 }
 
-/// What is done with what was made.
+/// Act on the waveform that was made.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Order {
     Save,
     Play,
 }
 
-pub struct Made {
+pub struct GeneratedSignal {
     pub wave: Wave,
     pub strength: Strength,
     pub order: Order,
@@ -73,7 +73,12 @@ pub struct Made {
 
 impl Generator {
     /// The orders, of which playing comes first; what is ordered.
-    pub fn orders(&self, ui: &mut Ui, why_not: Option<&str>, words: &Words) -> Option<Made> {
+    pub fn orders(
+        &self,
+        ui: &mut Ui,
+        why_not: Option<&str>,
+        words: &Words,
+    ) -> Option<GeneratedSignal> {
         let said = &words.signals;
         let wave = self.wave();
         let why_not = why_not.or_else(|| wave.is_none().then_some(said.bytes_hint));
@@ -92,7 +97,7 @@ impl Generator {
         if let Some(why) = why_not {
             caption(ui, why);
         }
-        Some(Made {
+        Some(GeneratedSignal {
             wave: wave?,
             strength: self.strength(),
             order: order?,
@@ -135,7 +140,7 @@ impl Generator {
         }
     }
 
-    /// How it looks.
+    /// Draws the waveform.
     pub fn sketch(&mut self, ui: &mut Ui, unit: &Arc<UnitConfig>, context: &PageContext<'_>) {
         let (wave, strength) = (self.wave(), self.strength());
         if let Some(wave) = wave {
@@ -151,7 +156,7 @@ impl Generator {
         }
     }
 
-    /// What is filled in; none if the bytes are none.
+    /// Waveform of the form; none if the form has no bytes.
     fn wave(&self) -> Option<Wave> {
         if !self.is_twc {
             return Some(Wave::Code {

@@ -21,7 +21,6 @@ use ptu_runs::sound::{self, DeviceFound};
 /// Where a thread that reads or records puts how it looks now.
 type Slot = Arc<Mutex<Option<Seen>>>;
 
-/// What there is to choose from.
 struct Offered {
     unit: Arc<UnitConfig>,
     /// Devices for sound, or why there are none.
@@ -77,7 +76,7 @@ impl SignalsPage {
         }
     }
 
-    /// What is read or made, the file and the devices; what is pressed first at the foot.
+    /// Form of the file, the devices and the waveform; its main button stands at the foot.
     fn form(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         let offered = match &self.offered {

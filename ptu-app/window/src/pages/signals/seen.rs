@@ -1,4 +1,5 @@
-//! How a recording looks: what was heard as a list, and below it the drawings of a channel, as in its report.
+//! View of a recording: detected signals as a list, and below them the pictures of a channel, as in the
+//! report.
 
 use eframe::egui::{
     Color32, ColorImage, Context, RichText, ScrollArea, TextureHandle, TextureOptions, Ui, Vec2,
@@ -17,18 +18,18 @@ use ptu_runs::signal::{Picture, Reading};
 
 /// Most rows of what was heard.
 const MOST: usize = 200;
-/// So many drawings are in view at once.
+/// Number of drawings in view at once.
 const IN_VIEW: f32 = 3.0;
 /// The bar by which they are scrolled, points.
 const BAR: f32 = 16.0;
 
-/// What was read or recorded, a picture of each channel.
+/// Reading of a file or recording, with a picture of each channel.
 pub struct Seen {
     pub reading: Reading,
     pub pictures: Vec<Picture>,
 }
 
-/// What is shown, and of which channel.
+/// Shown reading, and its channel.
 #[derive(Default)]
 pub struct View {
     seen: Option<Seen>,
@@ -81,7 +82,7 @@ impl View {
         self.drawn = None;
     }
 
-    /// What was heard, and below it the drawings of a channel.
+    /// List of detected signals, and below it the pictures of a channel.
     pub fn show(&mut self, ui: &mut Ui, words: &Words) {
         let said = &words.signals;
         let Some(seen) = &self.seen else {
@@ -129,7 +130,7 @@ impl View {
     }
 }
 
-/// What was heard, a row each; a narrow table goes without what is seldom looked at.
+/// List of detected signals; a narrow table goes without what is seldom looked at.
 fn heard(ui: &mut Ui, reading: &Reading, words: &Words) {
     let [channel, from, to, kind, what, carrier, rate, level, snr] = report::heads(words);
     let number = |name, wide| Column::new(name, wide).right();

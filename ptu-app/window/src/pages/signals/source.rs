@@ -1,4 +1,4 @@
-//! What is opened, recorded, saved or played: a file, a device, and the work on them.
+//! Sources to open, record, save or play: a file, a device, and the work on them.
 
 use std::path::PathBuf;
 use std::sync::{Arc, PoisonError};
@@ -7,7 +7,7 @@ use eframe::egui::{RichText, Ui};
 use protocol::config::UnitConfig;
 
 use super::Slot;
-use super::generator::{Made, Order};
+use super::generator::{GeneratedSignal, Order};
 use super::seen::Seen;
 use crate::parts::{Done, Face, Job, Look, Told, caption, file_place, pick, usual_folder};
 use crate::{PageContext, Palette};
@@ -42,7 +42,7 @@ impl Default for Source {
     }
 }
 
-/// What is to be done with the file.
+/// Act on the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Asked {
     Open,
@@ -174,7 +174,7 @@ impl Source {
     /// Saves or plays what the generator makes.
     pub fn begin_made(
         &self,
-        made: Made,
+        made: GeneratedSignal,
         job: &mut Job,
         unit: Arc<UnitConfig>,
         context: &mut PageContext<'_>,
@@ -183,7 +183,7 @@ impl Source {
         let (file, device) = (PathBuf::from(self.file.trim()), self.output.clone());
         let told = (words.signals.playing.to_owned(), words.signals.not_done);
         job.begin(context, told, move |_, told| {
-            let Made {
+            let GeneratedSignal {
                 wave,
                 strength,
                 order,
@@ -247,7 +247,7 @@ fn name(channel: Side) -> &'static str {
     }
 }
 
-/// Which channels nobody has calibrated.
+/// Channels that nobody has calibrated.
 fn uncalibrated(
     known: &Calibrations,
     device: &str,

@@ -29,7 +29,7 @@ const DOT_RADIUS: f32 = 2.5;
 const NAMES: f32 = 160.0;
 const STEPS: f32 = 240.0;
 
-/// What is measured: a measurement, and of it one step or all.
+/// The measurement shown, of one step or of all.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Measured {
     measurement: Option<String>,
@@ -37,7 +37,7 @@ pub struct Measured {
     step: Option<(String, String)>,
 }
 
-/// What can be chosen, and the trend of what was.
+/// Choices, and the trend of the chosen measurement.
 struct Known {
     names: Vec<String>,
     steps: Vec<TrendStep>,
@@ -57,7 +57,6 @@ impl ControlChart {
         (self.of.measurement.clone(), self.of.step.clone())
     }
 
-    /// Chooses a measurement and a step.
     pub fn choose(&mut self, measurement: Option<String>, step: Option<(String, String)>) {
         self.of = Measured { measurement, step };
     }
@@ -184,7 +183,7 @@ fn summary(words: &Words, trend: &Trend) -> String {
     text.join(". ")
 }
 
-/// What chance does not explain, and when a limit will be crossed.
+/// Signs that chance does not explain, and the day on which a limit will be crossed.
 fn signs(words: &Words, trend: &Trend) -> Vec<String> {
     let said = &words.statistics;
     let Some(process) = &trend.process else {

@@ -1,4 +1,4 @@
-//! What the history says, as the query thread counts it.
+//! Counts of the history, made by the query thread.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -33,7 +33,7 @@ pub struct Counted {
     pub all: FaultStat,
     /// Faults by month, the oldest first.
     pub months: Vec<Month>,
-    /// What trains ran in the months, or why their distances cannot be read; there are none for a single unit.
+    /// Distances of trains in the months, or why they cannot be read; none for a single unit.
     pub on_the_way: Option<Result<BTreeMap<String, OnTheWay>, Trouble>>,
     pub parts: PartNames,
 }
@@ -83,7 +83,7 @@ impl Counted {
     }
 }
 
-/// Whether the history has this unit; one that comes for the first time has nothing to count.
+/// Whether the history has this unit; a new unit has nothing to count.
 pub fn is_known(store: &Store, unit: Option<&str>) -> Result<bool, Failure> {
     let Some(unit) = unit else { return Ok(true) };
     Ok(store.known_units()?.iter().any(|known| known == unit))

@@ -8,7 +8,7 @@ use crate::parts::{caption, ground};
 use crate::{Palette, Sizes};
 use ptu_report::words::{Words, fill};
 
-/// Of fewer days there is no mean time between faults.
+/// Shortest time for which a mean time between faults is given, days.
 const LEAST_DAYS: f64 = 7.0;
 /// Least width of a card in an engineer's window, points.
 const LEAST_WIDE: f32 = 175.0;

@@ -24,7 +24,7 @@ pub struct LifeView {
     /// The serial number that is shown.
     of: Option<String>,
     found: CachedResponse<(Vec<Life>, PartNames)>,
-    /// What was asked last, and of which data.
+    /// Last query, and the version of its data.
     asked: Option<(String, (usize, u64))>,
 }
 

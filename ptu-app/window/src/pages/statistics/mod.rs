@@ -23,9 +23,9 @@ use counted::{Asked, Counted};
 use ptu_report::fault_months::Month;
 use ptu_report::words::{Words, fill};
 
-/// As many causes have a bar of their own.
+/// Number of causes that have a bar of their own.
 const MOST_CAUSES: usize = 10;
-/// As many months are shown, the last ones.
+/// Number of months that are shown, the last ones.
 const MOST_MONTHS: usize = 24;
 /// A page narrower than this has the charts one above the other, points.
 const BESIDE: f32 = 900.0;
@@ -36,7 +36,7 @@ pub struct StatisticsPage {
     /// Days to look back; none = all there is.
     days: Option<i64>,
     counted: CachedResponse<Counted>,
-    /// What was asked last, and of which data.
+    /// Last query, and the version of its data.
     asked: Option<(Asked, (usize, u64))>,
     life: life::LifeView,
     control: control::ControlChart,

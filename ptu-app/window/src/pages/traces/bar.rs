@@ -13,7 +13,7 @@ use ptu_report::words::{Traces, fill};
 
 /// Least width of the toolbar in which its buttons have words, in heights of a letter.
 const WORDS: f32 = 62.0;
-/// How much one press zooms.
+/// Factor of one zoom.
 pub const ZOOM: f64 = 0.7;
 
 /// True if there is room for words.
@@ -84,7 +84,7 @@ pub fn view(
     roomy
 }
 
-/// How far the train's place was moved back to fit the axis of distances.
+/// Distance by which the train's place was moved back to fit the axis of distances.
 pub fn moved_back(ui: &mut Ui, scene: &TracePlot, words: &Traces) {
     if let Axis::Distance {
         rows_back, back_m, ..

@@ -67,12 +67,12 @@ impl OverlayRequest {
         }
     }
 
-    /// Has the good twin laid behind.
+    /// Asks for the good twin behind the trace.
     pub fn ask_twin(&mut self, scene: &mut TracePlot, context: &PageContext<'_>) {
         self.ask(Some(OverlaySource::Twin), scene, context);
     }
 
-    /// Has a file laid behind.
+    /// Asks for a file behind the trace.
     pub fn ask_file(&mut self, file: &Path, scene: &mut TracePlot, context: &PageContext<'_>) {
         self.ask(Some(OverlaySource::File(file.into())), scene, context);
     }
@@ -117,7 +117,7 @@ impl OverlayRequest {
         }
     }
 
-    /// What the comparison says, and its offset.
+    /// Result of the comparison, and its offset.
     pub fn said(&self, ui: &mut Ui, scene: &mut TracePlot, context: &mut PageContext<'_>) {
         if self.is_pending() {
             ui.spinner();
@@ -166,7 +166,7 @@ impl OverlayRequest {
     }
 }
 
-/// What a file is called in lists and above the lanes.
+/// Name of a file in lists and above the lanes.
 pub fn file_name(file: &Path) -> String {
     let name = file.file_name().unwrap_or(file.as_os_str());
     name.to_string_lossy().into_owned()

@@ -18,7 +18,7 @@ const ROWS: usize = 2;
 /// Links shown at most; a fault that comes every second would fill the page.
 const LINKS: usize = 40;
 
-/// What happened, each a way to where it did.
+/// Events of the trace, each a link to its place.
 pub fn links(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
     let palette = Palette::of(ui);
     let opened = scene.opened().clone();

@@ -17,7 +17,7 @@ use ptu_report::trace_view::{Kind, TracePlot};
 use ptu_report::words::fill;
 use ptu_runs::new_file::{NewFile, cannot_write};
 
-/// What is to be written, and what is under way.
+/// Choice of the export, and its work.
 #[derive(Default)]
 pub struct Export {
     /// Path without its ending.
@@ -28,7 +28,7 @@ pub struct Export {
 }
 
 impl Export {
-    /// Another trace is open; this is the name for what is exported of it.
+    /// Takes the name for exports of another trace, which is open now.
     pub fn name_after(&mut self, name: String) {
         self.name = name;
     }

@@ -6,7 +6,7 @@ use super::bar::ZOOM;
 use crate::parts::lane;
 use ptu_report::trace_view::{Cursor, TracePlot};
 
-/// How much one point of wheel zooms.
+/// Zoom for one point of the wheel.
 const WHEEL: f64 = 0.005;
 /// Share of the view one press of an arrow moves.
 const PAN: f64 = 0.1;

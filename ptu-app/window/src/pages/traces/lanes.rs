@@ -9,6 +9,7 @@ use super::bar;
 use super::compared_trace::file_name;
 use super::events::{self, STRIP};
 use super::input::{self, Drag};
+use super::lane_columns::LaneColumns;
 use super::notes::TraceNotes;
 use super::row::{self, GAP, Scratch, Sheet};
 use crate::Palette;
@@ -17,15 +18,7 @@ use ptu_report::trace_view::{Cursor, Kind, OverlaySource, TracePlot};
 use ptu_report::words::Words;
 use ptu_runs::clock;
 
-/// Room for names left of the lanes, and for the values beside their axes.
-const NAMES: f32 = 150.0;
-pub const TICKS: f32 = 52.0;
-/// Room for a value under a cursor.
-const VALUE: f32 = 92.0;
-/// Narrowest lanes.
-const NARROWEST: f32 = 50.0;
-
-/// What painting keeps from one frame to the next.
+/// Layout that painting keeps from one frame to the next.
 pub struct LaneCache {
     /// Where the lanes with all around them were painted.
     pub rect: Rect,
@@ -39,39 +32,6 @@ impl Default for LaneCache {
             rect: Rect::NOTHING,
             drag: Drag::default(),
             scratch: Scratch::default(),
-        }
-    }
-}
-
-/// Where the parts of the picture are, from left to right.
-#[derive(Clone, Copy)]
-pub struct LaneColumns {
-    /// Left edge of the names.
-    pub names: f32,
-    /// Left edge of the lanes.
-    pub left: f32,
-    /// Right edge of the lanes.
-    pub right: f32,
-    /// Right edge of the values.
-    pub end: f32,
-}
-
-impl LaneColumns {
-    /// Where the values of a column are, at the height of `beside`.
-    pub fn value(&self, column: usize, beside: Rect) -> Rect {
-        let right = self.right + (column + 1) as f32 * VALUE;
-        Rect::from_x_y_ranges(right - VALUE + 6.0..=right - 2.0, beside.y_range())
-    }
-
-    pub fn of(ui: &Ui, all: Rect, values: usize) -> Self {
-        let scroll = &ui.spacing().scroll;
-        let end = all.right() - scroll.bar_width - scroll.bar_outer_margin - 2.0;
-        let left = all.left() + NAMES + TICKS;
-        Self {
-            names: all.left(),
-            left,
-            right: (end - values as f32 * VALUE).max(left + NARROWEST),
-            end,
         }
     }
 }
@@ -164,7 +124,8 @@ impl LaneCache {
     }
 }
 
-/// What is shown, and in grey the trace behind it: for a picture that is kept without the window.
+/// Name of the shown trace, and in grey of the trace behind it, for a picture kept without the
+/// window.
 fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
     let opened = sheet.scene.opened();
     let line = |row: f32, text: String, colour| {
@@ -188,7 +149,7 @@ fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
     }
 }
 
-/// What is told at the right, under the cursors or else under the pointer: heads, and rows of the values.
+/// Values at the right, under the cursors or else under the pointer: heads, and rows of the values.
 fn told(scene: &TracePlot, pointer_row: Option<usize>) -> (Vec<String>, [Option<usize>; 2]) {
     let at = |row: usize| bar::place(scene, row);
     match [Cursor::A, Cursor::B].map(|cursor| scene.cursor(cursor)) {

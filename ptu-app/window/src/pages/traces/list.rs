@@ -20,7 +20,7 @@ pub struct TraceList {
     runs: CachedResponse<Vec<ListedRun>>,
     filter: String,
     units: UnitFilter,
-    /// What fits the filter, by run and trace; computed again when either changes.
+    /// Runs and traces that fit the filter; computed again when either changes.
     shown: Vec<(usize, Option<usize>)>,
     /// Version of the data it was asked for.
     version: (usize, u64),

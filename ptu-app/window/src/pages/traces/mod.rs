@@ -6,6 +6,7 @@ mod dropped;
 mod events;
 mod export;
 mod input;
+mod lane_columns;
 mod lanes;
 mod list;
 mod notes;

@@ -6,7 +6,7 @@ use eframe::egui::{
     Align, Color32, Label, Layout, Rect, RichText, Stroke, Ui, UiBuilder, pos2, vec2,
 };
 
-use super::lanes::{LaneColumns, TICKS};
+use super::lane_columns::{LaneColumns, TICKS};
 use super::table;
 use crate::Palette;
 use crate::parts::lane;
@@ -20,16 +20,16 @@ use ptu_report::words::Words;
 const QUANTITY: f32 = 74.0;
 const CHOICE: f32 = 26.0;
 const BIT: f32 = 24.0;
-/// How much taller a lane is that holds two signals one above the other.
+/// Height of a lane with two signals one above the other, as a multiple of the usual one.
 const TWO: f32 = 1.7;
-/// How much taller than usual a quantity gets where there is room.
+/// Greatest height of a quantity where there is room, as a multiple of the usual one.
 const TALLEST: f32 = 2.0;
 /// Height of a name among several in a lane.
 const LINE: f32 = 28.0;
 /// Between lanes.
 pub const GAP: f32 = 4.0;
 
-/// What lanes are painted from.
+/// Everything from which lanes are painted.
 pub struct Sheet<'a> {
     /// The trace as it is looked at.
     pub scene: &'a TracePlot,
@@ -173,7 +173,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// The same signal of the trace behind.
+    /// This signal in the trace behind.
     fn other(&self, signal: &str) -> Option<Source<'_>> {
         let behind = self.scene.behind()?;
         let view = &behind.overlay.view;

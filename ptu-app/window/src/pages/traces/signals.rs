@@ -7,10 +7,10 @@ use crate::{PageContext, Palette};
 use ptu_report::trace_view::{Summary, TracePlot, bare, toggled};
 use ptu_report::words::fill;
 
-/// How much one press makes a lane taller.
+/// Factor by which one press makes a lane taller.
 const TALLER: f32 = 1.25;
 
-/// What was pressed at a lane.
+/// Act at a lane.
 enum LaneAction {
     Up(usize),
     Down(usize),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eframe::egui::{Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::compared_trace::OverlayRequest;
-use super::lanes::LaneColumns;
+use super::lane_columns::LaneColumns;
 use super::row::{GAP, Scratch, Sheet};
 use crate::parts::lane::{self, AXIS_HEIGHT};
 use crate::{PageContext, Palette};
@@ -13,7 +13,7 @@ use ptu_report::trace_view::TracePlot;
 use ptu_report::trace_view::listing::OpenTrace;
 use ptu_report::words::Words;
 
-/// What is shown before and after the trigger, s.
+/// Time shown before and after the trigger, s.
 const BEFORE_S: f64 = 3.0;
 const AFTER_S: f64 = 1.5;
 

@@ -1,4 +1,4 @@
-//! What judges times by the clock: one after the other, when nothing else runs.
+//! Tests that judge times by the clock: one after the other, when nothing else runs.
 
 mod idle;
 mod question;

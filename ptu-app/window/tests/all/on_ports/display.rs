@@ -28,7 +28,7 @@ const RUN: [&str; 2] = ["494", "68"];
 /// Where a field is on the page of sheets.
 const FIND: [&str; 2] = ["190", "90"];
 
-/// It is clicked again after this time.
+/// Time after which the click is repeated.
 const AGAIN: Duration = Duration::from_secs(3);
 
 #[test]

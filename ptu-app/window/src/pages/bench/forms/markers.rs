@@ -8,7 +8,7 @@ pub struct MarkerForm {
     pub section: u16,
     /// Marker that is moved, 1 to 4.
     pub psm: u8,
-    /// How far beyond its place, m.
+    /// Distance beyond the marker's place, m.
     pub by_m: f64,
 }
 

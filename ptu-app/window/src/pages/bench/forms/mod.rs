@@ -1,4 +1,4 @@
-//! What is filled in by hand, and the stimulus it makes. Speeds are km/h and accelerations km/h/s, as
+//! Forms that are filled in by hand, and their stimuli. Speeds are km/h and accelerations km/h/s, as
 //! people say them; a stimulus has metres and seconds.
 
 mod code;
@@ -37,7 +37,7 @@ pub struct Forms {
     pub test_motion: MotionForm,
     /// The TEST board's TWC frame.
     pub test_station: StationForm,
-    /// What stimuli are looked for by.
+    /// Text by which stimuli are looked for.
     pub find: String,
 }
 

@@ -3,7 +3,7 @@
 use btu_rig::stimulus::{Stimulus, TachoCondition};
 use protocol::Speed;
 
-/// Both inputs of the TEST board's speed signal.
+/// Bits of both inputs of the TEST board's speed signal.
 const BOTH_CHANNELS: u8 = 0b11;
 
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub struct MotionForm {
     pub backward: bool,
 }
 
-/// What a channel can be made to be.
+/// Condition that a channel can be given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TachoKind {
     Good,
@@ -34,7 +34,7 @@ pub enum TachoKind {
     Noisy,
     /// Pulses of another speed.
     Scaled,
-    /// Its direction the wrong way round.
+    /// The tachometer gives the wrong direction.
     Reversed,
 }
 

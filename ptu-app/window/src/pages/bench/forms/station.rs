@@ -42,7 +42,7 @@ impl StationForm {
         }
     }
 
-    /// As the wayside tells a train at the start of a section; orders and the door side stay.
+    /// Fills in the data of a wayside at the start of a section; orders and the door side stay.
     pub fn departing(&mut self, section: &Section) {
         let door_side = self.data.door_side;
         self.told(StationData {
@@ -51,7 +51,7 @@ impl StationForm {
         });
     }
 
-    /// As the wayside tells a train at the end of a section; orders stay.
+    /// Fills in the data of a wayside at the end of a section; orders stay.
     pub fn arriving(&mut self, section: &Section, line: &Line) {
         let next = line.station_after(section);
         self.told(StationData::at_arrival(section, next));

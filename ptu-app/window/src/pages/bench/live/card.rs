@@ -110,7 +110,7 @@ pub fn write(ui: &Ui, left_middle: Pos2, width: f32, text: RichText) {
     ui.painter().galley(at, galley, ui.visuals().text_color());
 }
 
-/// Gives what is painted a name that screen readers tell, and that is told in full when pointed at.
+/// Names a painted area for screen readers, and shows the full name under the pointer.
 pub fn named(ui: &Ui, rect: Rect, salt: impl AsIdSalt, name: impl Fn() -> String) {
     let response = ui.interact(rect, ui.scope_id().with(salt), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name()));

@@ -223,7 +223,7 @@ fn legend(
     }
 }
 
-/// How a speed is drawn on the dial, in small.
+/// Small picture of a speed's mark on the dial.
 fn swatch(painter: &Painter, at: Pos2, place: usize, colour: Color32) {
     let triangle = |tip: Vec2, left: Vec2, right: Vec2| {
         let points = vec![at + tip, at + left, at + right];

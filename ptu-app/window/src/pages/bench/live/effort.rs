@@ -63,7 +63,7 @@ pub fn effort(ui: &mut Ui, view: &View<'_>, palette: &Palette) {
     );
 }
 
-/// What one bar shows: how far it goes from its middle, and the words beside it.
+/// A bar: how far it goes from its middle, and the words beside it.
 struct Bar {
     share: Option<f32>,
     said: String,

@@ -15,7 +15,7 @@ const COLUMNS: usize = 2;
 /// Room between lamps.
 const BETWEEN: f32 = 4.0;
 
-/// Whether a lamp is lit; unknown without a unit.
+/// State of a lamp; unknown without a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LampState {
     On,
@@ -25,7 +25,7 @@ enum LampState {
 
 struct Lamp {
     name: &'static str,
-    /// What it says when it is on, and when it is off.
+    /// Texts of the lamp when it is on, and when it is off.
     says: [&'static str; 2],
     lit: LampState,
     colour: Color32,

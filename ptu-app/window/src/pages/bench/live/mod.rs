@@ -28,9 +28,7 @@ use ptu_runs::run::BenchSetup;
 
 pub struct View<'a> {
     pub words: &'static Words,
-    /// The bench as it is now.
     pub seen: &'a BenchSnapshot,
-    /// What the bench is made of.
     pub setup: &'a BenchSetup,
     /// Section laid along the way by hand.
     pub laid: Option<u16>,

@@ -32,7 +32,7 @@ pub fn strip(ui: &mut Ui, strip: Option<&Strip>, view: &View<'_>, palette: &Pale
     }
 }
 
-/// What the strip shows, in words.
+/// Text of the strip, for screen readers.
 fn said(strip: Option<&Strip>, view: &View<'_>, words: &Bench) -> String {
     let Some(strip) = strip else {
         return words.no_section.to_owned();

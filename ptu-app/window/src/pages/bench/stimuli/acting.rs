@@ -1,4 +1,4 @@
-//! What is given by hand at present, each with a button that takes it away.
+//! Stimuli that act at present, each with a button that takes it away.
 
 use btu_rig::stimulus::{DoorState, Stimulus, TachoCondition, WaysideCondition};
 use eframe::egui::{Align, Layout, RichText, Ui};

@@ -9,7 +9,7 @@ use super::buttons::{StimulusPanel, named_number, number, row};
 use crate::pages::bench::forms::{CodeForm, NO_DRIFT, StimulusPath};
 use ptu_report::words::Bench;
 
-/// What a 16-bit field holds.
+/// Largest value of a 16-bit field.
 const MAX_HZ: f64 = 65_535.0;
 const MAX_RATE_HZ: f64 = 655.0;
 const MAX_MV: f64 = 65_535.0;

@@ -22,7 +22,7 @@ const NAME: f32 = 94.0;
 const GAP: f32 = 3.0;
 const BESIDE: f32 = 5.0;
 
-/// What the page remembers of what was given, because no signal tells it.
+/// Stimuli that the page remembers, because no signal tells them.
 #[derive(Debug, Default)]
 pub struct StimuliGiven {
     pub laid: Option<u16>,
@@ -40,7 +40,6 @@ pub struct StimulusPanel<'a> {
 }
 
 impl StimulusPanel<'_> {
-    /// How the unit is reached.
     pub fn connection(&self) -> Connection {
         self.bench.live().connection.unwrap_or(Connection::Btu)
     }
@@ -91,7 +90,7 @@ impl StimulusPanel<'_> {
         }
     }
 
-    /// Gives it, unless something has changed since the frame began.
+    /// Applies the stimulus, unless something has changed since the frame began.
     pub fn give(&mut self, stimulus: Stimulus) {
         match self.bench.apply(stimulus) {
             Ok(()) => match stimulus {

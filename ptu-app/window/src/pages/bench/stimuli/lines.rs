@@ -8,7 +8,6 @@ use protocol::signal::Signal;
 use super::buttons::{StimulusPanel, row};
 use ptu_report::words::Bench;
 
-/// Switches of the train, with their names.
 fn switches(words: &Bench) -> [(TrainSwitch, &'static str); 11] {
     [
         (TrainSwitch::OtherCab, words.other_cab),

@@ -101,7 +101,7 @@ pub fn stimuli(ui: &mut Ui, forms: &mut Forms, setup: &BenchSetup, hand: &mut St
         });
 }
 
-/// Who goes on with the keyboard is shown where.
+/// Scrolls the page to the field that the keyboard reaches.
 fn follow_focus(ui: &Ui) {
     let focused = ui.memory(|memory| memory.focused());
     let response = focused.and_then(|id| ui.ctx().read_response(id));

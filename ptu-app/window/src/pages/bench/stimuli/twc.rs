@@ -11,7 +11,7 @@ use super::markers::sections;
 use crate::pages::bench::forms::{StationForm, StimulusPath};
 use ptu_report::words::Bench;
 
-/// In the order of the labels of the signal `wayside`.
+/// Conditions in the order of the labels of the signal `wayside`.
 const CONDITIONS: [WaysideCondition; 3] = [
     WaysideCondition::Silent,
     WaysideCondition::Good,

@@ -1,0 +1,432 @@
+//! Plausibility of the speed of both tachometers: a speed that no train can have is not believed.
+//!
+//! A train slows by its adhesion at most. Where both inputs fall faster, pulses are missing: a connector, the supply
+//! of both sensors, wheels that are locked. Then the train counts as moving until its brake has been applied for as
+//! long as a stop from the last speed that was believed takes at the least rate, and TCMS, where it tells its speed,
+//! says that its own axles stand. The train also counts as moving while TCMS tells of axles that turn and no
+//! tachometer does, or that turn much faster than both. Power that moves nothing from rest is cut.
+//!
+//! A clock that is fast makes all speeds too low: where TCMS's counter contradicts the clock, speeds are raised by
+//! the same share.
+
+use protocol::config::TachoConfig;
+use protocol::event::Event;
+use protocol::{Duration, Instant, SCAN, Speed};
+
+use crate::kernel::EventLog;
+use crate::timer::{Edge, OnDelay};
+
+const GRAVITY_MPS2: f64 = 9.81;
+/// A lower speed comes from one pulse or none.
+const NO_PULSES: Speed = Speed::from_kmh(1.0);
+/// Time for which TCMS must tell of a speed that no tachometer sees: frames, its own lag, and the tachometers' window.
+const CONTRADICTS: Duration = Duration::from_ms(800);
+/// Time for which pulses must be back.
+const BACK: Duration = Duration::from_ms(1_000);
+
+/// Evidence against which the speed is held in a scan.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Witness {
+    /// Speed of the axles that TCMS measures; `None` = it does not tell.
+    pub tcms_speed: Option<Speed>,
+    /// Share by which the unit's clock is faster than TCMS's; 0 if it is not.
+    pub clock_ahead: f64,
+    /// Power is asked for, and nothing that ATP knows of holds the train.
+    pub powers: bool,
+    /// A person acknowledges: the start of the train is awaited again.
+    pub acknowledge: bool,
+    /// The speeds come from test signals, which change as a tester likes.
+    pub tested: bool,
+    pub unguarded: bool,
+}
+
+impl Witness {
+    /// TCMS tells of a train that moves.
+    pub fn tcms_moves(&self, config: &TachoConfig) -> bool {
+        self.tcms_speed
+            .is_some_and(|told| told.kmh() > config.tcms_moves_kmh)
+    }
+
+    /// The speed that TCMS tells of, where both tachometers are much slower.
+    fn contradicts(&self, speed: Speed, config: &TachoConfig) -> Option<Speed> {
+        let faster_kmh = match speed < NO_PULSES {
+            true => config.tcms_moves_kmh,
+            false => speed.kmh() + config.tcms_difference_kmh,
+        };
+        self.tcms_speed.filter(|told| told.kmh() > faster_kmh)
+    }
+}
+
+/// Compares the speeds from scan to scan.
+#[derive(Clone, Debug, Default)]
+pub struct CredibleSpeed {
+    /// Speed that follows the measured one as fast as adhesion lets a train, m/s.
+    reference_mps: f64,
+    /// The reference of each tachometer, m/s.
+    each_mps: [f64; 2],
+    /// Last reference that was near the measured speed, m/s.
+    last_mps: f64,
+    falls: OnDelay,
+    vanishes: OnDelay,
+    contradicts: OnDelay,
+    back: OnDelay,
+    /// Speed that the train may still have, m/s; `None` = the measured speed is believed.
+    doubted_mps: Option<f64>,
+    /// The speed by which TCMS contradicts, m/s; 0 = it does not.
+    told_mps: f64,
+    powerless: OnDelay,
+    cut: bool,
+    told: Edge,
+    clock_told: Edge,
+    clock_fast: f64,
+}
+
+impl CredibleSpeed {
+    /// One scan with the speeds of both tachometers.
+    pub fn step(
+        &mut self,
+        now: Instant,
+        speeds: [Speed; 2],
+        pulses: bool,
+        witness: Witness,
+        config: &TachoConfig,
+        log: &mut EventLog,
+    ) {
+        let speed = speeds[0].max(speeds[1]);
+        self.hold_clock(now, witness, config, log);
+        if witness.unguarded || witness.tested {
+            *self = Self {
+                reference_mps: speed.mps(),
+                last_mps: speed.mps(),
+                each_mps: speeds.map(Speed::mps),
+                clock_fast: self.clock_fast,
+                clock_told: self.clock_told,
+                ..Self::default()
+            };
+            return;
+        }
+        if self.one_rolls_on(speeds, config) && self.doubted_mps.is_none() {
+            self.reference_mps = speed.mps();
+        }
+        self.follow(now, speed, config, log);
+        let told = witness.contradicts(speed, config);
+        self.told_mps = told.map_or(0.0, Speed::mps);
+        let lasts = self.contradicts.update(now, told.is_some(), CONTRADICTS);
+        if let Some(told) = told.filter(|_| lasts && self.doubted_mps.is_none()) {
+            self.doubted_mps = Some(0.0);
+            log.push(now, Event::SpeedContradicted, i32::from(told.to_cms()));
+        }
+        self.settle(now, speed, witness, config);
+        self.await_start(now, pulses, witness, config, log);
+    }
+
+    /// Compares the clock with TCMS's; a share that late frames can cause does not count.
+    fn hold_clock(
+        &mut self,
+        now: Instant,
+        witness: Witness,
+        config: &TachoConfig,
+        log: &mut EventLog,
+    ) {
+        let ahead = witness.clock_ahead;
+        let off = ahead > config.clock_share && !witness.unguarded;
+        self.clock_fast = if off { ahead } else { 0.0 };
+        if self.clock_told.rises(off) {
+            log.push(
+                now,
+                Event::ClockContradicted,
+                libm::round(ahead * 1e4) as i32,
+            );
+        }
+    }
+
+    /// Whether one tachometer turns and falls no faster than adhesion allows: then the other one is at fault.
+    fn one_rolls_on(&mut self, speeds: [Speed; 2], config: &TachoConfig) -> bool {
+        let most_mps = config.adhesion * GRAVITY_MPS2 * SCAN.as_secs();
+        let mut rolls = false;
+        for (each_mps, speed) in self.each_mps.iter_mut().zip(speeds) {
+            *each_mps = speed
+                .mps()
+                .clamp(*each_mps - most_mps, *each_mps + most_mps);
+            let fallen_kmh = (*each_mps - speed.mps()) * 3.6;
+            rolls |= speed >= NO_PULSES && fallen_kmh <= config.fall_kmh;
+        }
+        rolls
+    }
+
+    /// Notices a speed that falls faster than adhesion lets it.
+    fn follow(&mut self, now: Instant, speed: Speed, config: &TachoConfig, log: &mut EventLog) {
+        let most_mps = config.adhesion * GRAVITY_MPS2 * SCAN.as_secs();
+        let low_mps = self.reference_mps - most_mps;
+        self.reference_mps = speed.mps().clamp(low_mps, self.reference_mps + most_mps);
+        let fallen_kmh = (self.reference_mps - speed.mps()) * 3.6;
+        if fallen_kmh <= config.fall_kmh {
+            self.last_mps = self.reference_mps;
+        }
+        let delay = Duration::from_ms(u64::from(config.fall_ms));
+        let silent = speed < NO_PULSES && fallen_kmh > config.fall_kmh;
+        let vanishes = self.vanishes.update(now, silent, delay);
+        let span = Duration::from_ms(u64::from(config.difference_ms));
+        let falls = self
+            .falls
+            .update(now, fallen_kmh > config.difference_kmh, span);
+        if (vanishes || falls) && self.doubted_mps.is_none() {
+            self.doubted_mps = Some(self.last_mps);
+            log.push(
+                now,
+                Event::SpeedVanished,
+                libm::round(self.last_mps * 100.0) as i32,
+            );
+        }
+    }
+
+    /// Ends the doubt: the train must have stopped by now, or pulses are back.
+    fn settle(&mut self, now: Instant, speed: Speed, witness: Witness, config: &TachoConfig) {
+        let Some(doubted_mps) = &mut self.doubted_mps else {
+            return;
+        };
+        // The emergency brake is applied meanwhile.
+        *doubted_mps = (*doubted_mps - config.least_brake_mps2 * SCAN.as_secs()).max(0.0);
+        let stopped = *doubted_mps == 0.0 && !witness.tcms_moves(config);
+        let turns = speed.kmh() > config.standstill_kmh
+            && self.reference_mps <= speed.mps()
+            && self.told_mps == 0.0;
+        if stopped || self.back.update(now, turns, BACK) {
+            self.doubted_mps = None;
+            self.back.clear();
+            self.reference_mps = speed.mps();
+        }
+    }
+
+    /// Cuts power that moves nothing, until it does or somebody acknowledges.
+    fn await_start(
+        &mut self,
+        now: Instant,
+        pulses: bool,
+        witness: Witness,
+        config: &TachoConfig,
+        log: &mut EventLog,
+    ) {
+        if pulses {
+            self.powerless.clear();
+            self.cut = false;
+        }
+        let span = Duration::from_ms(u64::from(config.no_pulses_ms));
+        let waits = witness.powers && !pulses && !self.cut;
+        self.cut |= self.powerless.update(now, waits, span);
+        self.cut &= !witness.acknowledge;
+        if self.told.rises(self.cut) {
+            log.push(now, Event::NoPulses, config.no_pulses_ms as i32);
+        }
+    }
+
+    /// Speed that the train may still have beside what is measured.
+    pub fn doubted(&self) -> Option<Speed> {
+        let doubted_mps = self.doubted_mps?;
+        Some(Speed::from_mps(doubted_mps.max(self.told_mps)))
+    }
+
+    /// Share by which speeds are too low, because the clock is fast.
+    pub fn clock_fast(&self) -> f64 {
+        self.clock_fast
+    }
+
+    /// Power is cut: it moves nothing.
+    pub fn cuts_power(&self) -> bool {
+        self.cut
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::config::UnitConfig;
+
+    struct Train {
+        credible: CredibleSpeed,
+        config: UnitConfig,
+        log: EventLog,
+        now: Instant,
+        speed: f64,
+    }
+
+    impl Train {
+        fn at(kmh: f64) -> Self {
+            let text = include_str!("../../../scripts/units/sg100.toml");
+            let mut train = Self {
+                credible: CredibleSpeed::default(),
+                config: UnitConfig::from_toml(text).unwrap(),
+                log: EventLog::default(),
+                now: Instant::ZERO,
+                speed: 0.0,
+            };
+            train.go(kmh / 3.6, 1.0, Witness::default());
+            train.run(1.0, Witness::default());
+            train
+        }
+
+        fn run(&mut self, seconds: f64, witness: Witness) {
+            for _ in 0..(seconds * 100.0) as u32 {
+                self.now += SCAN;
+                let speed = Speed::from_mps(self.speed);
+                let config = &self.config.tacho;
+                self.credible.step(
+                    self.now,
+                    [speed; 2],
+                    self.speed > 0.0,
+                    witness,
+                    config,
+                    &mut self.log,
+                );
+            }
+        }
+
+        /// Drives to a speed at this rate, m/s and m/s².
+        fn go(&mut self, to: f64, mps2: f64, witness: Witness) {
+            while (self.speed - to).abs() > 1e-9 {
+                let step = (to - self.speed).clamp(-mps2 * 0.01, mps2 * 0.01);
+                self.speed += step;
+                self.run(0.01, witness);
+            }
+        }
+
+        fn doubts(&self) -> bool {
+            self.credible.doubted().is_some()
+        }
+    }
+
+    #[test]
+    fn a_train_that_brakes_is_believed_and_one_whose_pulses_vanish_is_not() {
+        for kmh in [5.0, 15.0, 60.0] {
+            let mut train = Train::at(kmh);
+            train.go(0.0, 3.3, Witness::default());
+            train.run(3.0, Witness::default());
+            assert!(!train.doubts(), "{kmh}");
+            let mut train = Train::at(kmh);
+            train.go(0.0, 100.0, Witness::default());
+            train.run(0.2, Witness::default());
+            assert!(train.doubts(), "{kmh}");
+            // As long as a stop takes at the least rate, 0.8 m/s².
+            train.run(kmh / 3.6 / 0.8 - 0.5, Witness::default());
+            assert!(train.doubts(), "{kmh}");
+            train.run(2.0, told(15.0));
+            assert!(train.doubts(), "TCMS says that it moves");
+            train.run(0.02, Witness::default());
+            assert!(!train.doubts(), "{kmh}");
+        }
+    }
+
+    /// A tachometer that counted too much is in order again while the train brakes; the other one
+    /// shows that.
+    #[test]
+    fn noise_that_ends_is_no_fall() {
+        let mut train = Train::at(30.0);
+        for scan in 0..400 {
+            let mps = (30.0 / 3.6 - 0.03 * f64::from(scan)).max(0.0);
+            let noise = if scan < 20 { 3.0 } else { 0.0 };
+            let speeds = [mps + noise, mps].map(Speed::from_mps);
+            train.now += SCAN;
+            let config = &train.config.tacho;
+            let witness = Witness::default();
+            train.credible.step(
+                train.now,
+                speeds,
+                mps > 0.0,
+                witness,
+                config,
+                &mut train.log,
+            );
+            assert!(!train.doubts(), "{scan}");
+        }
+    }
+
+    #[test]
+    fn half_of_the_speed_gone_at_once_is_not_believed_either() {
+        let mut train = Train::at(60.0);
+        train.go(30.0 / 3.6, 100.0, Witness::default());
+        train.run(0.7, Witness::default());
+        assert!(train.doubts());
+        train.run(5.0, Witness::default());
+        assert!(!train.doubts(), "pulses are back");
+    }
+
+    /// A TCMS that tells of axles at this speed, km/h.
+    fn told(kmh: f64) -> Witness {
+        Witness {
+            tcms_speed: Some(Speed::from_kmh(kmh)),
+            ..Witness::default()
+        }
+    }
+
+    /// As long as TCMS tells of motion, the train counts as moving at that speed.
+    #[test]
+    fn tcms_that_tells_of_motion_is_believed() {
+        let mut train = Train::at(0.0);
+        train.run(0.7, told(15.0));
+        assert!(!train.doubts());
+        train.run(0.2, told(15.0));
+        let doubted_kmh = train.credible.doubted().map(Speed::kmh);
+        assert!(
+            doubted_kmh.is_some_and(|kmh| (kmh - 15.0).abs() < 0.1),
+            "{doubted_kmh:?}"
+        );
+        train.run(6.0, told(3.0));
+        assert!(train.doubts(), "TCMS says that it moves");
+        train.run(0.1, told(1.0));
+        assert!(!train.doubts());
+    }
+
+    /// Both tachometers read low alike, which only TCMS can show: a train at 60 km/h that measures 45. Less than 10
+    /// km/h is what axles slip and slide, and a TCMS slower than the tachometers does not contradict them.
+    #[test]
+    fn tachometers_that_both_read_much_less_than_tcms_are_not_believed() {
+        for (kmh, doubts) in [(60.0, true), (54.0, false), (0.0, false)] {
+            let mut train = Train::at(45.0);
+            train.run(3.0, told(kmh));
+            assert_eq!(train.doubts(), doubts, "TCMS at {kmh}");
+        }
+        let mut train = Train::at(45.0);
+        train.run(30.0, Witness::default());
+        assert!(!train.doubts(), "it does not tell");
+    }
+
+    #[test]
+    fn power_that_moves_nothing_is_cut_until_it_is_acknowledged() {
+        let mut train = Train::at(0.0);
+        let powers = Witness {
+            powers: true,
+            ..Witness::default()
+        };
+        let ms = f64::from(train.config.tacho.no_pulses_ms);
+        train.run(ms / 1e3 - 0.1, powers);
+        assert!(!train.credible.cuts_power());
+        train.run(0.2, powers);
+        assert!(train.credible.cuts_power());
+        train.run(1.0, Witness::default());
+        assert!(train.credible.cuts_power());
+        train.run(
+            0.1,
+            Witness {
+                acknowledge: true,
+                ..Witness::default()
+            },
+        );
+        assert!(!train.credible.cuts_power());
+    }
+
+    #[test]
+    fn test_signals_and_a_dead_guard_are_not_compared() {
+        for (tested, unguarded) in [(true, false), (false, true)] {
+            let mut train = Train::at(60.0);
+            let witness = Witness {
+                tested,
+                unguarded,
+                powers: true,
+                ..told(60.0)
+            };
+            train.go(0.0, 100.0, witness);
+            train.run(10.0, witness);
+            assert!(!train.doubts() && !train.credible.cuts_power());
+        }
+    }
+}
