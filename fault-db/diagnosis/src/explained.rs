@@ -21,12 +21,10 @@ pub struct Cause {
     pub checks: BTreeSet<CheckName>,
 }
 
-/// The part that was found with what it explains; none unless one part is certain.
+/// The likeliest of the parts one of which has failed for certain, with what it explains; none where no part is certain.
 pub fn cause(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) -> Option<Cause> {
     let model = belief.model;
-    let [found] = weights.set(model.settings) else {
-        return None;
-    };
+    let found = weights.set.first()?;
     let effects = effects_of(belief, weights, &found.lru);
     let is_explained = |share: &dyn Fn(usize) -> f64| {
         let shares = effects

@@ -3,8 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use protocol::LruId;
+use protocol::{LruId, Verdict};
 use serde::Serialize;
+
+use super::belief::Belief;
 
 /// What to measure, and where, as the file of relations has it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -85,4 +87,43 @@ impl Relations {
             parts,
         }
     }
+}
+
+/// Parts of the bench of a group with a part of the unit: what comes from the bench cannot tell the bench from the part that
+/// the bench reaches. None where no trace deviates first at a signal that the part of the bench makes, or a step failed that
+/// judges the part of the unit without the bench.
+pub fn rivals<'m>(belief: &Belief<'m, '_>, part: &LruId) -> BTreeSet<&'m LruId> {
+    let relations = belief.model.relations;
+    if relations.of_bench.contains(part) || fails_without_bench(belief, part) {
+        return BTreeSet::new();
+    }
+    let groups = relations.groups.iter();
+    let with = groups.filter(|group| group.parts.contains(part));
+    let bench = with
+        .flat_map(|group| &group.parts)
+        .filter(|part| relations.of_bench.contains(*part));
+    bench
+        .filter(|bench| may_deviate_at(belief, bench))
+        .collect()
+}
+
+/// Whether a trace deviates first at a signal that a part makes; any trace may where none was held against a sound unit's.
+fn may_deviate_at(belief: &Belief<'_, '_>, part: &LruId) -> bool {
+    let makers = &belief.model.relations.makers;
+    let deviating = belief.residuals();
+    let is_made = |signal: &String| makers.get(signal).is_some_and(|all| all.contains(part));
+    deviating.is_empty() || deviating.iter().any(is_made)
+}
+
+/// Whether a step failed that judges the part and that the bench has no part in.
+fn fails_without_bench(belief: &Belief<'_, '_>, part: &LruId) -> bool {
+    let dictionary = belief.model.dictionary;
+    let procedures = &belief.model.relations.without_bench;
+    belief.steps().iter().any(|step| {
+        let is_judged = dictionary.suspects.get(step.place) == Some(&Some(part.clone()));
+        let shown = belief.shown(step.place);
+        is_judged
+            && procedures.contains(&dictionary.checks[step.place].procedure)
+            && shown.is_some_and(|shown| shown.result != Verdict::Passed)
+    })
 }

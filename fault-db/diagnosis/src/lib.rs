@@ -14,6 +14,7 @@ mod belief;
 mod cell;
 mod common;
 mod conclusion;
+mod counted;
 mod dictionary;
 mod explained;
 mod groups;
@@ -47,7 +48,9 @@ pub use next_check::NextCheck;
 pub use observation::{CLOCK_WRONG, CheckName, Observation, ObservedStep, Sign, is_observed};
 pub use proof::Proof;
 pub use reasons::{Known, Reason, Repaired, StepReason, ValueReason};
-pub use settings::{ConclusionSettings, LikelihoodSettings, LogSettings, PoolSettings, Settings};
+pub use settings::{
+    ConclusionSettings, CountedSettings, LikelihoodSettings, LogSettings, PoolSettings, Settings,
+};
 pub use strategy::{Strategy, suite_s};
 pub use verdict::{Assessment, Candidate, Diagnosis, Finding, PartProbability};
 pub use weights::FaultText;

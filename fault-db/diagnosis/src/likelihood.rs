@@ -135,11 +135,29 @@ impl Expected<'_> {
             return (1.0 - missing) * anywhere;
         }
         let least = scale.least_sd(least_spread);
-        let sd = values.sd().hypot(least) * (1.0 + 1.0 / f64::from(values.n)).sqrt();
+        let sd = predicted_sd(values, least);
         let range = (scale.high - scale.low) + 6.0 * least;
         let near = range * student4((value - values.mean) / sd) / sd;
         (1.0 - missing) * (anywhere + (1.0 - anywhere) * near)
     }
+
+    /// Whether a measured value is this many standard deviations or more from those counted, or is missing where none ever was;
+    /// of a measurement that was never counted, none is.
+    pub fn is_far(&self, name: &str, value: Option<f64>, scale: &Scale, far: f64) -> bool {
+        let Some(values) = self.cell.values.get(name) else {
+            return false;
+        };
+        let Some(value) = value.filter(|value| value.is_finite()) else {
+            return values.missing == 0;
+        };
+        let sd = predicted_sd(values, scale.least_sd(self.settings.least_spread));
+        values.n == 0 || (value - values.mean).abs() > far * sd
+    }
+}
+
+/// Standard deviation of the next value after those counted, at least `least`.
+fn predicted_sd(values: &Values, least: f64) -> f64 {
+    values.sd().hypot(least) * (1.0 + 1.0 / f64::from(values.n)).sqrt()
 }
 
 impl LikelihoodSettings {

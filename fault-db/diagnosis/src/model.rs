@@ -299,6 +299,17 @@ impl<'a> Model<'a> {
         likelihood_of_values(expected, step, |name| self.scales.get(&place)?.get(name))
     }
 
+    /// Values of a step that are far from those counted under an effect, or missing though none ever was.
+    pub fn far_values(&self, effect: Hypothesis, place: usize, step: &ObservedStep) -> usize {
+        let expected = self.expected(effect, place);
+        let far = self.settings.counted.far;
+        let is_far = |(name, value): &&(String, Option<f64>)| {
+            let scale = self.scales.get(&place).and_then(|scales| scales.get(name));
+            scale.is_some_and(|scale| expected.is_far(name, *value, scale, far))
+        };
+        step.values.iter().filter(is_far).count()
+    }
+
     /// Time that a check takes on a healthy unit, s.
     pub fn healthy_time_s(&self, place: usize) -> f64 {
         let cell = self.dictionary.healthy.cells.get(&place);

@@ -1,10 +1,11 @@
-//! How likely each part is, whether its fault was counted or not: all evidence pooled.
+//! How likely each part is, whether its fault was counted or not.
 //!
-//! Bayes' rule alone is too sure of itself where a fault that nobody has counted acts like one of another part. So the
-//! logarithm of a part's posterior counts with a weight below 1 and to a limit only, a nearer one where the run is not as
-//! counted under the likeliest fault, beside what points at a part whatever its faults do: who makes the signals that
-//! deviate first, whom signs and failed checks name, and which parts are in a row with the likeliest. It is a log-linear pool (Genest and Zidek 1986), whose weights are those of a conditional logit
-//! (McFadden 1974) over runs of modes that were left out.
+//! A fault that was counted is told by Bayes' rule. Of one that nobody has counted the rule is too sure, as the fault acts like
+//! one of another part. So the logarithm of a part's posterior then counts with a weight below 1 and to a limit only, beside
+//! what points at a part whatever its faults do: who makes the signals that deviate first, whom signs and failed checks name,
+//! and which parts are in a row with the likeliest. It is a log-linear pool (Genest and Zidek 1986), whose weights are those
+//! of a conditional logit (McFadden 1974) over runs of modes that were left out. Both are mixed by how well the run fits what
+//! was counted.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,12 +13,11 @@ use protocol::{LruId, Verdict};
 
 use super::belief::{Belief, WeighedStep, normalised};
 use super::common::gains;
+use super::counted::Misfit;
 use super::groups::Shared;
-use super::model::{FIRST_EFFECT, Hypothesis};
+use super::model::FIRST_EFFECT;
 use super::observation::Observation;
 
-/// Logarithm of a likelihood ratio that counts as certain.
-const CERTAIN: f64 = 20.0;
 /// A part is about as likely as the likeliest at this share of its probability.
 const AS_LIKELY: f64 = 0.5;
 
@@ -25,8 +25,8 @@ const AS_LIKELY: f64 = 0.5;
 pub struct Pooled {
     /// The probability of each part in the model's order, together 1: that it is the one, if one has failed.
     pub shares: Vec<f64>,
-    /// Steps that are not as counted under the likeliest fault.
-    pub strange: usize,
+    /// Probability that the fault is one that was counted.
+    pub counted: f64,
     /// Parts that may be the cause at several others.
     pub causes: BTreeSet<LruId>,
 }
@@ -34,34 +34,35 @@ pub struct Pooled {
 impl Pooled {
     /// Of a run that shows a fault.
     pub fn of(belief: &Belief<'_, '_>, seen: &Observation) -> Self {
-        let strange = strange_steps(belief, seen);
-        let mut scores = scores(belief, seen, strange == 0);
+        let settings = &belief.model.settings;
+        let posterior = of_parts(belief);
+        let mut scores = scores(belief, seen, &posterior);
         let causes = causes(belief, seen);
         let greatest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         for (score, part) in scores.iter_mut().zip(belief.model.parts()) {
             if causes.contains(*part) {
-                *score = score.max(greatest - belief.model.settings.pool.below_first);
+                *score = score.max(greatest - settings.pool.below_first);
             }
         }
+        let counted = Misfit::of(belief, seen).map_or(0.0, |fit| fit.counted(&settings.counted));
+        let not_counted = normalised(&scores);
+        let mixed = posterior.iter().zip(not_counted);
         Self {
-            shares: normalised(&scores),
-            strange,
+            shares: mixed
+                .map(|(known, new)| counted * known + (1.0 - counted) * new)
+                .collect(),
+            counted,
             causes,
         }
     }
 }
 
-/// Logarithm of what speaks for each part.
-fn scores(belief: &Belief<'_, '_>, seen: &Observation, is_as_counted: bool) -> Vec<f64> {
+/// Logarithm of what speaks for each part, if its fault was not counted.
+fn scores(belief: &Belief<'_, '_>, seen: &Observation, posterior: &[f64]) -> Vec<f64> {
     let model = belief.model;
     let pool = &model.settings.pool;
-    let (weight, limit) = match is_as_counted {
-        true => (pool.counted, CERTAIN),
-        false => (pool.otherwise, pool.limit),
-    };
-    let posterior = of_parts(belief);
     let greatest = posterior.iter().copied().fold(0.0, f64::max);
-    let likely = model.parts().iter().zip(&posterior);
+    let likely = model.parts().iter().zip(posterior);
     let likely: Vec<_> = likely
         .filter(|(_, p)| **p >= AS_LIKELY * greatest)
         .collect();
@@ -80,13 +81,13 @@ fn scores(belief: &Belief<'_, '_>, seen: &Observation, is_as_counted: bool) -> V
         let named = |shares: &BTreeMap<&LruId, f64>| shares.get(part).copied().unwrap_or(0.0);
         let mut likely = likely.iter().map(|(likely, _)| *likely);
         let is_near = likely.any(|likely| likely == part || model.relations.are_near(likely, part));
-        weight * posterior.ln().max(-limit)
+        pool.posterior * posterior.ln().max(-pool.limit)
             + pool.deviates * made
             + pool.signs * named(&signs)
             + pool.suspects * named(&suspects)
             + pool.near * f64::from(u8::from(is_near))
     };
-    model.parts().iter().zip(&posterior).map(score).collect()
+    model.parts().iter().zip(posterior).map(score).collect()
 }
 
 /// Parts whose failure may be what is wrong at several of the parts that they reach: signs name two of those, or effects of
@@ -120,22 +121,6 @@ fn of_parts(belief: &Belief<'_, '_>) -> Vec<f64> {
         }
     }
     parts
-}
-
-/// Steps that end as they seldom did under the likeliest fault that was counted.
-fn strange_steps(belief: &Belief<'_, '_>, seen: &Observation) -> usize {
-    let model = belief.model;
-    let ln = belief.ln();
-    let effects = ln[FIRST_EFFECT..].iter().zip(model.effects());
-    let likeliest = effects.max_by(|a, b| a.0.total_cmp(b.0));
-    let likeliest = likeliest.map_or(Hypothesis::NoFault, |(_, effect)| *effect);
-    let is_strange = |place, result| {
-        model.expected(likeliest, place).result(result) < model.settings.pool.seldom
-    };
-    let steps = belief.steps().iter();
-    steps
-        .filter(|step| is_strange(step.place, seen.steps[step.seen].result))
-        .count()
 }
 
 /// How often each is named, over all that name one.

@@ -60,6 +60,9 @@ pub struct Settings {
     /// Weights of the signs in a unit's own log.
     #[serde(default)]
     pub log: LogSettings,
+    /// How likely it is that a fault was counted.
+    #[serde(default)]
+    pub counted: CountedSettings,
     /// Weights of all evidence for a part.
     #[serde(default)]
     pub pool: PoolSettings,
@@ -68,18 +71,36 @@ pub struct Settings {
     pub conclusion: ConclusionSettings,
 }
 
-/// Weights of what speaks for a part.
+/// Weights of what speaks against a fault that was counted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct CountedSettings {
+    /// Log odds that the fault was counted, where all is as counted under the likeliest one.
+    pub as_counted: f64,
+    /// Weight of the number of steps that end as they seldom did: of the logarithm of one more.
+    pub results: f64,
+    /// The same of values far from those counted.
+    pub values: f64,
+    /// Weight of the share of traces that deviate first at a signal which seldom was the first.
+    pub first: f64,
+    /// Weight of the number of signs that never showed: of the logarithm of one more.
+    pub signs: f64,
+    /// A step seldom ends so: in a lesser share of the runs.
+    pub seldom: f64,
+    /// A signal seldom is the first to deviate: in a lesser share of the traces.
+    pub seldom_first: f64,
+    /// A value is far from those counted, standard deviations.
+    pub far: f64,
+}
+
+/// Weights of what speaks for a part whose fault nobody has counted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PoolSettings {
-    /// Of the logarithm of its posterior, where the run is as counted under the likeliest fault.
-    pub counted: f64,
-    /// The same where it is not.
-    pub otherwise: f64,
-    /// And no further below certainty than this.
+    /// Of the logarithm of its posterior.
+    pub posterior: f64,
+    /// The logarithm counts no further below certainty than this.
     pub limit: f64,
-    /// A step is not as counted under a fault that shows its result in a lesser share of runs.
-    pub seldom: f64,
     /// Of the share of traces that deviate first at a signal which the part makes.
     pub deviates: f64,
     /// Of the share of signs that name it.
@@ -158,12 +179,10 @@ pub struct ConclusionSettings {
     pub explained_at: f64,
     /// A part less likely than this is none of those of which one has failed for certain.
     pub least_of_set: f64,
-    /// The same where the run is as counted under the likeliest fault.
-    pub least_as_counted: f64,
     /// Nothing is certain where more parts than this are left, and one more where that may be the cause at the others.
     pub most_of_set: usize,
-    /// A run with more steps that are not as counted under the likeliest fault is like nothing that was counted.
-    pub most_strange: usize,
+    /// A run whose fault was counted with a lesser probability is like no fault that is known.
+    pub unlike_any: f64,
 }
 
 impl Settings {
@@ -173,7 +192,8 @@ impl Settings {
     /// The key, its value and its range.
     pub fn check(&self) -> Result<(), String> {
         let (likelihood, signs) = (&self.likelihood, &self.signs);
-        let (log, pool, conclusion) = (&self.log, &self.pool, &self.conclusion);
+        let (log, counted) = (&self.log, &self.counted);
+        let (pool, conclusion) = (&self.pool, &self.conclusion);
         let shares = [
             ("no_fault", self.no_fault),
             ("found_at", self.found_at),
@@ -205,8 +225,9 @@ impl Settings {
             ("conclusion.least_shown", conclusion.least_shown),
             ("conclusion.explained_at", conclusion.explained_at),
             ("conclusion.least_of_set", conclusion.least_of_set),
-            ("conclusion.least_as_counted", conclusion.least_as_counted),
-            ("pool.seldom", pool.seldom),
+            ("conclusion.unlike_any", conclusion.unlike_any),
+            ("counted.seldom", counted.seldom),
+            ("counted.seldom_first", counted.seldom_first),
         ];
         for (key, value) in shares {
             if !(value > 0.0 && value < 1.0) {
@@ -220,9 +241,13 @@ impl Settings {
             ("likelihood.most_runs", likelihood.most_runs),
             ("conclusion.most_shown", conclusion.most_shown as f64),
             ("conclusion.most_of_set", conclusion.most_of_set as f64),
-            ("conclusion.most_strange", conclusion.most_strange as f64),
-            ("pool.counted", pool.counted),
-            ("pool.otherwise", pool.otherwise),
+            ("counted.as_counted", counted.as_counted),
+            ("counted.results", counted.results),
+            ("counted.values", counted.values),
+            ("counted.first", counted.first),
+            ("counted.signs", counted.signs),
+            ("counted.far", counted.far),
+            ("pool.posterior", pool.posterior),
             ("pool.limit", pool.limit),
             ("pool.deviates", pool.deviates),
             ("pool.signs", pool.signs),
@@ -277,6 +302,7 @@ impl Default for Settings {
             likelihood: LikelihoodSettings::default(),
             signs: SignSettings::default(),
             log: LogSettings::default(),
+            counted: CountedSettings::default(),
             pool: PoolSettings::default(),
             conclusion: ConclusionSettings::default(),
         }
@@ -319,17 +345,30 @@ impl Default for LogSettings {
     }
 }
 
+impl Default for CountedSettings {
+    fn default() -> Self {
+        Self {
+            as_counted: 2.2,
+            results: 1.8,
+            values: 0.35,
+            first: 1.16,
+            signs: 0.94,
+            seldom: 0.25,
+            seldom_first: 0.1,
+            far: 5.0,
+        }
+    }
+}
+
 impl Default for PoolSettings {
     fn default() -> Self {
         Self {
-            counted: 0.24,
-            otherwise: 0.61,
+            posterior: 0.29,
             limit: 4.0,
-            seldom: 0.25,
-            deviates: 1.31,
-            signs: 0.98,
-            suspects: 0.92,
-            near: 1.58,
+            deviates: 1.89,
+            signs: 1.84,
+            suspects: 1.72,
+            near: 2.22,
             common: 2.0,
             below_first: 1.0,
         }
@@ -343,10 +382,9 @@ impl Default for ConclusionSettings {
             least_shown: 0.005,
             most_shown: 10,
             explained_at: 0.1,
-            least_of_set: 0.007,
-            least_as_counted: 0.03,
+            least_of_set: 0.01,
             most_of_set: 5,
-            most_strange: 36,
+            unlike_any: 0.05,
         }
     }
 }

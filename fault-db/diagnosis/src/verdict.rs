@@ -181,7 +181,7 @@ impl Weights {
 
     fn next_check(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Option<NextCheck> {
         let settings = belief.model.settings;
-        if self.set(settings).len() == 1 || self.no_fault >= settings.healthy_at {
+        if self.set.len() == 1 || self.no_fault >= settings.healthy_at {
             return None;
         }
         let done: BTreeSet<_> = seen.steps.iter().map(|step| step.check.clone()).collect();
@@ -190,7 +190,7 @@ impl Weights {
 
     fn conclusion(&self, model: &Model<'_>, seen: &Observation) -> Conclusion {
         let settings = model.settings;
-        match self.set(settings) {
+        match &self.set[..] {
             [] => {}
             [one] => {
                 let (part, probability) = (one.lru.clone(), one.probability);
@@ -230,7 +230,7 @@ impl Weights {
             .filter(|part| part.probability >= named_at);
         Conclusion::CannotTell {
             likely: likely.cloned().collect(),
-            is_unlike_any: self.strange > settings.conclusion.most_strange,
+            is_unlike_any: self.counted < settings.conclusion.unlike_any,
         }
     }
 }

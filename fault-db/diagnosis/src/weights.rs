@@ -7,10 +7,10 @@ use serde::Serialize;
 
 use super::belief::Belief;
 use super::dictionary::ModeName;
+use super::groups::rivals;
 use super::model::Hypothesis;
 use super::observation::Observation;
 use super::pool::Pooled;
-use super::settings::Settings;
 use super::verdict::PartProbability;
 
 /// Word for a fault of a part that is not in the dictionary, in place of a mode's.
@@ -92,10 +92,11 @@ pub struct Weights {
     pub parts: Vec<PartProbability>,
     pub faults: Vec<Fault>,
     pub no_fault: f64,
-    /// Steps that are not as counted under the likeliest fault.
-    pub strange: usize,
-    /// Parts that may be the cause at several others.
-    causes: BTreeSet<LruId>,
+    /// Probability that the fault is one that was counted.
+    pub counted: f64,
+    /// The parts one of which has failed for certain, the likeliest first; empty where those are more than a person can be
+    /// told, or none may have failed.
+    pub set: Vec<PartProbability>,
 }
 
 impl Weights {
@@ -122,7 +123,7 @@ impl Weights {
                 None => faults.push(fault),
             }
         }
-        let (mut strange, mut causes) = (0, BTreeSet::new());
+        let (mut counted, mut causes) = (1.0, BTreeSet::new());
         if seen.shows_a_fault() {
             let pooled = Pooled::of(belief, seen);
             let shares = pooled.shares.iter().map(|share| share * (1.0 - no_fault));
@@ -133,7 +134,7 @@ impl Weights {
                 }
             }
             parts = shares;
-            (strange, causes) = (pooled.strange, pooled.causes);
+            (counted, causes) = (pooled.counted, pooled.causes);
         }
         let parts = model.parts().iter().zip(parts);
         let parts = parts.map(|(lru, probability)| PartProbability {
@@ -143,29 +144,32 @@ impl Weights {
         let mut parts: Vec<_> = parts.collect();
         parts.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         Self {
+            set: set(belief, &parts, no_fault, &causes),
             parts,
             faults,
             no_fault,
-            strange,
-            causes,
+            counted,
         }
     }
+}
 
-    /// The parts one of which has failed for certain, the likeliest first; empty where those are more than a person can be told,
-    /// or none may have failed.
-    pub fn set(&self, settings: &Settings) -> &[PartProbability] {
-        let settings = settings.conclusion;
-        let least = match self.strange {
-            0 => settings.least_as_counted,
-            _ => settings.least_of_set,
-        };
-        let size = self.parts.partition_point(|part| part.probability >= least);
-        let set = &self.parts[..size];
-        let cause = set.iter().any(|part| self.causes.contains(&part.lru));
-        let is_told = size <= settings.most_of_set + usize::from(cause);
-        match self.no_fault < least && is_told {
-            true => set,
-            false => &[],
-        }
+/// The parts one of which has failed for certain, with the parts of the bench that would act alike.
+fn set(
+    belief: &Belief<'_, '_>,
+    parts: &[PartProbability],
+    no_fault: f64,
+    causes: &BTreeSet<LruId>,
+) -> Vec<PartProbability> {
+    let settings = belief.model.settings.conclusion;
+    let least = settings.least_of_set;
+    let (set, rest) = parts.split_at(parts.partition_point(|part| part.probability >= least));
+    let has_cause = set.iter().any(|part| causes.contains(&part.lru));
+    let most = settings.most_of_set + usize::from(has_cause);
+    if no_fault >= least || set.len() > most {
+        return Vec::new();
     }
+    let of_unit = set.iter().map(|part| &part.lru);
+    let rivals: BTreeSet<&LruId> = of_unit.flat_map(|part| rivals(belief, part)).collect();
+    let rivals = rest.iter().filter(|part| rivals.contains(&part.lru));
+    set.iter().chain(rivals).cloned().collect()
 }

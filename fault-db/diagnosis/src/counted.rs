@@ -1,0 +1,67 @@
+//! How likely it is that the fault of a run is one that was counted: the run is as counted under the likeliest fault of the
+//! dictionary, or results, values, first deviations and signs are not.
+//!
+//! It is a posterior-predictive check (Rubin 1984), whose weights are those of a logistic regression over runs of modes
+//! that were counted and of modes that were left out.
+
+use super::belief::Belief;
+use super::model::FIRST_EFFECT;
+use super::observation::Observation;
+use super::settings::CountedSettings;
+
+/// What of a run is not as counted under the likeliest fault of the dictionary.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Misfit {
+    /// Steps that end as they seldom did.
+    results: usize,
+    /// Values far from those counted, and values missing that never were.
+    values: usize,
+    /// Share of the traces that deviate first at a signal which seldom was the first.
+    first: f64,
+    /// Signs that never showed.
+    signs: usize,
+}
+
+impl Misfit {
+    /// Of a run; `None` of a dictionary without faults.
+    pub fn of(belief: &Belief<'_, '_>, seen: &Observation) -> Option<Self> {
+        let model = belief.model;
+        let settings = &model.settings.counted;
+        let ln = belief.ln();
+        let effects = ln[FIRST_EFFECT..].iter().zip(model.effects()).enumerate();
+        let likeliest = effects.max_by(|a, b| a.1.0.total_cmp(b.1.0));
+        let (number, (_, likeliest)) = likeliest?;
+        let mut misfit = Self::default();
+        for weighed in belief.steps() {
+            let step = &seen.steps[weighed.seen];
+            let shown = model
+                .expected(*likeliest, weighed.place)
+                .result(step.result);
+            misfit.results += usize::from(shown < settings.seldom);
+            misfit.values += model.far_values(*likeliest, weighed.place, step);
+        }
+        let firsts = belief.residuals().iter();
+        let shares = firsts.filter_map(|signal| {
+            let place = model.residuals.place(signal)?;
+            Some(model.residuals.of_effect(number, place))
+        });
+        let shares: Vec<f64> = shares.collect();
+        let seldom = shares
+            .iter()
+            .filter(|share| **share < settings.seldom_first);
+        misfit.first = seldom.count() as f64 / shares.len().max(1) as f64;
+        let signs = belief.signs().all();
+        let never = signs.filter(|sign| model.share_of_sign(number, sign) == 0.0);
+        misfit.signs = never.count();
+        Some(misfit)
+    }
+
+    /// Probability that the fault was counted.
+    pub fn counted(&self, settings: &CountedSettings) -> f64 {
+        let against = settings.results * (self.results as f64).ln_1p()
+            + settings.values * (self.values as f64).ln_1p()
+            + settings.first * self.first
+            + settings.signs * (self.signs as f64).ln_1p();
+        1.0 / (1.0 + (against - settings.as_counted).exp())
+    }
+}
