@@ -21,10 +21,10 @@ pub struct Cause {
     pub checks: BTreeSet<CheckName>,
 }
 
-/// The likeliest of the parts one of which has failed for certain, with what it explains; none where no part is certain.
+/// Of the parts one of which has failed for certain the one that is likelier than all others, with what it explains.
 pub fn cause(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) -> Option<Cause> {
     let model = belief.model;
-    let found = weights.set.first()?;
+    let found = weights.set.first().filter(|part| part.probability > 0.5)?;
     let effects = effects_of(belief, weights, &found.lru);
     let is_explained = |share: &dyn Fn(usize) -> f64| {
         let shares = effects

@@ -348,11 +348,11 @@ impl Default for LogSettings {
 impl Default for CountedSettings {
     fn default() -> Self {
         Self {
-            as_counted: 2.2,
-            results: 1.8,
-            values: 0.35,
-            first: 1.16,
-            signs: 0.94,
+            as_counted: 1.95,
+            results: 2.04,
+            values: 0.48,
+            first: 2.14,
+            signs: 2.1,
             seldom: 0.25,
             seldom_first: 0.1,
             far: 5.0,

@@ -8,8 +8,8 @@ mod strategy;
 use std::collections::{BTreeMap, BTreeSet};
 
 use diagnosis::{
-    Assessment, Basis, CheckName, ConclusionSettings, Diagnosis, Dictionary, FaultText, Finding,
-    ModeName, Model, Observation, ObservedStep, PoolSettings, Settings,
+    Assessment, Basis, CheckName, ConclusionSettings, CountedSettings, Diagnosis, Dictionary,
+    FaultText, Finding, ModeName, Model, Observation, ObservedStep, Settings,
 };
 use protocol::lru::from_stored;
 use protocol::{LruId, Verdict};
@@ -94,7 +94,7 @@ fn dictionary() -> Dictionary {
 }
 
 /// Nine checks that are independent of each other, where a suite has hundreds that are not: each weighs
-/// more, and they cannot rule out a fault that nobody knows as far, which is rarer here. The posterior counts in full, and an answer names
+/// more, and they cannot rule out a fault that nobody knows as far, which is rarer here. Every fault counts as one of the dictionary, and an answer names
 /// two of the few parts at most.
 fn settings() -> Settings {
     Settings {
@@ -102,15 +102,13 @@ fn settings() -> Settings {
         weight_of_step: 0.99,
         unseen_mode: 0.08,
         foresight: 0.9,
-        pool: PoolSettings {
-            counted: 1.0,
-            otherwise: 1.0,
-            limit: 20.0,
-            near: 1e-6,
-            ..PoolSettings::default()
+        counted: CountedSettings {
+            as_counted: 50.0,
+            ..CountedSettings::default()
         },
         conclusion: ConclusionSettings {
             most_of_set: 2,
+            least_of_set: 0.03,
             ..ConclusionSettings::default()
         },
         ..Settings::default()
@@ -242,7 +240,11 @@ fn a_fault_in_a_way_not_seen_yet_is_the_part_s_that_the_failed_checks_judge() {
             .collect();
         let settings = Settings {
             unseen_mode: 0.2,
-            pool: PoolSettings::default(),
+            counted: CountedSettings::default(),
+            conclusion: ConclusionSettings {
+                most_of_set: 2,
+                ..ConclusionSettings::default()
+            },
             ..settings()
         };
         let model = Model::new(&dictionary, &settings, &BTreeMap::new());

@@ -18,7 +18,7 @@ fn parts<const N: usize>(names: [&str; N]) -> Vec<LruId> {
 
 fn said(dictionary: &Dictionary, seen: &Observation, relations: &Relations) -> Diagnosis {
     let settings = Settings {
-        pool: PoolSettings::default(),
+        counted: CountedSettings::default(),
         ..settings()
     };
     let model = Model::new(dictionary, &settings, &BTreeMap::new()).with_relations(relations);
@@ -115,4 +115,44 @@ fn sign_of(part: &str) -> Sign {
         fault: "silent".into(),
         lru: from_stored(part),
     }
+}
+
+/// Goal: what comes from the bench cannot tell the bench from the part that it reaches. Method: the relay's fault as counted,
+/// with the bench's input in a group with the relay: beside the relay where no trace was held against a sound unit, or one
+/// deviates at what the bench reads; not where traces deviate at what the unit makes, or a check without the bench fails.
+#[test]
+fn a_part_of_the_bench_stays_in_the_answer_unless_something_speaks_against_it() {
+    let mut dictionary = dictionary();
+    dictionary.parts = parts(["bench"]);
+    dictionary.suspects = dictionary
+        .checks
+        .iter()
+        .map(|_| from_stored("relay"))
+        .collect();
+    let made = [
+        ("contact", parts(["bench", "relay"])),
+        ("order", parts(["relay"])),
+    ];
+    let made = made.map(|(signal, by)| (signal.to_owned(), by.into_iter().collect()));
+    let relations = |without_bench: &[&str]| Relations {
+        of_bench: parts(["bench"]).into_iter().collect(),
+        without_bench: without_bench
+            .iter()
+            .map(|name| (*name).to_owned())
+            .collect(),
+        makers: made.clone().into(),
+        ..grouped(["bench", "relay"])
+    };
+    let named = |deviates: &[&str], without_bench: &[&str]| {
+        let mut seen = run(&["a.s1"], Some(640.0));
+        seen.residuals = deviates.iter().map(|signal| (*signal).to_owned()).collect();
+        let (settings, relations) = (settings(), relations(without_bench));
+        let model = Model::new(&dictionary, &settings, &BTreeMap::new()).with_relations(&relations);
+        Diagnosis::of(&model, &seen).conclusion.parts()
+    };
+    let (both, relay) = (parts(["relay", "bench"]), parts(["relay"]));
+    assert_eq!(named(&[], &[]), both);
+    assert_eq!(named(&["contact"], &["b"]), both);
+    assert_eq!(named(&["order"], &[]), relay);
+    assert_eq!(named(&["contact"], &["a"]), relay);
 }
