@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use protocol::LruId;
 
 use super::cell::StepOutcome;
+use super::logarithms::{ln_sum, normalised};
 use super::model::{FIRST_EFFECT, Hypothesis, Model, NO_FAULT, StepLikelihoods};
 use super::observation::{Observation, ObservedStep};
 use super::signs::SignsSeen;
@@ -208,21 +209,4 @@ impl<'m, 'd> Belief<'m, 'd> {
             .position(|part| *part >= model.settings.found_at)?;
         Some(Settled::Part(model.parts()[found]))
     }
-}
-
-/// Normalises weights given by their logarithms.
-pub(super) fn normalised(ln: &[f64]) -> Vec<f64> {
-    let greatest = ln.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let weights: Vec<_> = ln.iter().map(|ln| (ln - greatest).exp()).collect();
-    let sum: f64 = weights.iter().sum();
-    weights.into_iter().map(|weight| weight / sum).collect()
-}
-
-/// Logarithm of the sum of numbers given by their logarithms.
-pub(super) fn ln_sum(all: impl Iterator<Item = f64> + Clone) -> f64 {
-    let greatest = all.clone().fold(f64::NEG_INFINITY, f64::max);
-    if greatest == f64::NEG_INFINITY {
-        return greatest;
-    }
-    greatest + all.map(|ln| (ln - greatest).exp()).sum::<f64>().ln()
 }

@@ -3,7 +3,7 @@
 use protocol::LruId;
 use serde::Serialize;
 
-use super::groups::Group;
+use super::groups::Measure;
 use super::verdict::{Finding, PartProbability};
 
 /// The answer of a diagnosis. Every probability is the one that the answer tells.
@@ -23,9 +23,10 @@ pub enum Conclusion {
     },
     /// One of these parts has failed.
     OneOf {
-        group: Group,
-        /// How likely it is that one of them has.
-        probability: f64,
+        /// The likeliest first.
+        parts: Vec<PartProbability>,
+        /// What tells which; empty where nothing is known to.
+        measure: Measure,
     },
     NoFault {
         /// How likely that is.
@@ -74,16 +75,17 @@ impl Conclusion {
     pub fn parts(&self) -> Vec<LruId> {
         match self {
             Self::Found { part, .. } | Self::OfBench { part, .. } => vec![part.clone()],
-            Self::OneOf { group, .. } => group.parts.clone(),
-            Self::CannotTell { likely, .. } => likely.iter().map(|part| part.lru.clone()).collect(),
+            Self::OneOf { parts, .. } | Self::CannotTell { likely: parts, .. } => {
+                parts.iter().map(|part| part.lru.clone()).collect()
+            }
             _ => Vec::new(),
         }
     }
 
-    /// The parts that were not told apart, and what tells which has failed.
-    pub fn group(&self) -> Option<&Group> {
+    /// What tells the parts apart that were not told apart.
+    pub fn measure(&self) -> Option<&Measure> {
         match self {
-            Self::OneOf { group, .. } => Some(group),
+            Self::OneOf { measure, .. } => Some(measure),
             _ => None,
         }
     }

@@ -62,30 +62,27 @@ impl Relations {
         groups.any(|group| group.parts.contains(one) && group.parts.contains(other))
     }
 
-    /// Parts that were not told apart, the likeliest first, with the measurement that tells: of the smallest group that has all
-    /// of them, of what one of them is and the others share, or of the first two; empty where there is none.
-    pub fn group(&self, parts: Vec<LruId>) -> Group {
-        let of_group = |parts: &[LruId]| {
+    /// The measurement that tells parts apart, the likeliest first: of the smallest group that has all of them, of what one of
+    /// them is and the others share, or of the first two; empty where there is none.
+    pub fn measure(&self, parts: &[&LruId]) -> Measure {
+        let of_group = |parts: &[&LruId]| {
             let groups = self.groups.iter();
             let of_all = groups.filter(|group| parts.iter().all(|part| group.parts.contains(part)));
             let smallest = of_all.min_by_key(|group| group.parts.len());
-            smallest.map(|group| group.measure.clone())
+            smallest.map(|group| &group.measure)
         };
         let of_shared = || {
             let is_cause = |shared: &&Shared| {
                 let mut parts = parts.iter();
-                parts.clone().any(|part| *part == shared.part)
-                    && parts.all(|part| *part == shared.part || shared.reaches.contains(part))
+                parts.clone().any(|part| **part == shared.part)
+                    && parts.all(|part| **part == shared.part || shared.reaches.contains(part))
             };
             let shared = self.shared.iter().find(is_cause);
-            shared.map(|shared| shared.measure.clone())
+            shared.map(|shared| &shared.measure)
         };
         let first_two = || of_group(&parts[..parts.len().min(2)]);
-        let measure = of_group(&parts).or_else(of_shared).or_else(first_two);
-        Group {
-            measure: measure.unwrap_or_default(),
-            parts,
-        }
+        let measure = of_group(parts).or_else(of_shared).or_else(first_two);
+        measure.cloned().unwrap_or_default()
     }
 }
 

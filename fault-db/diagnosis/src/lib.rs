@@ -20,6 +20,7 @@ mod explained;
 mod groups;
 mod hidden;
 mod likelihood;
+mod logarithms;
 mod model;
 mod next_check;
 mod observation;

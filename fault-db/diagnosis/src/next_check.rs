@@ -13,7 +13,8 @@ use std::collections::BTreeSet;
 use protocol::{LruId, Verdict};
 use serde::Serialize;
 
-use super::belief::{Belief, normalised};
+use super::belief::Belief;
+use super::logarithms::normalised;
 use super::model::{FIRST_EFFECT, Hypothesis, Model};
 use super::observation::CheckName;
 use super::verdict::PartProbability;

@@ -11,10 +11,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use protocol::{LruId, Verdict};
 
-use super::belief::{Belief, WeighedStep, normalised};
+use super::belief::{Belief, WeighedStep};
 use super::common::gains;
 use super::counted::Misfit;
 use super::groups::Shared;
+use super::logarithms::normalised;
 use super::model::FIRST_EFFECT;
 use super::observation::Observation;
 

@@ -4,7 +4,8 @@
 //! against the fault dictionary: the faults that explain them, each with its spells, say how often a run like the last passes
 //! all the same.
 
-use super::belief::{Belief, ln_sum};
+use super::belief::Belief;
+use super::logarithms::ln_sum;
 use super::model::{Model, NO_FAULT};
 use super::observation::Observation;
 

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 use protocol::{LruId, Verdict};
 
-use super::belief::normalised;
 use super::dictionary::{Column, Dictionary};
+use super::logarithms::normalised;
 use super::observation::ObservedStep;
 
 /// Modes of a part beside those counted, half of which point at the part itself.

@@ -200,10 +200,10 @@ impl Weights {
                 };
             }
             several => {
-                let parts = several.iter().map(|part| part.lru.clone());
+                let named: Vec<&LruId> = several.iter().map(|part| &part.lru).collect();
                 return Conclusion::OneOf {
-                    group: model.relations.group(parts.collect()),
-                    probability: several.iter().map(|part| part.probability).sum(),
+                    measure: model.relations.measure(&named),
+                    parts: several.to_vec(),
                 };
             }
         }

@@ -46,8 +46,8 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
         "conclusion": words.concluded(answer),
         "conclusion_ko": Language::Korean.words().concluded(answer),
         "finding": d.conclusion.finding(),
-        "group": d.conclusion.group().map(|group| json!({
-            "parts": group.parts, "measure": group.measure.english, "measure_ko": group.measure.korean,
+        "group": d.conclusion.measure().map(|measure| json!({
+            "parts": d.conclusion.parts(), "measure": measure.english, "measure_ko": measure.korean,
         })),
         "parts": d.parts.iter().filter(|part| part.probability >= 0.001).map(share).collect::<Vec<_>>(),
         "no_fault": d.no_fault,

@@ -30,10 +30,17 @@ fn a_whole_run_names_the_part_with_reasons() {
         let said = diagnosis(&place);
         let first = &said["candidates"][0];
         assert_eq!(first["part"], lru, "{fault}: {said:#}");
-        assert_eq!(said["finding"], "found", "{fault}: {}", said["conclusion"]);
+        let finding = text(&said["finding"]);
+        assert!(["found", "one_of"].contains(&finding), "{fault}: {said:#}");
+        assert!(
+            number(&said["parts"][0]["probability"]) > 0.9,
+            "{fault}: {said:#}"
+        );
         assert!(!list(&first["for"]).is_empty(), "{fault}");
         assert!(text(&said["conclusion"]).contains(lru), "{fault}");
-        assert!(said["next_check"].is_null(), "{fault}: nothing is open");
+        if finding == "found" {
+            assert!(said["next_check"].is_null(), "{fault}: nothing is open");
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::common::{Place, list, scripts};
 use btu_rig::procedure::Procedure;
+use diagnosis::Finding;
 use fault_db::{Store, TraceData};
 use protocol::injection::{FaultCatalogue, FaultMode};
 use ptu_report::run_json;
@@ -110,11 +111,10 @@ impl TestBench {
             answer.attribute(&store).expect("attributed");
             let diagnosis = &answer.diagnosis;
             let first = || diagnosis.candidates.first().map(|first| first.lru.clone());
-            let group = diagnosis
-                .conclusion
-                .group()
-                .map(|group| group.parts.clone());
-            let parts = group.unwrap_or_else(|| first().into_iter().collect());
+            let parts = match diagnosis.conclusion.finding() {
+                Finding::OneOf => diagnosis.conclusion.parts(),
+                _ => first().into_iter().collect(),
+            };
             named = parts.iter().map(ToString::to_string).collect();
         }
         let detail = store.run(outcome.id).expect("the run");

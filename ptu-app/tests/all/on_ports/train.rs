@@ -269,7 +269,7 @@ fn a_search_on_a_train_takes_the_dictionary_of_a_laptop() {
     place.ptu(&campaign).exits(0);
     let train = Unit::aboard(&["--inject", "tra.dead"]);
     let said = Running::start(&place, &train, &["--adaptive"]).finish();
-    has(&said.out, &["replace the TRA (tra, "]);
+    has(&said.out, &["the TRA (tra, "]);
     said.exits(1);
 }
 

@@ -50,9 +50,8 @@ fn parts_that_act_alike_are_named_together_with_the_measurement() {
         let model = Model::new(&dictionary, &settings, &BTreeMap::new()).with_relations(&relations);
         let found = Diagnosis::of(&model, &seen);
         comes_to(&found, Finding::OneOf);
-        let group = found.conclusion.group().expect("a group");
-        assert_eq!(group.measure, told);
-        let named: BTreeSet<_> = group.parts.iter().cloned().collect();
+        assert_eq!(found.conclusion.measure(), Some(&told));
+        let named: BTreeSet<_> = found.conclusion.parts().into_iter().collect();
         assert_eq!(named, parts(["antenna", "cable"]).into_iter().collect());
     }
 }

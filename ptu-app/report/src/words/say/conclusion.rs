@@ -19,7 +19,7 @@ pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names
         | Conclusion::NotWeighed
         | Conclusion::BenchFailed { .. } => None,
         // A measurement tells which.
-        Conclusion::OneOf { group, .. } if !group.measure.english.is_empty() => {
+        Conclusion::OneOf { measure, .. } if !measure.english.is_empty() => {
             next.map(|next| run_next(next, names))
         }
         Conclusion::OneOf { .. }
@@ -51,16 +51,16 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
                 ),
             ]
         }
-        Conclusion::OneOf { group, probability } => {
-            let sure = percent(*probability);
-            let parts = group.parts.iter().map(|part| named(part, None, names));
-            let [parts, parts_ko] = one_or_other(&parts.collect::<Vec<_>>());
-            let measure = &group.measure;
+        Conclusion::OneOf { parts, measure } => {
+            let named = parts
+                .iter()
+                .map(|part| named(&part.lru, Some(part.probability), names));
+            let [parts, parts_ko] = one_or_other(&named.collect::<Vec<_>>());
             match measure.english.is_empty() {
-                true => [format!("{parts} ({sure})"), format!("{parts_ko} ({sure})")],
+                true => [parts, parts_ko],
                 false => [
-                    format!("{parts} ({sure}); to tell which, {}", measure.english),
-                    format!("{parts_ko} ({sure}); 판별 방법: {}", measure.korean),
+                    format!("{parts}; to tell which, {}", measure.english),
+                    format!("{parts_ko}; 판별 방법: {}", measure.korean),
                 ],
             }
         }

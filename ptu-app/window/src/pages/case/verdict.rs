@@ -126,7 +126,7 @@ pub fn named(diagnosis: &Diagnosis) -> Vec<LruId> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use diagnosis::{Group, Measure, PartProbability};
+    use diagnosis::{Measure, PartProbability};
     use ptu_report::words::Language;
 
     /// Goal: a diagnosis makes no failed run a sound unit, and no other run a part. Method: every pair of a run's verdict and what
@@ -136,15 +136,16 @@ mod tests {
         let words = &Language::English.words().case;
         let part: LruId = "eb_relay".parse().unwrap();
         let probability = 0.9;
-        let cannot_tell = |n| {
+        let parts = |n| {
             let lru = part.clone();
-            Conclusion::CannotTell {
-                likely: vec![PartProbability { lru, probability }; n],
-                is_unlike_any: false,
-            }
+            vec![PartProbability { lru, probability }; n]
         };
-        let group = Group {
-            parts: vec![part.clone(); 2],
+        let cannot_tell = |n| Conclusion::CannotTell {
+            likely: parts(n),
+            is_unlike_any: false,
+        };
+        let one_of = Conclusion::OneOf {
+            parts: parts(2),
             measure: Measure::default(),
         };
         let found = Conclusion::Found {
@@ -161,7 +162,7 @@ mod tests {
                 }),
                 1,
             ),
-            (Some(Conclusion::OneOf { group, probability }), 1),
+            (Some(one_of), 1),
             (Some(cannot_tell(3)), 1),
             (Some(cannot_tell(0)), 2),
             (Some(Conclusion::NoFault { probability }), 2),

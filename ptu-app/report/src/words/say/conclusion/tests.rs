@@ -61,21 +61,22 @@ fn parts_that_are_not_told_apart_are_named_with_the_measurement() {
         korean: "전문을 기록합니다".into(),
     };
     let one_of = |measure| Conclusion::OneOf {
-        group: diagnosis::Group {
-            parts: vec![id("sensor"), id("relay")],
-            measure,
-        },
-        probability: 0.9,
+        parts: [("sensor", 0.9), ("relay", 0.05)]
+            .map(|(part, probability)| PartProbability {
+                lru: id(part),
+                probability,
+            })
+            .into(),
+        measure,
     };
     let said = concluded(&one_of(measure), None, &[]);
     let expected = [
-        "sensor or relay (90.0 %); to tell which, record the frames",
-        "sensor 또는 relay (90.0 %); 판별 방법: 전문을 기록합니다",
+        "sensor (90.0 %) or relay (5.0 %); to tell which, record the frames",
+        "sensor (90.0 %) 또는 relay (5.0 %); 판별 방법: 전문을 기록합니다",
     ];
     assert_eq!(said, expected);
     let [swapped, _] = concluded(&one_of(diagnosis::Measure::default()), None, &[]);
-    let expected =
-        "sensor or relay (90.0 %); no check tells more: swap sensor and run again what failed";
+    let expected = "sensor (90.0 %) or relay (5.0 %); no check tells more: swap sensor and run again what failed";
     assert_eq!(swapped, expected);
     let next = NextCheck {
         check: CheckName {
