@@ -63,14 +63,15 @@ impl Relations {
     }
 
     /// The measurement that tells parts apart, the likeliest first: of the smallest group that has all of them, of what one of
-    /// them is and the others share, or of the first two; empty where there is none.
+    /// them is and the others share, or of the group that tells the likeliest from most others; empty where there is none.
     pub fn measure(&self, parts: &[&LruId]) -> Measure {
-        let of_group = |parts: &[&LruId]| {
-            let groups = self.groups.iter();
-            let of_all = groups.filter(|group| parts.iter().all(|part| group.parts.contains(part)));
-            let smallest = of_all.min_by_key(|group| group.parts.len());
-            smallest.map(|group| &group.measure)
+        let told = |group: &&Group| {
+            let told = parts.iter().filter(|part| group.parts.contains(part));
+            told.count()
         };
+        let groups = || self.groups.iter();
+        let of_all = groups().filter(|group| told(group) == parts.len());
+        let smallest = of_all.min_by_key(|group| group.parts.len());
         let of_shared = || {
             let is_cause = |shared: &&Shared| {
                 let mut parts = parts.iter();
@@ -80,8 +81,15 @@ impl Relations {
             let shared = self.shared.iter().find(is_cause);
             shared.map(|shared| &shared.measure)
         };
-        let first_two = || of_group(&parts[..parts.len().min(2)]);
-        let measure = of_group(parts).or_else(of_shared).or_else(first_two);
+        let of_most = || {
+            let first = parts.first()?;
+            let of_first = groups().filter(|group| group.parts.contains(first) && told(group) > 1);
+            let most =
+                of_first.max_by_key(|group| (told(group), std::cmp::Reverse(group.parts.len())));
+            most.map(|group| &group.measure)
+        };
+        let measure = smallest.map(|group| &group.measure);
+        let measure = measure.or_else(of_shared).or_else(of_most);
         measure.cloned().unwrap_or_default()
     }
 }
