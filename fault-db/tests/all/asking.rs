@@ -134,7 +134,7 @@ fn a_free_query_runs_within_its_limits() {
         looks < 5
     };
     let limit = |error| match error {
-        StoreError::QueryExceeds { limit } => limit,
+        StoreError::QueryExceeds(limit) => limit,
         other => panic!("{other}"),
     };
     let stopped = store
@@ -185,7 +185,7 @@ fn free_questions_only_read() {
     ] {
         let error = store.query_read_only(sql, 10).expect_err(sql);
         assert!(
-            matches!(error, StoreError::QueryRefused { .. }),
+            matches!(error, StoreError::QueryRefused(_)),
             "{sql}: {error}"
         );
     }

@@ -529,7 +529,7 @@ fn an_sql_query_on_a_server_is_answered_and_cannot_change_anything() {
         };
         let stopped = writer.query_within(sql, bounds, || true).expect_err(sql);
         assert!(
-            matches!(stopped, StoreError::QueryExceeds { limit: found } if found == limit),
+            matches!(stopped, StoreError::QueryExceeds(found) if found == limit),
             "{stopped}"
         );
     }

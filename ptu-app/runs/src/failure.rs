@@ -266,17 +266,17 @@ impl From<StoreError> for Failure {
             | StoreError::TraceMissing { .. }
             | StoreError::Ambiguous { .. }
             | StoreError::BadId { .. }
-            | StoreError::NoWords { .. }
+            | StoreError::NoWords(_)
             | StoreError::TextTooLong { .. }
-            | StoreError::NotAFile { .. }
-            | StoreError::NotAServer { .. }
-            | StoreError::BadAddress { .. }
+            | StoreError::NotAFile(_)
+            | StoreError::NotAServer(_)
+            | StoreError::BadAddress(_)
             | StoreError::Transition { .. }
-            | StoreError::TargetExists { .. }
-            | StoreError::SameFile { .. }
-            | StoreError::QueryRefused { .. }
-            | StoreError::QueryFailed { .. }
-            | StoreError::QueryExceeds { .. } => Exit::Usage,
+            | StoreError::TargetExists(_)
+            | StoreError::SameFile(_)
+            | StoreError::QueryRefused(_)
+            | StoreError::QueryFailed(_)
+            | StoreError::QueryExceeds(_) => Exit::Usage,
             _ => Exit::Bench,
         };
         Self {
@@ -297,15 +297,15 @@ pub fn store_message(error: &StoreError) -> String {
 /// The file in whose place an error says to choose another.
 pub fn in_place_of(error: &StoreError) -> Option<&Path> {
     match error {
-        StoreError::Locked { path }
-        | StoreError::Full { path }
-        | StoreError::ReadOnly { path }
-        | StoreError::NotADatabase { path }
+        StoreError::Locked(path)
+        | StoreError::Full(path)
+        | StoreError::ReadOnly(path)
+        | StoreError::NotADatabase(path)
         | StoreError::ForeignDatabase { path, .. }
         | StoreError::NewerSchema { path, .. }
-        | StoreError::Missing { path }
+        | StoreError::Missing(path)
         | StoreError::CannotOpen { path, .. }
-        | StoreError::NotAFile { path } => Some(path),
+        | StoreError::NotAFile(path) => Some(path),
         _ => None,
     }
 }

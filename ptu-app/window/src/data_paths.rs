@@ -68,7 +68,7 @@ impl DataPaths {
     pub fn open(&self) -> Result<Store, Failure> {
         if self.is_server() {
             let path = self.database.clone();
-            return Err(StoreError::ReadOnly { path }.into());
+            return Err(StoreError::ReadOnly(path).into());
         }
         if self.is_gone() {
             let (path, what) = (self.database.clone(), Misplaced::Gone);
