@@ -138,18 +138,11 @@ fn a_dead_guard_lets_a_train_creep() {
 type Brought = (FsbCause, fn() -> Bench);
 
 fn manual_overspeed() -> Bench {
-    let mut bench = Bench::new(&[]);
-    bench.code("45");
-    bench.run(0.6);
-    bench.speed_kmh(49.0);
-    bench
+    Bench::under("45", 49.0)
 }
 
 fn stopped_by_code_0() -> Bench {
-    let mut bench = Bench::new(&[]);
-    bench.code("25");
-    bench.run(0.6);
-    bench.speed_kmh(5.0);
+    let mut bench = Bench::under("25", 5.0);
     bench.code("0");
     bench
 }

@@ -118,6 +118,15 @@ impl Bench {
         Self::with_line(faults, false)
     }
 
+    /// A sound unit that hears this code, and a train at this speed from now on.
+    pub fn under(code: &str, speed_kmh: f64) -> Self {
+        let mut bench = Self::new(&[]);
+        bench.code(code);
+        bench.run(0.6);
+        bench.speed_kmh(speed_kmh);
+        bench
+    }
+
     /// Powered up while something else opens the emergency brake line.
     pub fn unfed(faults: &[FaultMode]) -> Self {
         Self::with_line(faults, true)

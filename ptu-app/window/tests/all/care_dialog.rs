@@ -23,15 +23,13 @@ fn another_history_is_imported_and_the_file_is_backed_up_and_checked() {
             ..settings(Page::Statistics)
         };
         let mut window = Window::with(place, scripts(), settings);
-        window.click(words.title);
-        window.wait_for(words.never_synced);
+        window.click_for(words.title, words.never_synced);
         // Nothing is named yet: nothing can be imported.
         assert!(!window.enabled(words.import) && !window.enabled(words.sync));
 
         let missing = other.text_path("nothing.db");
         window.write(words.other_file, &missing);
-        window.click(words.import);
-        window.wait_for_part(words.failed);
+        window.click_for_part(words.import, words.failed);
         window.write_over(words.other_file, &other.text_path("history.db"));
         window.click(words.import);
         let added = words.imported.split("{runs}").next().unwrap_or_default();
@@ -41,8 +39,7 @@ fn another_history_is_imported_and_the_file_is_backed_up_and_checked() {
 
         let copy = window.place.text_path("copy.db");
         window.write_over(words.other_file, &copy);
-        window.click(words.backup);
-        window.wait_for(&fill(words.backed_up, &[("file", &copy)]));
+        window.click_for(words.backup, &fill(words.backed_up, &[("file", &copy)]));
         let copied = other.json(&["runs", "list", "--json", "--db", &copy]);
         assert_eq!(list(&copied).len(), 2, "{copied}");
         // A copy is never written over.
@@ -75,8 +72,7 @@ fn an_import_ends_when_it_is_stopped() {
     };
     let holder = rusqlite::Connection::open(place.path("history.db")).expect("the file");
     let mut window = Window::with(place, scripts(), settings);
-    window.click(words.care.title);
-    window.wait_for(words.care.never_synced);
+    window.click_for(words.care.title, words.care.never_synced);
     window.write(words.care.other_file, &other.text_path("history.db"));
     holder.execute_batch("BEGIN IMMEDIATE").expect("held");
     window.click(words.care.import);
@@ -93,8 +89,7 @@ fn an_import_ends_when_it_is_stopped() {
 fn what_is_wrong_with_a_file_is_told_without_commands_in_both_languages() {
     for language in Language::ALL {
         let words = language.words();
-        let place = Place::new();
-        record_bad_unit(&place);
+        let place = Place::with_bad_unit();
         let damage = rusqlite::Connection::open(place.path("history.db")).expect("the file");
         let done = damage.execute_batch(
             "PRAGMA foreign_keys = OFF;
@@ -108,16 +103,16 @@ fn what_is_wrong_with_a_file_is_told_without_commands_in_both_languages() {
             ..settings(Page::Statistics)
         };
         let mut window = Window::with(place, scripts(), settings);
-        window.click(words.care.title);
-        window.wait_for(words.care.never_synced);
+        window.click_for(words.care.title, words.care.never_synced);
         window.write(words.care.other_file, &no_history);
-        window.click(words.care.import);
-        window.wait_for_part(words.care.failed);
+        window.click_for_part(words.care.import, words.care.failed);
         if language == Language::Korean {
             window.wait_for_part("이 프로그램의 것이 아님: 테이블");
         }
-        window.click(words.care.check);
-        window.wait_for_part(words.care.damaged.split('{').next().unwrap_or_default());
+        window.click_for_part(
+            words.care.check,
+            words.care.damaged.split('{').next().unwrap_or_default(),
+        );
         let told = window.shown();
         let commands = told
             .iter()

@@ -29,8 +29,7 @@ fn a_run_from_the_window_is_that_of_the_command_line() {
             window.click_last(list);
             window.click(value);
         }
-        window.click(words.drive.drive);
-        window.wait_for(words.drive.figures);
+        window.click_for(words.drive.drive, words.drive.figures);
         let error_cm = format!("{:.1} cm", number(&run["stop_error_m"]) * 100.0);
         let error_cm = error_cm.trim_start_matches('-');
         assert!(window.shows_part(error_cm), "{error_cm}");
@@ -60,7 +59,6 @@ fn a_long_order_is_stopped_and_how_far_it_came_is_told() {
         window.click(value);
     }
     window.click(words.drive.drive);
-    window.click(words.memory.stop);
-    window.wait_for_part("Stopped: ");
+    window.click_for_part(words.memory.stop, "Stopped: ");
     assert!(window.enabled(words.drive.drive));
 }

@@ -37,8 +37,7 @@ fn the_window_tells_the_facts_of_every_run() {
             let began = clock::local(store.run(run.id).expect("recorded").run.started_at_us);
             let name = [&*began, &*format!("M-{}", run.seed)].join(DOT);
             window.page(Page::Report);
-            window.click(&name);
-            window.wait_for(&run.id.to_string());
+            window.click_for(&name, &run.id.to_string());
             let shown = window.shown();
             let row = shown.iter().position(|text| *text == name).expect("listed");
             let state = verdict(&shown[row + 1], language).expect("a verdict");

@@ -35,8 +35,7 @@ fn what_the_generator_saves_is_opened_and_heard() {
         window.wait_for_part(&saved(&file));
         assert!(window.place.path("made.wav").is_file());
         window.click(said.recording_of);
-        window.click(said.open);
-        window.wait_for_part("5a c3");
+        window.click_for_part(said.open, "5a c3");
         window.wait_for(said.waveform);
         window.keep_picture(&format!("waves {language:?}"));
         // Never over one that is there.
@@ -49,10 +48,10 @@ fn what_the_generator_saves_is_opened_and_heard() {
         let text = window.place.text_path("text.wav");
         window.name_file(words.common.file, &text);
         window.click(said.open);
-        window.wait_for_part(match language {
-            Language::English => "text.wav is no WAV file",
-            Language::Korean => "읽을 수 있는 WAV 파일이 아닙니다",
-        });
+        window.wait_for_part(language.choose([
+            "text.wav is no WAV file",
+            "읽을 수 있는 WAV 파일이 아닙니다",
+        ]));
         assert!(window.shows_part("5a c3"), "what was shown stays");
     }
 }

@@ -61,8 +61,7 @@ fn the_whole_way(language: Language) {
                 .iter()
                 .any(|text| of_item(text, words.bench.item_test_board))
     });
-    window.click(words.frame.disarm);
-    window.wait_for(words.frame.arm);
+    window.click_for(words.frame.disarm, words.frame.arm);
 
     window.page(Page::Procedures);
     window.click_in(words.procedures.choice, words.procedures.none);
@@ -76,10 +75,10 @@ fn the_whole_way(language: Language) {
         window.click(title);
     }
     window.click(words.procedures.run);
-    window.wait_for_part(match language {
-        Language::English => "replace the EB relay (eb_relay, ",
-        Language::Korean => "교체 대상: 비상제동 계전기 (eb_relay, ",
-    });
+    window.wait_for_part(language.choose([
+        "replace the EB relay (eb_relay, ",
+        "교체 대상: 비상제동 계전기 (eb_relay, ",
+    ]));
     let run = window.place.json("runs show latest --json");
     for step in run["steps"].as_array().expect("steps") {
         if step["procedure"] == "ptu/identity" {
@@ -107,8 +106,7 @@ fn the_whole_way(language: Language) {
     window.until("the pulled run", |window| pulled(window).is_some());
     let trace = pulled(&window).expect("just seen");
     window.click(&trace);
-    window.click(words.memory.compare);
-    window.wait_for_part("line line8 section 61");
+    window.click_for_part(words.memory.compare, "line line8 section 61");
 }
 
 #[test]
@@ -183,10 +181,8 @@ fn a_run_whose_link_was_lost_goes_on_with_its_step() {
     settings.unit.endpoint = unit.address.clone();
     let mut window = Window::with(Place::new(), &scripts, settings);
     let words = Language::English.words();
-    window.connect();
-    window.wait_for("SIM-0001");
-    window.click(words.procedures.run);
-    window.wait_for("There?");
+    window.connect_simulated();
+    window.click_for(words.procedures.run, "There?");
     unit.kill();
     window.wait_for_part("link lost at step 2 of 3");
     window.wait_for(words.frame.link_gone);
@@ -194,11 +190,9 @@ fn a_run_whose_link_was_lost_goes_on_with_its_step() {
     assert!(!window.shows_part("link 100"));
     let broken = latest(&window)["run"]["id"].clone();
     let _again = Unit::at_port(&unit.port);
-    window.click(words.frame.go_on);
-    window.wait_for("There?");
+    window.click_for(words.frame.go_on, "There?");
     assert!(!window.shows(words.frame.link_gone));
-    window.click("Yes");
-    window.wait_for_part("Run over: passed");
+    window.click_for_part("Yes", "Run over: passed");
     let rest = latest(&window);
     assert_eq!(rest["run"]["continues"], broken);
     let steps = list(&rest["steps"]).iter();
