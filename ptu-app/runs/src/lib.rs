@@ -57,4 +57,5 @@ mod test_support;
 pub mod train_server;
 pub mod typed;
 pub mod unit_log;
+pub mod whole_file;
 pub mod words;
