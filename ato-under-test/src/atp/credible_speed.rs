@@ -26,7 +26,7 @@ const BACK: Duration = Duration::from_ms(1_000);
 
 /// Evidence against which the speed is held in a scan.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Witness {
+pub struct SpeedEvidence {
     /// Speed of the axles that TCMS measures; `None` = it does not tell.
     pub tcms_speed: Option<Speed>,
     /// Share by which the unit's clock is faster than TCMS's; 0 if it is not.
@@ -40,7 +40,7 @@ pub struct Witness {
     pub unguarded: bool,
 }
 
-impl Witness {
+impl SpeedEvidence {
     /// TCMS tells of a train that moves.
     pub fn tcms_moves(&self, config: &TachoConfig) -> bool {
         self.tcms_speed
@@ -88,13 +88,13 @@ impl CredibleSpeed {
         now: Instant,
         speeds: [Speed; 2],
         pulses: bool,
-        witness: Witness,
+        evidence: SpeedEvidence,
         config: &TachoConfig,
         log: &mut EventLog,
     ) {
         let speed = speeds[0].max(speeds[1]);
-        self.hold_clock(now, witness, config, log);
-        if witness.unguarded || witness.tested {
+        self.hold_clock(now, evidence, config, log);
+        if evidence.unguarded || evidence.tested {
             *self = Self {
                 reference_mps: speed.mps(),
                 last_mps: speed.mps(),
@@ -109,27 +109,27 @@ impl CredibleSpeed {
             self.reference_mps = speed.mps();
         }
         self.follow(now, speed, config, log);
-        let told = witness.contradicts(speed, config);
+        let told = evidence.contradicts(speed, config);
         self.told_mps = told.map_or(0.0, Speed::mps);
         let lasts = self.contradicts.update(now, told.is_some(), CONTRADICTS);
         if let Some(told) = told.filter(|_| lasts && self.doubted_mps.is_none()) {
             self.doubted_mps = Some(0.0);
             log.push(now, Event::SpeedContradicted, i32::from(told.to_cms()));
         }
-        self.settle(now, speed, witness, config);
-        self.await_start(now, pulses, witness, config, log);
+        self.settle(now, speed, evidence, config);
+        self.await_start(now, pulses, evidence, config, log);
     }
 
     /// Compares the clock with TCMS's; a share that late frames can cause does not count.
     fn hold_clock(
         &mut self,
         now: Instant,
-        witness: Witness,
+        evidence: SpeedEvidence,
         config: &TachoConfig,
         log: &mut EventLog,
     ) {
-        let ahead = witness.clock_ahead;
-        let off = ahead > config.clock_share && !witness.unguarded;
+        let ahead = evidence.clock_ahead;
+        let off = ahead > config.clock_share && !evidence.unguarded;
         self.clock_fast = if off { ahead } else { 0.0 };
         if self.clock_told.rises(off) {
             log.push(
@@ -181,13 +181,19 @@ impl CredibleSpeed {
     }
 
     /// Ends the doubt: the train must have stopped by now, or pulses are back.
-    fn settle(&mut self, now: Instant, speed: Speed, witness: Witness, config: &TachoConfig) {
+    fn settle(
+        &mut self,
+        now: Instant,
+        speed: Speed,
+        evidence: SpeedEvidence,
+        config: &TachoConfig,
+    ) {
         let Some(doubted_mps) = &mut self.doubted_mps else {
             return;
         };
         // The emergency brake is applied meanwhile.
         *doubted_mps = (*doubted_mps - config.least_brake_mps2 * SCAN.as_secs()).max(0.0);
-        let stopped = *doubted_mps == 0.0 && !witness.tcms_moves(config);
+        let stopped = *doubted_mps == 0.0 && !evidence.tcms_moves(config);
         let turns = speed.kmh() > config.standstill_kmh
             && self.reference_mps <= speed.mps()
             && self.told_mps == 0.0;
@@ -203,7 +209,7 @@ impl CredibleSpeed {
         &mut self,
         now: Instant,
         pulses: bool,
-        witness: Witness,
+        evidence: SpeedEvidence,
         config: &TachoConfig,
         log: &mut EventLog,
     ) {
@@ -212,9 +218,9 @@ impl CredibleSpeed {
             self.cut = false;
         }
         let span = Duration::from_ms(u64::from(config.no_pulses_ms));
-        let waits = witness.powers && !pulses && !self.cut;
+        let waits = evidence.powers && !pulses && !self.cut;
         self.cut |= self.powerless.update(now, waits, span);
-        self.cut &= !witness.acknowledge;
+        self.cut &= !evidence.acknowledge;
         if self.told.rises(self.cut) {
             log.push(now, Event::NoPulses, config.no_pulses_ms as i32);
         }

@@ -43,7 +43,7 @@ use yard::Yard;
 pub use brake_proof::{BrakeProof, BrakeState, Demand};
 pub use causes::shown_cause;
 pub use code::{Code, CodeDecoder, lookup};
-pub use credible_speed::Witness;
+pub use credible_speed::SpeedEvidence;
 pub use door_lines::DoorLines;
 pub use doors::{DoorInputs, Doors};
 pub use emergency::{BrakeInputs, EmergencyBrake};
@@ -172,8 +172,8 @@ impl Atp {
         let reverser = (inputs.lines).intersection(TrainLines::FORWARD | TrainLines::BACKWARD);
         (self.reverser).step(now, (reverser, moves), Event::ReverserChatters, log);
         self.tachometers.correct(context.runs_farther);
-        let witness = self.witness(inputs, context);
-        self.tachometers.step(now, inputs, witness, config, log);
+        let evidence = self.evidence(inputs, context);
+        self.tachometers.step(now, inputs, evidence, config, log);
         let (speed, standstill) = (self.tachometers.speed(), self.tachometers.standstill());
         let still = self.tachometers.still();
         let mode = self.sequence.mode();
@@ -338,14 +338,14 @@ impl Atp {
     }
 
     /// Evidence against which the speed is held.
-    fn witness(&self, inputs: &Inputs, context: ScanContext) -> Witness {
+    fn evidence(&self, inputs: &Inputs, context: ScanContext) -> SpeedEvidence {
         let notch = match self.sequence.mode() {
             Mode::AutomaticRun => context.ato_powers,
             Mode::Off => false,
             _ => inputs.controller > 0,
         };
         let held = self.power_cut() || context.tcms_holds;
-        Witness {
+        SpeedEvidence {
             tcms_speed: context.tcms_speed,
             clock_ahead: context.clock_ahead,
             powers: notch && !held,

@@ -23,8 +23,6 @@ use super::report::{Report, Scan};
 use super::timer::OnDelay;
 use super::view::{TcmsEvent, TcmsView};
 
-use driving::share;
-
 /// Speed below which the train stands: its direction may change, and its cabs, m/s [default].
 const STANDS_MPS: f64 = 0.1;
 /// Longest time effort goes on by in one step, s: after a gap it goes on from where it was.
@@ -178,7 +176,7 @@ impl Tcms {
         let turned = self.turn(&scan, speed_mps);
         let power_cut = !power_cuts.is_empty() || !turned;
         let driving = self.drive(&scan, volts, power_cut, &line);
-        let share = share(&driving, &brake);
+        let share = Self::share(&driving, &brake);
         let demands = self.share_out(
             &scan,
             &Order {

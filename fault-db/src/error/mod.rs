@@ -1,7 +1,7 @@
 //! Errors of the store, each with the file or server it concerns and the next move. A message that tells to
 //! choose another file does not say how: the caller adds that.
 
-mod misplaced;
+mod file_change;
 mod query_limit;
 mod server;
 mod sqlite;
@@ -13,7 +13,7 @@ use crate::maintenance::Damage;
 use crate::trace::TraceError;
 use crate::values::fault_state::TransitionError;
 use crate::values::withdrawal_error::WithdrawalError;
-pub use misplaced::Misplaced;
+pub use file_change::FileChange;
 pub use query_limit::{MOST_RESULT_BYTES, QueryLimit};
 pub use server::ServerReason;
 
@@ -65,11 +65,11 @@ pub enum StoreError {
     },
     /// The file is no longer the one that was opened, or another name leads to it, too.
     #[error("the database {} {what}", .path.display())]
-    Misplaced {
+    FileChanged {
         /// The database file.
         path: PathBuf,
         /// Change of the file.
-        what: Misplaced,
+        what: FileChange,
     },
     /// The file is an older copy: more of its chain of seals is known elsewhere.
     #[error("{} is a copy from before: it ends with entry {here} of its chain of seals, and {there} are known there; if it is a backup that is to be gone on with, give it a name of its own with `db sync --as-copy`, else go on with the file itself", .path.display())]

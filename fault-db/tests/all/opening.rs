@@ -206,7 +206,7 @@ fn a_file_that_is_another_one_when_it_is_closed_is_told() {
         deed(&path);
         let closed = store.close();
         assert!(
-            matches!(closed, Err(StoreError::Misplaced { .. })),
+            matches!(closed, Err(StoreError::FileChanged { .. })),
             "{closed:?}"
         );
     }

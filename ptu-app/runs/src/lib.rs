@@ -28,6 +28,7 @@ pub mod clock;
 pub mod coverage;
 pub mod data;
 pub mod drive;
+mod endpoint;
 pub mod failure;
 mod fleet;
 pub mod keys;

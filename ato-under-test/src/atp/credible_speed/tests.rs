@@ -21,12 +21,12 @@ impl Train {
             now: Instant::ZERO,
             speed: 0.0,
         };
-        train.go(kmh / 3.6, 1.0, Witness::default());
-        train.run(1.0, Witness::default());
+        train.go(kmh / 3.6, 1.0, SpeedEvidence::default());
+        train.run(1.0, SpeedEvidence::default());
         train
     }
 
-    fn run(&mut self, seconds: f64, witness: Witness) {
+    fn run(&mut self, seconds: f64, evidence: SpeedEvidence) {
         for _ in 0..(seconds * 100.0) as u32 {
             self.now += SCAN;
             let speed = Speed::from_mps(self.speed);
@@ -35,7 +35,7 @@ impl Train {
                 self.now,
                 [speed; 2],
                 self.speed > 0.0,
-                witness,
+                evidence,
                 config,
                 &mut self.log,
             );
@@ -43,11 +43,11 @@ impl Train {
     }
 
     /// Drives to a speed at this rate, m/s and m/s².
-    fn go(&mut self, to: f64, mps2: f64, witness: Witness) {
+    fn go(&mut self, to: f64, mps2: f64, evidence: SpeedEvidence) {
         while (self.speed - to).abs() > 1e-9 {
             let step = (to - self.speed).clamp(-mps2 * 0.01, mps2 * 0.01);
             self.speed += step;
-            self.run(0.01, witness);
+            self.run(0.01, evidence);
         }
     }
 
@@ -60,19 +60,19 @@ impl Train {
 fn a_train_that_brakes_is_believed_and_one_whose_pulses_vanish_is_not() {
     for kmh in [5.0, 15.0, 60.0] {
         let mut train = Train::at(kmh);
-        train.go(0.0, 3.3, Witness::default());
-        train.run(3.0, Witness::default());
+        train.go(0.0, 3.3, SpeedEvidence::default());
+        train.run(3.0, SpeedEvidence::default());
         assert!(!train.doubts(), "{kmh}");
         let mut train = Train::at(kmh);
-        train.go(0.0, 100.0, Witness::default());
-        train.run(0.2, Witness::default());
+        train.go(0.0, 100.0, SpeedEvidence::default());
+        train.run(0.2, SpeedEvidence::default());
         assert!(train.doubts(), "{kmh}");
         // As long as a stop takes at the least rate, 0.8 m/s².
-        train.run(kmh / 3.6 / 0.8 - 0.5, Witness::default());
+        train.run(kmh / 3.6 / 0.8 - 0.5, SpeedEvidence::default());
         assert!(train.doubts(), "{kmh}");
         train.run(2.0, told(15.0));
         assert!(train.doubts(), "TCMS says that it moves");
-        train.run(0.02, Witness::default());
+        train.run(0.02, SpeedEvidence::default());
         assert!(!train.doubts(), "{kmh}");
     }
 }
@@ -88,12 +88,12 @@ fn noise_that_ends_is_no_fall() {
         let speeds = [mps + noise, mps].map(Speed::from_mps);
         train.now += SCAN;
         let config = &train.config.tacho;
-        let witness = Witness::default();
+        let evidence = SpeedEvidence::default();
         train.credible.step(
             train.now,
             speeds,
             mps > 0.0,
-            witness,
+            evidence,
             config,
             &mut train.log,
         );
@@ -104,18 +104,18 @@ fn noise_that_ends_is_no_fall() {
 #[test]
 fn half_of_the_speed_gone_at_once_is_not_believed_either() {
     let mut train = Train::at(60.0);
-    train.go(30.0 / 3.6, 100.0, Witness::default());
-    train.run(0.7, Witness::default());
+    train.go(30.0 / 3.6, 100.0, SpeedEvidence::default());
+    train.run(0.7, SpeedEvidence::default());
     assert!(train.doubts());
-    train.run(5.0, Witness::default());
+    train.run(5.0, SpeedEvidence::default());
     assert!(!train.doubts(), "pulses are back");
 }
 
 /// A TCMS that tells of axles at this speed, km/h.
-fn told(kmh: f64) -> Witness {
-    Witness {
+fn told(kmh: f64) -> SpeedEvidence {
+    SpeedEvidence {
         tcms_speed: Some(Speed::from_kmh(kmh)),
-        ..Witness::default()
+        ..SpeedEvidence::default()
     }
 }
 
@@ -147,29 +147,29 @@ fn tachometers_that_both_read_much_less_than_tcms_are_not_believed() {
         assert_eq!(train.doubts(), doubts, "TCMS at {kmh}");
     }
     let mut train = Train::at(45.0);
-    train.run(30.0, Witness::default());
+    train.run(30.0, SpeedEvidence::default());
     assert!(!train.doubts(), "it does not tell");
 }
 
 #[test]
 fn power_that_moves_nothing_is_cut_until_it_is_acknowledged() {
     let mut train = Train::at(0.0);
-    let powers = Witness {
+    let powers = SpeedEvidence {
         powers: true,
-        ..Witness::default()
+        ..SpeedEvidence::default()
     };
     let ms = f64::from(train.config.tacho.no_pulses_ms);
     train.run(ms / 1e3 - 0.1, powers);
     assert!(!train.credible.cuts_power());
     train.run(0.2, powers);
     assert!(train.credible.cuts_power());
-    train.run(1.0, Witness::default());
+    train.run(1.0, SpeedEvidence::default());
     assert!(train.credible.cuts_power());
     train.run(
         0.1,
-        Witness {
+        SpeedEvidence {
             acknowledge: true,
-            ..Witness::default()
+            ..SpeedEvidence::default()
         },
     );
     assert!(!train.credible.cuts_power());
@@ -179,14 +179,14 @@ fn power_that_moves_nothing_is_cut_until_it_is_acknowledged() {
 fn test_signals_and_a_dead_guard_are_not_compared() {
     for (tested, unguarded) in [(true, false), (false, true)] {
         let mut train = Train::at(60.0);
-        let witness = Witness {
+        let evidence = SpeedEvidence {
             tested,
             unguarded,
             powers: true,
             ..told(60.0)
         };
-        train.go(0.0, 100.0, witness);
-        train.run(10.0, witness);
+        train.go(0.0, 100.0, evidence);
+        train.run(10.0, evidence);
         assert!(!train.doubts() && !train.credible.cuts_power());
     }
 }

@@ -124,18 +124,18 @@ impl Tcms {
                 effort.step(dt_s, order, scan.inputs.equipment)
             })
     }
-}
 
-/// Share of full effort, −1..1. The maximum service brake is an order of its own: no mask of the value
-/// takes it away.
-pub(super) fn share(driving: &DrivingOutputs, brake: &BrakeOutputs) -> f64 {
-    if brake.bcymsb {
-        return -1.0;
-    }
-    let value = f64::from(driving.drytebe);
-    if value < 0.0 {
-        value / -f64::from(FULL_BRAKE)
-    } else {
-        value / f64::from(FULL_POWER)
+    /// Share of full effort, −1..1. The maximum service brake is an order of its own: no mask of the value
+    /// takes it away.
+    pub(super) fn share(driving: &DrivingOutputs, brake: &BrakeOutputs) -> f64 {
+        if brake.bcymsb {
+            return -1.0;
+        }
+        let value = f64::from(driving.drytebe);
+        if value < 0.0 {
+            value / -f64::from(FULL_BRAKE)
+        } else {
+            value / f64::from(FULL_POWER)
+        }
     }
 }

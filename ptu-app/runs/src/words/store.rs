@@ -1,16 +1,17 @@
 //! Messages of the history about its troubles, in both languages: at a command line with what helps there.
 
+use std::path::Path;
+
 use fault_db::{
-    FaultAction, Misplaced, QueryLimit, ServerReason, StoreError, TraceError, TransitionError,
+    FaultAction, FileChange, QueryLimit, ServerReason, StoreError, TraceError, TransitionError,
     WithdrawalError,
 };
 
 use super::nouns::{event_kind, fault_state, noun};
-use super::{Manner, Say, damage};
-use crate::failure::{in_place_of, store_message};
+use super::{Say, TextStyle, damage};
 
 impl Say for StoreError {
-    fn say(&self, how: Manner) -> String {
+    fn say(&self, how: TextStyle) -> String {
         match how.commands {
             true => how.choose([
                 store_message(self),
@@ -18,6 +19,30 @@ impl Say for StoreError {
             ]),
             false => how.choose(in_window(self)),
         }
+    }
+}
+
+/// The message of a database error. Where its next move is another database, the flag that names one is added.
+pub fn store_message(error: &StoreError) -> String {
+    match in_place_of(error) {
+        Some(_) => format!("{error} with --db"),
+        None => error.to_string(),
+    }
+}
+
+/// The file in whose place an error says to choose another.
+pub fn in_place_of(error: &StoreError) -> Option<&Path> {
+    match error {
+        StoreError::Locked(path)
+        | StoreError::Full(path)
+        | StoreError::ReadOnly(path)
+        | StoreError::NotADatabase(path)
+        | StoreError::ForeignDatabase { path, .. }
+        | StoreError::NewerSchema { path, .. }
+        | StoreError::Missing(path)
+        | StoreError::CannotOpen { path, .. }
+        | StoreError::NotAFile(path) => Some(path),
+        _ => None,
     }
 }
 
@@ -68,13 +93,13 @@ pub(super) fn in_window(error: &StoreError) -> [String; 2] {
                 format!("파일이 임의로 변경되어 기록하지 않습니다: {path} ({}{more_ko}). 이 파일의 사본을 그대로 보관하고 백업으로 계속하거나, 이 프로그램의 것이 아닌 내용을 제거한 후 다시 검사하십시오", damage::korean(what)),
             ]
         }
-        S::Misplaced { path, what } => same(match what {
-            Misplaced::Removed => format!("데이터베이스 파일이 삭제되었습니다: {}", path.display()),
-            Misplaced::Replaced => format!("데이터베이스가 다른 파일로 바뀌었습니다: {}", path.display()),
-            Misplaced::SecondName => format!("데이터베이스에 다른 이름(하드 링크)이 있습니다: {}. 그 이름을 지우십시오", path.display()),
-            Misplaced::NoLog => format!("데이터베이스 옆의 기록 파일(-wal)이 삭제되거나 바뀌었습니다: {}", path.display()),
-            Misplaced::WrittenOver => format!("데이터베이스에 다른 내용이 덮어써져 시험이 기록된 그대로 남아 있지 않습니다: {}", path.display()),
-            Misplaced::Gone => format!("데이터베이스가 없어졌습니다: {}", path.display()),
+        S::FileChanged { path, what } => same(match what {
+            FileChange::Removed => format!("데이터베이스 파일이 삭제되었습니다: {}", path.display()),
+            FileChange::Replaced => format!("데이터베이스가 다른 파일로 바뀌었습니다: {}", path.display()),
+            FileChange::SecondName => format!("데이터베이스에 다른 이름(하드 링크)이 있습니다: {}. 그 이름을 지우십시오", path.display()),
+            FileChange::NoLog => format!("데이터베이스 옆의 기록 파일(-wal)이 삭제되거나 바뀌었습니다: {}", path.display()),
+            FileChange::WrittenOver => format!("데이터베이스에 다른 내용이 덮어써져 시험이 기록된 그대로 남아 있지 않습니다: {}", path.display()),
+            FileChange::Gone => format!("데이터베이스가 없어졌습니다: {}", path.display()),
         }),
         S::EarlierCopy { path, here, there } => [
             format!("{} is a copy from before: it ends with entry {here} of its chain of seals, and {there} are known there; go on with the file itself", path.display()),

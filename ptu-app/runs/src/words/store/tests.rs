@@ -8,12 +8,12 @@ use crate::failure::{Failure, Near, RunTrouble, Trouble, Unknown};
 const SOURCE: &str = include_str!("../store.rs");
 const ERRORS: &str = include_str!("../../../../../fault-db/src/error/mod.rs");
 /// English and Korean, as a window says them.
-const WINDOW: [Manner; 2] = [
-    Manner {
+const WINDOW: [TextStyle; 2] = [
+    TextStyle {
         korean: false,
         commands: false,
     },
-    Manner {
+    TextStyle {
         korean: true,
         commands: false,
     },
