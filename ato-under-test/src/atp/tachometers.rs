@@ -53,7 +53,7 @@ struct Noise {
 }
 
 impl Tachometers {
-    /// Standing.
+    /// Tachometers of a train that stands.
     pub fn new(config: &UnitConfig) -> Self {
         let window = Duration::from_ms(u64::from(config.tacho.window_ms));
         let meter = || Speedometer::new(window, config.metres_per_pulse());
