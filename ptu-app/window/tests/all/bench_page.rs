@@ -4,7 +4,10 @@ use btu_rig::rig::Harness;
 use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 
-use crate::common::{Place, scripts, window::Window};
+use crate::common::{
+    Place, scripts,
+    window::{Window, settings},
+};
 use ptu_options::Page;
 use ptu_report::words::Language;
 use ptu_runs::run::BenchChoice;
@@ -27,10 +30,7 @@ fn fold(window: &mut Window, groups: &[&str]) {
 }
 
 fn on_bench() -> Settings {
-    Settings {
-        page: Page::Bench,
-        ..Settings::default()
-    }
+    settings(Page::Bench)
 }
 
 /// A speed above the limit of the code given makes the emergency brake lamp say so.

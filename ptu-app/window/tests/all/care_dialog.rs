@@ -1,12 +1,11 @@
 //! The care of the history in the window: import of another file, backup, check.
 
 use crate::common::is_english;
-use crate::common::window::{Window, settings};
+use crate::common::window::{Window, settings_in};
 use crate::common::{Place, list, record_bad_unit, scripts};
 use fault_db::ProblemKind;
 use ptu_options::Page;
 use ptu_report::words::{Language, fill};
-use ptu_window::Settings;
 
 /// Goal: a depot without a terminal brings in another laptop's history, copies its own and checks it, and is told in its
 /// language what came of each. Method: two laptops that saw one unit each; what the dialog says is what the files hold.
@@ -18,10 +17,7 @@ fn another_history_is_imported_and_the_file_is_backed_up_and_checked() {
         record_bad_unit(&other);
         let place = Place::new();
         place.recorded_run();
-        let settings = Settings {
-            language,
-            ..settings(Page::Statistics)
-        };
+        let settings = settings_in(language, Page::Statistics);
         let mut window = Window::with(place, scripts(), settings);
         window.click_for(words.title, words.never_synced);
         // Nothing is named yet: nothing can be imported.
@@ -66,10 +62,7 @@ fn an_import_ends_when_it_is_stopped() {
     record_bad_unit(&other);
     let place = Place::new();
     place.recorded_run();
-    let settings = Settings {
-        language,
-        ..settings(Page::Statistics)
-    };
+    let settings = settings_in(language, Page::Statistics);
     let holder = rusqlite::Connection::open(place.path("history.db")).expect("the file");
     let mut window = Window::with(place, scripts(), settings);
     window.click_for(words.care.title, words.care.never_synced);
@@ -98,10 +91,7 @@ fn what_is_wrong_with_a_file_is_told_without_commands_in_both_languages() {
         done.expect("damaged");
         drop(damage);
         let no_history = place.write("list.txt", "no history at all, but a text of some length");
-        let settings = Settings {
-            language,
-            ..settings(Page::Statistics)
-        };
+        let settings = settings_in(language, Page::Statistics);
         let mut window = Window::with(place, scripts(), settings);
         window.click_for(words.care.title, words.care.never_synced);
         window.write(words.care.other_file, &no_history);

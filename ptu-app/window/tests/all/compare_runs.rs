@@ -3,10 +3,9 @@
 use fault_db::Verdict;
 use ptu_options::Page;
 use ptu_report::words::Language;
-use ptu_window::Settings;
 
 use crate::common::is_english;
-use crate::common::window::Window;
+use crate::common::window::{Window, settings_in};
 use crate::common::{Place, list, number, scripts, text};
 use crate::layout::complaints;
 
@@ -130,11 +129,7 @@ fn a_second_run_of_the_unit_is_chosen_beside_the_sheet() {
         let (place, [_, after]) = before_and_after();
         // A run of another unit is not offered.
         place.ptu("run tcms/link").exits(0);
-        let settings = Settings {
-            page: Page::Report,
-            language,
-            ..Settings::default()
-        };
+        let settings = settings_in(language, Page::Report);
         let mut window = Window::with(place, scripts(), settings);
         window.wait_for_part("SIM-0001");
         window.click_part(" · BAD-1");

@@ -1,10 +1,9 @@
 //! The page of automatic runs.
 
-use crate::common::window::{Window, settings};
+use crate::common::window::{Window, settings, settings_in};
 use crate::common::{Place, number, scripts};
 use ptu_options::Page;
 use ptu_report::words::Language;
-use ptu_window::Settings;
 
 /// Goal: who has no terminal drives the same run as the command line. Method: a full train is driven from the window in both
 /// languages; figures, place of the stop and events are those of the command.
@@ -16,10 +15,7 @@ fn a_run_from_the_window_is_that_of_the_command_line() {
         let command = ["drive", "--load", "full", "--controller", "pss", "--json"];
         let said = place.ptu(&command);
         let run: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
-        let settings = Settings {
-            language,
-            ..settings(Page::Drive)
-        };
+        let settings = settings_in(language, Page::Drive);
         let mut window = Window::with(place, scripts(), settings);
         for (list, value) in [
             (words.drive.load, words.drive.full),

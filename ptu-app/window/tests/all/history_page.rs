@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::window::Window;
+use crate::common::window::{Window, settings_in};
 use crate::common::{Place, scripts};
 use eframe::egui::Key;
 use ptu_options::Page;
@@ -161,11 +161,7 @@ fn what_was_written_about_a_fault_can_be_undone_for_ten_seconds() {
 /// led by the window; then every page that tells of it.
 #[test]
 fn korean_pages_name_measurements_parts_and_severities_in_korean() {
-    let mut settings = Settings {
-        page: Page::Procedures,
-        language: Language::Korean,
-        ..Settings::default()
-    };
+    let mut settings = settings_in(Language::Korean, Page::Procedures);
     settings.unit.faults = vec!["eb_relay.slow".into()];
     let mut window = Window::with(Place::new(), scripts(), settings);
     let words = Language::Korean.words();

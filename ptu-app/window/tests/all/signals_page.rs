@@ -1,10 +1,9 @@
 //! The page of waveforms.
 
-use crate::common::window::{Window, settings};
+use crate::common::window::{Window, settings_in};
 use crate::common::{Place, scripts};
 use ptu_options::Page;
 use ptu_report::words::{Language, fill};
-use ptu_window::Settings;
 
 /// Goal: who has no terminal sees what is in a recording, and makes one. Method: the generator saves bytes with noise, and the
 /// page, in both languages, opens that file and shows the bytes and the drawings; a text is no recording, and that is said.
@@ -13,10 +12,7 @@ fn what_the_generator_saves_is_opened_and_heard() {
     for language in Language::ALL {
         let words = language.words();
         let said = &words.signals;
-        let settings = Settings {
-            language,
-            ..settings(Page::Signals)
-        };
+        let settings = settings_in(language, Page::Signals);
         let place = Place::new();
         let file = place.text_path("made.wav");
         place.write("text.wav", "a text");

@@ -1,6 +1,6 @@
 //! The statistics in the window: the figures of the command line, and bars that lead to their faults.
 
-use crate::common::window::{Window, settings};
+use crate::common::window::{Window, settings, settings_in};
 use crate::common::{Place, list, scripts, text};
 use eframe::egui::Key;
 use ptu_options::Page;
@@ -28,10 +28,7 @@ fn depot() -> Place {
 }
 
 fn window(place: Place, language: Language) -> Window {
-    let settings = Settings {
-        language,
-        ..settings(Page::Statistics)
-    };
+    let settings = settings_in(language, Page::Statistics);
     Window::with(place, scripts(), settings)
 }
 

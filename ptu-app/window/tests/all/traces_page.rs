@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::common::window::Window;
+use crate::common::window::{Window, settings};
 use crate::common::{Place, scripts};
 use eframe::egui::Key;
 use ptu_options::Page;
@@ -197,10 +197,7 @@ fn in_korean_a_trace_is_found_by_its_fault_and_unit() {
 fn a_database_that_is_none_is_told_and_the_window_stays() {
     let place = Place::new();
     place.write("history.db", "this is no database");
-    let settings = Settings {
-        page: Page::Traces,
-        ..Settings::default()
-    };
+    let settings = settings(Page::Traces);
     let mut window = Window::with(place, scripts(), settings);
     window.wait_for_part("The traces cannot be listed");
     for _ in 0..3 {

@@ -510,11 +510,16 @@ fn button(pos: Pos2, pressed: bool) -> Event {
 /// A window on the history of a bad unit, in this language.
 pub fn on_bad_unit(language: Language) -> Window {
     let place = Place::with_bad_unit();
-    let settings = Settings {
-        language,
-        ..settings(Page::Case)
-    };
+    let settings = settings_in(language, Page::Case);
     Window::with(place, scripts(), settings)
+}
+
+/// Settings of a window that shows this page, in a language.
+pub fn settings_in(language: Language, page: Page) -> Settings {
+    Settings {
+        language,
+        ..settings(page)
+    }
 }
 
 pub fn settings(page: Page) -> Settings {

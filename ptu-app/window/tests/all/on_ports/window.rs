@@ -2,13 +2,12 @@
 //! connection to the part that failed, the unit's log and its run record, in both languages.
 
 use crate::common::served::Unit;
-use crate::common::window::{Window, latest, own_scripts, settings};
+use crate::common::window::{Window, latest, own_scripts, settings, settings_in};
 use crate::common::{Place, list, scripts};
 use eframe::egui::Key;
 use ptu_options::Page;
 use ptu_report::words::{Language, Words};
 use ptu_runs::bench_worker::Phase;
-use ptu_window::Settings;
 
 /// Something that begins with `first` and ends with the last words of `pattern` is shown.
 fn told(window: &Window, first: &str, pattern: &str) -> bool {
@@ -27,11 +26,7 @@ fn the_whole_way(language: Language) {
     let campaign = ["campaign", "--harness", "none", "--faults", "eb_relay.slow"];
     place.ptu(&campaign).exits(0);
     let train = Unit::aboard(&["--service", "61", "--inject", "eb_relay.slow"]);
-    let mut settings = Settings {
-        page: Page::Bench,
-        language,
-        ..Settings::default()
-    };
+    let mut settings = settings_in(language, Page::Bench);
     settings.unit.endpoint = train.address.clone();
     settings.unit.train_no = "301".into();
     let mut window = Window::with(place, scripts(), settings);
@@ -203,10 +198,7 @@ fn a_run_whose_link_was_lost_goes_on_with_its_step() {
 #[test]
 fn the_windows_buttons_read_the_unit_that_is_not_connected() {
     let unit = Unit::on_tcp(&["--serial-no", "MEM-3"]);
-    let mut settings = Settings {
-        page: Page::Faults,
-        ..Settings::default()
-    };
+    let mut settings = settings(Page::Faults);
     settings.unit.endpoint = unit.address.clone();
     let mut window = Window::with(Place::new(), scripts(), settings);
     window.click_in("Records kept in the unit", "Import the unit's log");
