@@ -1,7 +1,7 @@
 //! Motion under a stop (code 0, absolute stop, no code), and what follows a service brake that does not slow the
 //! train, whatever asks for it.
 
-use crate::common::{Bench, fault};
+use crate::common::{Bench, fault, fault_from};
 use crate::journey::Journey;
 use proptest::prelude::*;
 use protocol::injection::{Effect, FaultMode, Place};
@@ -193,11 +193,7 @@ fn not_permitted() -> Bench {
 }
 
 fn ato_failed() -> Bench {
-    let dead = FaultMode {
-        onset_s: 30.0,
-        ..fault(Place::AtoCpu, Effect::Dead)
-    };
-    on_the_way(&[dead], |_| {})
+    on_the_way(&[fault_from(Place::AtoCpu, Effect::Dead, 30.0)], |_| {})
 }
 
 const CAUSES: [Brought; 7] = [

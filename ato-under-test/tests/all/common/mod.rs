@@ -35,6 +35,14 @@ pub fn fault(place: Place, effect: Effect) -> FaultMode {
     }
 }
 
+/// A fault that sets in at this time after power-up, s.
+pub fn fault_from(place: Place, effect: Effect, onset_s: f64) -> FaultMode {
+    FaultMode {
+        onset_s,
+        ..fault(place, effect)
+    }
+}
+
 pub struct Bench {
     pub unit: Unit,
     pub link: Link,
