@@ -105,12 +105,13 @@ pub fn one_in_scan(per_s: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use protocol::injection::Occurrence;
 
     use super::*;
 
-    fn loose(kmh: f64) -> FaultMode {
+    /// A fault of some part, from power-up on.
+    pub fn fault(place: Place, effect: Effect, occurs: Occurrence) -> FaultMode {
         FaultMode {
             id: "a.b".into(),
             lru: protocol::LruId::from_static("a"),
@@ -118,19 +119,20 @@ mod tests {
             severity: "major".into(),
             weight: 1.0,
             unsafe_: false,
-            place: Place::AtpAntenna,
-            effect: Effect::Dead,
+            place,
+            effect,
             out_of_reach: None,
             onset_s: 0.0,
             car: None,
-            occurs: Occurrence::AboveSpeed { kmh },
+            occurs,
             levels: Vec::new(),
         }
     }
 
     #[test]
     fn a_loose_contact_acts_while_the_wheels_turn_fast() {
-        let mut faults = Faults::new(&[loose(40.0)], 1);
+        let loose = Occurrence::AboveSpeed { kmh: 40.0 };
+        let mut faults = Faults::new(&[fault(Place::AtpAntenna, Effect::Dead, loose)], 1);
         let mut acts_at = |kmh: f64| {
             for i in 0..200u64 {
                 faults.roll(kmh / 3.6 * SCAN.as_secs());
@@ -146,17 +148,9 @@ mod tests {
 
     #[test]
     fn a_second_fault_does_not_change_the_spells_of_the_first() {
-        let at_times = FaultMode {
-            occurs: Occurrence::AtTimes {
-                on_s: 0.5,
-                off_s: 1.0,
-            },
-            ..loose(1.0)
-        };
-        let other = FaultMode {
-            place: Place::Tra,
-            ..at_times.clone()
-        };
+        let (on_s, off_s) = (0.5, 1.0);
+        let at_times = |place| fault(place, Effect::Dead, Occurrence::AtTimes { on_s, off_s });
+        let (at_times, other) = (at_times(Place::AtpAntenna), at_times(Place::Tra));
         let spells = |modes: &[FaultMode]| -> Vec<bool> {
             let mut faults = Faults::new(modes, 7);
             let at = |i: u64| {

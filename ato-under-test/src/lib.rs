@@ -47,6 +47,8 @@ mod test_board;
 mod timer;
 mod twc;
 mod unit;
+#[cfg(test)]
+mod with;
 
 pub use com::Port;
 pub use kernel::{LOG_CAPACITY, RUN_ROWS};

@@ -38,7 +38,7 @@ mod store;
 pub mod trace;
 mod values;
 
-pub use error::{MOST_RESULT_BYTES, Misplaced, QueryLimit, ServerReason, StoreError};
+pub use error::{FileChange, MOST_RESULT_BYTES, QueryLimit, ServerReason, StoreError};
 pub use exchange::domain::{Refusals, Refused};
 pub use exchange::{
     CopyOf, Difference, LastSync, MergeCounts, SyncOptions, SyncOutcome, SyncPhase, SyncProgress,

@@ -26,7 +26,7 @@ const BACK: Duration = Duration::from_ms(1_000);
 
 /// Evidence against which the speed is held in a scan.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Witness {
+pub struct SpeedEvidence {
     /// Speed of the axles that TCMS measures; `None` = it does not tell.
     pub tcms_speed: Option<Speed>,
     /// Share by which the unit's clock is faster than TCMS's; 0 if it is not.
@@ -40,7 +40,7 @@ pub struct Witness {
     pub unguarded: bool,
 }
 
-impl Witness {
+impl SpeedEvidence {
     /// TCMS tells of a train that moves.
     pub fn tcms_moves(&self, config: &TachoConfig) -> bool {
         self.tcms_speed
@@ -88,13 +88,13 @@ impl CredibleSpeed {
         now: Instant,
         speeds: [Speed; 2],
         pulses: bool,
-        witness: Witness,
+        evidence: SpeedEvidence,
         config: &TachoConfig,
         log: &mut EventLog,
     ) {
         let speed = speeds[0].max(speeds[1]);
-        self.hold_clock(now, witness, config, log);
-        if witness.unguarded || witness.tested {
+        self.hold_clock(now, evidence, config, log);
+        if evidence.unguarded || evidence.tested {
             *self = Self {
                 reference_mps: speed.mps(),
                 last_mps: speed.mps(),
@@ -109,27 +109,27 @@ impl CredibleSpeed {
             self.reference_mps = speed.mps();
         }
         self.follow(now, speed, config, log);
-        let told = witness.contradicts(speed, config);
+        let told = evidence.contradicts(speed, config);
         self.told_mps = told.map_or(0.0, Speed::mps);
         let lasts = self.contradicts.update(now, told.is_some(), CONTRADICTS);
         if let Some(told) = told.filter(|_| lasts && self.doubted_mps.is_none()) {
             self.doubted_mps = Some(0.0);
             log.push(now, Event::SpeedContradicted, i32::from(told.to_cms()));
         }
-        self.settle(now, speed, witness, config);
-        self.await_start(now, pulses, witness, config, log);
+        self.settle(now, speed, evidence, config);
+        self.await_start(now, pulses, evidence, config, log);
     }
 
     /// Compares the clock with TCMS's; a share that late frames can cause does not count.
     fn hold_clock(
         &mut self,
         now: Instant,
-        witness: Witness,
+        evidence: SpeedEvidence,
         config: &TachoConfig,
         log: &mut EventLog,
     ) {
-        let ahead = witness.clock_ahead;
-        let off = ahead > config.clock_share && !witness.unguarded;
+        let ahead = evidence.clock_ahead;
+        let off = ahead > config.clock_share && !evidence.unguarded;
         self.clock_fast = if off { ahead } else { 0.0 };
         if self.clock_told.rises(off) {
             log.push(
@@ -181,13 +181,19 @@ impl CredibleSpeed {
     }
 
     /// Ends the doubt: the train must have stopped by now, or pulses are back.
-    fn settle(&mut self, now: Instant, speed: Speed, witness: Witness, config: &TachoConfig) {
+    fn settle(
+        &mut self,
+        now: Instant,
+        speed: Speed,
+        evidence: SpeedEvidence,
+        config: &TachoConfig,
+    ) {
         let Some(doubted_mps) = &mut self.doubted_mps else {
             return;
         };
         // The emergency brake is applied meanwhile.
         *doubted_mps = (*doubted_mps - config.least_brake_mps2 * SCAN.as_secs()).max(0.0);
-        let stopped = *doubted_mps == 0.0 && !witness.tcms_moves(config);
+        let stopped = *doubted_mps == 0.0 && !evidence.tcms_moves(config);
         let turns = speed.kmh() > config.standstill_kmh
             && self.reference_mps <= speed.mps()
             && self.told_mps == 0.0;
@@ -203,7 +209,7 @@ impl CredibleSpeed {
         &mut self,
         now: Instant,
         pulses: bool,
-        witness: Witness,
+        evidence: SpeedEvidence,
         config: &TachoConfig,
         log: &mut EventLog,
     ) {
@@ -212,9 +218,9 @@ impl CredibleSpeed {
             self.cut = false;
         }
         let span = Duration::from_ms(u64::from(config.no_pulses_ms));
-        let waits = witness.powers && !pulses && !self.cut;
+        let waits = evidence.powers && !pulses && !self.cut;
         self.cut |= self.powerless.update(now, waits, span);
-        self.cut &= !witness.acknowledge;
+        self.cut &= !evidence.acknowledge;
         if self.told.rises(self.cut) {
             log.push(now, Event::NoPulses, config.no_pulses_ms as i32);
         }
@@ -238,195 +244,4 @@ impl CredibleSpeed {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use protocol::config::UnitConfig;
-
-    struct Train {
-        credible: CredibleSpeed,
-        config: UnitConfig,
-        log: EventLog,
-        now: Instant,
-        speed: f64,
-    }
-
-    impl Train {
-        fn at(kmh: f64) -> Self {
-            let text = include_str!("../../../scripts/units/sg100.toml");
-            let mut train = Self {
-                credible: CredibleSpeed::default(),
-                config: UnitConfig::from_toml(text).unwrap(),
-                log: EventLog::default(),
-                now: Instant::ZERO,
-                speed: 0.0,
-            };
-            train.go(kmh / 3.6, 1.0, Witness::default());
-            train.run(1.0, Witness::default());
-            train
-        }
-
-        fn run(&mut self, seconds: f64, witness: Witness) {
-            for _ in 0..(seconds * 100.0) as u32 {
-                self.now += SCAN;
-                let speed = Speed::from_mps(self.speed);
-                let config = &self.config.tacho;
-                self.credible.step(
-                    self.now,
-                    [speed; 2],
-                    self.speed > 0.0,
-                    witness,
-                    config,
-                    &mut self.log,
-                );
-            }
-        }
-
-        /// Drives to a speed at this rate, m/s and m/s².
-        fn go(&mut self, to: f64, mps2: f64, witness: Witness) {
-            while (self.speed - to).abs() > 1e-9 {
-                let step = (to - self.speed).clamp(-mps2 * 0.01, mps2 * 0.01);
-                self.speed += step;
-                self.run(0.01, witness);
-            }
-        }
-
-        fn doubts(&self) -> bool {
-            self.credible.doubted().is_some()
-        }
-    }
-
-    #[test]
-    fn a_train_that_brakes_is_believed_and_one_whose_pulses_vanish_is_not() {
-        for kmh in [5.0, 15.0, 60.0] {
-            let mut train = Train::at(kmh);
-            train.go(0.0, 3.3, Witness::default());
-            train.run(3.0, Witness::default());
-            assert!(!train.doubts(), "{kmh}");
-            let mut train = Train::at(kmh);
-            train.go(0.0, 100.0, Witness::default());
-            train.run(0.2, Witness::default());
-            assert!(train.doubts(), "{kmh}");
-            // As long as a stop takes at the least rate, 0.8 m/s².
-            train.run(kmh / 3.6 / 0.8 - 0.5, Witness::default());
-            assert!(train.doubts(), "{kmh}");
-            train.run(2.0, told(15.0));
-            assert!(train.doubts(), "TCMS says that it moves");
-            train.run(0.02, Witness::default());
-            assert!(!train.doubts(), "{kmh}");
-        }
-    }
-
-    /// A tachometer that counted too much is in order again while the train brakes; the other one
-    /// shows that.
-    #[test]
-    fn noise_that_ends_is_no_fall() {
-        let mut train = Train::at(30.0);
-        for scan in 0..400 {
-            let mps = (30.0 / 3.6 - 0.03 * f64::from(scan)).max(0.0);
-            let noise = if scan < 20 { 3.0 } else { 0.0 };
-            let speeds = [mps + noise, mps].map(Speed::from_mps);
-            train.now += SCAN;
-            let config = &train.config.tacho;
-            let witness = Witness::default();
-            train.credible.step(
-                train.now,
-                speeds,
-                mps > 0.0,
-                witness,
-                config,
-                &mut train.log,
-            );
-            assert!(!train.doubts(), "{scan}");
-        }
-    }
-
-    #[test]
-    fn half_of_the_speed_gone_at_once_is_not_believed_either() {
-        let mut train = Train::at(60.0);
-        train.go(30.0 / 3.6, 100.0, Witness::default());
-        train.run(0.7, Witness::default());
-        assert!(train.doubts());
-        train.run(5.0, Witness::default());
-        assert!(!train.doubts(), "pulses are back");
-    }
-
-    /// A TCMS that tells of axles at this speed, km/h.
-    fn told(kmh: f64) -> Witness {
-        Witness {
-            tcms_speed: Some(Speed::from_kmh(kmh)),
-            ..Witness::default()
-        }
-    }
-
-    /// As long as TCMS tells of motion, the train counts as moving at that speed.
-    #[test]
-    fn tcms_that_tells_of_motion_is_believed() {
-        let mut train = Train::at(0.0);
-        train.run(0.7, told(15.0));
-        assert!(!train.doubts());
-        train.run(0.2, told(15.0));
-        let doubted_kmh = train.credible.doubted().map(Speed::kmh);
-        assert!(
-            doubted_kmh.is_some_and(|kmh| (kmh - 15.0).abs() < 0.1),
-            "{doubted_kmh:?}"
-        );
-        train.run(6.0, told(3.0));
-        assert!(train.doubts(), "TCMS says that it moves");
-        train.run(0.1, told(1.0));
-        assert!(!train.doubts());
-    }
-
-    /// Both tachometers read low alike, which only TCMS can show: a train at 60 km/h that measures 45. Less than 10
-    /// km/h is what axles slip and slide, and a TCMS slower than the tachometers does not contradict them.
-    #[test]
-    fn tachometers_that_both_read_much_less_than_tcms_are_not_believed() {
-        for (kmh, doubts) in [(60.0, true), (54.0, false), (0.0, false)] {
-            let mut train = Train::at(45.0);
-            train.run(3.0, told(kmh));
-            assert_eq!(train.doubts(), doubts, "TCMS at {kmh}");
-        }
-        let mut train = Train::at(45.0);
-        train.run(30.0, Witness::default());
-        assert!(!train.doubts(), "it does not tell");
-    }
-
-    #[test]
-    fn power_that_moves_nothing_is_cut_until_it_is_acknowledged() {
-        let mut train = Train::at(0.0);
-        let powers = Witness {
-            powers: true,
-            ..Witness::default()
-        };
-        let ms = f64::from(train.config.tacho.no_pulses_ms);
-        train.run(ms / 1e3 - 0.1, powers);
-        assert!(!train.credible.cuts_power());
-        train.run(0.2, powers);
-        assert!(train.credible.cuts_power());
-        train.run(1.0, Witness::default());
-        assert!(train.credible.cuts_power());
-        train.run(
-            0.1,
-            Witness {
-                acknowledge: true,
-                ..Witness::default()
-            },
-        );
-        assert!(!train.credible.cuts_power());
-    }
-
-    #[test]
-    fn test_signals_and_a_dead_guard_are_not_compared() {
-        for (tested, unguarded) in [(true, false), (false, true)] {
-            let mut train = Train::at(60.0);
-            let witness = Witness {
-                tested,
-                unguarded,
-                powers: true,
-                ..told(60.0)
-            };
-            train.go(0.0, 100.0, witness);
-            train.run(10.0, witness);
-            assert!(!train.doubts() && !train.credible.cuts_power());
-        }
-    }
-}
+mod tests;

@@ -161,6 +161,7 @@ impl JogGuard {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::with::with;
 
     const JOG: JogInputs = JogInputs {
         backward: Some(true),
@@ -232,26 +233,11 @@ mod tests {
     #[test]
     fn nothing_is_given_without_a_reason() {
         let cases = [
-            JogInputs {
-                permitted: false,
-                ..JOG
-            },
-            JogInputs {
-                overrun_m: None,
-                ..JOG
-            },
-            JogInputs {
-                overrun_m: Some(-0.5),
-                ..JOG
-            },
-            JogInputs {
-                overrun_m: Some(5.4),
-                ..JOG
-            },
-            JogInputs {
-                overrun_m: Some(f64::NAN),
-                ..JOG
-            },
+            with(JOG, |it| it.permitted = false),
+            with(JOG, |it| it.overrun_m = None),
+            with(JOG, |it| it.overrun_m = Some(-0.5)),
+            with(JOG, |it| it.overrun_m = Some(5.4)),
+            with(JOG, |it| it.overrun_m = Some(f64::NAN)),
         ];
         for inputs in cases {
             let mut train = Train::new();
@@ -263,10 +249,7 @@ mod tests {
             );
         }
         let mut train = Train::new();
-        let forward = JogInputs {
-            backward: Some(false),
-            ..JOG
-        };
+        let forward = with(JOG, |it| it.backward = Some(false));
         train.run(100, forward);
         assert_eq!((train.guard.back_m(), train.guard.refuses()), (0.0, false));
     }
@@ -324,10 +307,7 @@ mod tests {
         assert!(train.run(30, forward));
         // A dead tachometer hides nothing.
         let mut train = Train::new();
-        let one = JogInputs {
-            moved_m: [0.0, 0.01],
-            ..forward
-        };
+        let one = with(forward, |it| it.moved_m = [0.0, 0.01]);
         assert!(train.run(520, one));
     }
 

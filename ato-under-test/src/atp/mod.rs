@@ -15,6 +15,7 @@ mod heard;
 mod interlock;
 mod jog_guard;
 mod mode;
+mod outputs;
 mod overspeed;
 mod sides;
 mod stop_and_proceed;
@@ -23,7 +24,7 @@ mod yard;
 
 use protocol::config::{OverspeedConfig, UnitConfig};
 use protocol::event::Event;
-use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, Outputs, TrainLines};
+use protocol::message::{DoorSide, EbCause, FsbCause, Mode, ModeSwitch, TrainLines};
 use protocol::{Instant, Speed};
 
 use crate::guards::Guards;
@@ -33,7 +34,7 @@ use crate::timer::Edge;
 use causes::Found;
 use contacts::Contacts;
 use direction::{Rollback, Towards};
-use door_order::{DoorOrders, enabled_sides};
+use door_order::DoorOrders;
 use interlock::{BrakePath, Interlock};
 use jog_guard::{JogGuard, JogInputs};
 use stop_and_proceed::{ProceedInputs, StopAndProceed};
@@ -42,7 +43,7 @@ use yard::Yard;
 pub use brake_proof::{BrakeProof, BrakeState, Demand};
 pub use causes::shown_cause;
 pub use code::{Code, CodeDecoder, lookup};
-pub use credible_speed::Witness;
+pub use credible_speed::SpeedEvidence;
 pub use door_lines::DoorLines;
 pub use doors::{DoorInputs, Doors};
 pub use emergency::{BrakeInputs, EmergencyBrake};
@@ -171,8 +172,8 @@ impl Atp {
         let reverser = (inputs.lines).intersection(TrainLines::FORWARD | TrainLines::BACKWARD);
         (self.reverser).step(now, (reverser, moves), Event::ReverserChatters, log);
         self.tachometers.correct(context.runs_farther);
-        let witness = self.witness(inputs, context);
-        self.tachometers.step(now, inputs, witness, config, log);
+        let evidence = self.evidence(inputs, context);
+        self.tachometers.step(now, inputs, evidence, config, log);
         let (speed, standstill) = (self.tachometers.speed(), self.tachometers.standstill());
         let still = self.tachometers.still();
         let mode = self.sequence.mode();
@@ -325,21 +326,6 @@ impl Atp {
         self.sequence.step(now, inputs, log);
     }
 
-    /// States that the output contacts should have.
-    pub fn outputs(&self, healthy: bool) -> Outputs {
-        let mut outputs = self.doors.enable() | self.door_orders.passed();
-        let code_valid = matches!(self.decoder.code(), Code::Known(_));
-        outputs.set(Outputs::EB_RELAY, !self.brake.applied());
-        outputs.set(Outputs::FSB, self.fsb_cause != FsbCause::None);
-        outputs.set(Outputs::POWER_CUT, self.power_cut());
-        let alarm = self.overspeed.alarm || self.proceeds.warns();
-        outputs.set(Outputs::ALARM, alarm);
-        outputs.set(Outputs::CODE_VALID, code_valid);
-        outputs.set(Outputs::STANDSTILL, self.tachometers.standstill());
-        outputs.set(Outputs::HEALTHY, healthy);
-        outputs
-    }
-
     /// No powering while braking, with doors open, against a stop or for a jog that is not permitted.
     pub fn power_cut(&self) -> bool {
         self.brake.applied()
@@ -352,14 +338,14 @@ impl Atp {
     }
 
     /// Evidence against which the speed is held.
-    fn witness(&self, inputs: &Inputs, context: ScanContext) -> Witness {
+    fn evidence(&self, inputs: &Inputs, context: ScanContext) -> SpeedEvidence {
         let notch = match self.sequence.mode() {
             Mode::AutomaticRun => context.ato_powers,
             Mode::Off => false,
             _ => inputs.controller > 0,
         };
         let held = self.power_cut() || context.tcms_holds;
-        Witness {
+        SpeedEvidence {
             tcms_speed: context.tcms_speed,
             clock_ahead: context.clock_ahead,
             powers: notch && !held,
@@ -367,72 +353,5 @@ impl Atp {
             tested: false,
             unguarded: !context.guards.speed,
         }
-    }
-
-    /// The mode switch comes to rest at no position: no position counts.
-    pub fn switch_chatters(&self) -> bool {
-        self.switch.chatters()
-    }
-
-    /// Cab at automatic or driverless.
-    pub fn switch_automatic(switch: ModeSwitch) -> bool {
-        matches!(switch, ModeSwitch::Automatic | ModeSwitch::Driverless)
-    }
-
-    pub fn decoder(&self) -> &CodeDecoder {
-        &self.decoder
-    }
-
-    /// All doors were proved closed in the last scan, and by side closed and locked.
-    pub fn doors_closed(&self) -> bool {
-        self.doors_closed
-    }
-
-    /// Sides on which doors were not proved closed and locked in the last scan.
-    pub fn doors_open(&self) -> DoorSide {
-        self.doors_open
-    }
-
-    /// Sets the way that a pulse stands for, m.
-    pub fn set_pulse(&mut self, pulse_m: f64) {
-        self.tachometers.set_pulse(pulse_m);
-    }
-
-    pub fn tachometers(&self) -> &Tachometers {
-        &self.tachometers
-    }
-
-    pub fn brake(&self) -> &EmergencyBrake {
-        &self.brake
-    }
-
-    pub fn sequence(&self) -> &ModeSequence {
-        &self.sequence
-    }
-
-    pub fn limit(&self) -> Speed {
-        self.limit
-    }
-
-    pub fn enabled(&self) -> DoorSide {
-        enabled_sides(self.doors.enable())
-    }
-
-    /// ATO may order doors to close. One contact closes all doors, so none may be open on a side that is not
-    /// enabled.
-    pub fn lets_close(&self) -> bool {
-        let enabled = self.enabled();
-        // Codes of sides are sets of bits.
-        enabled != DoorSide::None && self.doors_open.code() & !enabled.code() == 0
-    }
-
-    /// Doors are open on a side that is not enabled.
-    pub fn forced(&self) -> bool {
-        self.doors.hold()
-    }
-
-    /// Cause of the full service brake.
-    pub fn fsb_cause(&self) -> FsbCause {
-        self.fsb_cause
     }
 }

@@ -75,6 +75,7 @@ mod tests {
     use protocol::SCAN;
 
     use super::*;
+    use crate::with::with;
 
     const ACKNOWLEDGED: ProceedInputs = ProceedInputs {
         without_code: true,
@@ -95,22 +96,10 @@ mod tests {
     #[test]
     fn it_needs_a_stop_and_a_brake_notch_without_a_code() {
         let lacking = [
-            ProceedInputs {
-                without_code: false,
-                ..ACKNOWLEDGED
-            },
-            ProceedInputs {
-                by_driver: false,
-                ..ACKNOWLEDGED
-            },
-            ProceedInputs {
-                standstill: false,
-                ..ACKNOWLEDGED
-            },
-            ProceedInputs {
-                brakes: false,
-                ..ACKNOWLEDGED
-            },
+            with(ACKNOWLEDGED, |it| it.without_code = false),
+            with(ACKNOWLEDGED, |it| it.by_driver = false),
+            with(ACKNOWLEDGED, |it| it.standstill = false),
+            with(ACKNOWLEDGED, |it| it.brakes = false),
         ];
         let mut log = EventLog::default();
         let after = |inputs: ProceedInputs, then: Option<ProceedInputs>, log: &mut EventLog| {

@@ -5,7 +5,7 @@ use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
-use crate::atp::credible_speed::{CredibleSpeed, Witness};
+use crate::atp::credible_speed::{CredibleSpeed, SpeedEvidence};
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
 use crate::speedometer::Speedometer;
@@ -53,7 +53,7 @@ struct Noise {
 }
 
 impl Tachometers {
-    /// Standing.
+    /// Tachometers of a train that stands.
     pub fn new(config: &UnitConfig) -> Self {
         let window = Duration::from_ms(u64::from(config.tacho.window_ms));
         let meter = || Speedometer::new(window, config.metres_per_pulse());
@@ -94,7 +94,7 @@ impl Tachometers {
         &mut self,
         now: Instant,
         inputs: &Inputs,
-        witness: Witness,
+        evidence: SpeedEvidence,
         config: &UnitConfig,
         log: &mut EventLog,
     ) {
@@ -121,14 +121,14 @@ impl Tachometers {
         let first_dead = self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
         self.distance_channel = usize::from(first_dead);
         let silent = inputs.pulses.iter().all(|pulses| pulses.count == 0);
-        let witness = Witness {
+        let evidence = SpeedEvidence {
             tested: inputs.test_speed.contains(&true),
-            ..witness
+            ..evidence
         };
         let speeds = [0, 1].map(|i| self.meters[i].speed());
         self.credible
-            .step(now, speeds, !silent, witness, &config.tacho, log);
-        let told = witness.tcms_moves(&config.tacho) && !witness.tested && !witness.unguarded;
+            .step(now, speeds, !silent, evidence, &config.tacho, log);
+        let told = evidence.tcms_moves(&config.tacho) && !evidence.tested && !evidence.unguarded;
         let doubted = self.credible.doubted().is_some();
         let slow = self.speed().kmh() <= config.tacho.standstill_kmh && !told && !doubted;
         let span = Duration::from_ms(u64::from(config.tacho.standstill_ms));

@@ -3,19 +3,23 @@
 //! Stimuli act only while armed. Arming needs the maintenance key, standstill, closed doors and applied brakes, and ends
 //! when the tester falls silent or when test mode must end; the TEST board then removes every test signal.
 
+mod reading;
+
 use alloc::vec::Vec;
 
 use protocol::event::Event;
 use protocol::message::{
-    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, LogEnd, Message, RunEnd,
-    StimulusAnswer, StoreKind,
+    Answer, ArmChallenge, ArmConfirm, ArmRefusal, ArmRequest, ArmState, Message, StimulusAnswer,
+    StoreKind,
 };
 use protocol::{Duration, Instant, Random};
 
 use crate::flash::{Memory, SetClockError};
-use crate::kernel::{EventLog, Ring, RunRecord};
+use crate::kernel::EventLog;
 use crate::test_board::TestBoard;
 
+/// Most stored entries that a tester may ask for in a cycle without log entries and rows.
+const STORED_PER_CYCLE: usize = 4;
 /// Time in which a challenge must be answered.
 const CHALLENGE_TIME: Duration = Duration::from_ms(1000);
 /// Time for which a subscription holds.
@@ -23,12 +27,6 @@ const SUBSCRIPTION: Duration = Duration::from_ms(1000);
 /// Time the train has to prove that its brakes are applied, once the challenge was answered: less than a tester waits
 /// for an answer [default].
 const BRAKE_TIME: Duration = Duration::from_ms(250);
-/// Log entries sent in one cycle, so that the cycle's byte budget holds.
-const ENTRIES_PER_CYCLE: usize = 2;
-/// Rows of the run record sent in a cycle without log entries, for the same reason.
-const ROWS_PER_CYCLE: usize = 2;
-/// Most stored entries that a tester may ask for in a cycle without log entries and rows.
-const STORED_PER_CYCLE: usize = 4;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ArmConditions {
@@ -311,53 +309,6 @@ impl Maintenance {
             }
         })
     }
-
-    /// Log entries to send in this cycle.
-    pub fn read_log(&mut self, log: &EventLog, replies: &mut Vec<Message>) {
-        let per_cycle = ENTRIES_PER_CYCLE;
-        if send(
-            &mut self.reader,
-            log.entries(),
-            per_cycle,
-            |e| e.index,
-            replies,
-        ) {
-            let end = LogEnd {
-                next_index: log.next_index(),
-                oldest_index: log.entries().oldest_index(),
-            };
-            replies.push(end.into());
-        }
-    }
-
-    /// Rows of the run record to send in this cycle.
-    pub fn read_run(&mut self, record: &RunRecord, replies: &mut Vec<Message>) {
-        let (rows, per_cycle) = (record.rows(), ROWS_PER_CYCLE);
-        if send(
-            &mut self.run_reader,
-            rows,
-            per_cycle,
-            |row| row.index,
-            replies,
-        ) {
-            let end = RunEnd {
-                next_index: rows.next_index(),
-                oldest_index: rows.oldest_index(),
-            };
-            replies.push(end.into());
-        }
-    }
-
-    /// Stored entries to send in this cycle.
-    pub fn read_stored(&mut self, memory: &Memory, replies: &mut Vec<Message>) {
-        let Some((store, next, per_cycle)) = &mut self.stored_reader else {
-            return;
-        };
-        if memory.read(*store, next, *per_cycle, replies) {
-            replies.push(memory.end(*store).into());
-            self.stored_reader = None;
-        }
-    }
 }
 
 /// Outcome of arming; `ArmRefusal::None` = armed.
@@ -376,30 +327,4 @@ fn answer_to(request_seq: u16, answer: Answer) -> Message {
         answer,
     }
     .into()
-}
-
-/// Sends entries that a reader has not had yet, at most `per_cycle`; true when the last one was
-/// sent.
-fn send<T: Copy + Into<Message>, const N: usize>(
-    reader: &mut Option<u32>,
-    ring: &Ring<T, N>,
-    per_cycle: usize,
-    index: fn(&T) -> u32,
-    replies: &mut Vec<Message>,
-) -> bool {
-    let Some(next) = reader else {
-        return false;
-    };
-    for _ in 0..per_cycle {
-        let Some(entry) = ring.at_or_after(*next) else {
-            break;
-        };
-        *next = index(entry) + 1;
-        replies.push((*entry).into());
-    }
-    let ends = ring.at_or_after(*next).is_none();
-    if ends {
-        *reader = None;
-    }
-    ends
 }

@@ -166,6 +166,7 @@ fn load_kg(frame: &TcmsToAtc) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::with::with;
 
     const FRAME: TcmsToAtc = TcmsToAtc {
         bits: TcmsToAtcBits::ATO_ENABLE,
@@ -185,44 +186,22 @@ mod tests {
         let mut link = link();
         assert!(link.take(Instant::ZERO, FRAME));
         let nonsense = [
-            TcmsToAtc {
-                effort: 1024,
-                ..FRAME
-            },
-            TcmsToAtc {
-                effort: -1025,
-                ..FRAME
-            },
-            TcmsToAtc {
-                effort: i16::MIN,
-                ..FRAME
-            },
-            TcmsToAtc {
-                load_100kg: 2689,
-                ..FRAME
-            },
-            TcmsToAtc {
-                load_100kg: u16::MAX,
-                ..FRAME
-            },
+            with(FRAME, |it| it.effort = 1024),
+            with(FRAME, |it| it.effort = -1025),
+            with(FRAME, |it| it.effort = i16::MIN),
+            with(FRAME, |it| it.load_100kg = 2689),
+            with(FRAME, |it| it.load_100kg = u16::MAX),
         ];
         for ms in 1..=100 {
             let bad = nonsense[ms as usize % nonsense.len()];
-            let frame = TcmsToAtc {
-                alive: ms as u8,
-                ..bad
-            };
+            let frame = with(bad, |it| it.alive = ms as u8);
             assert!(!link.take(Instant::from_ms(10 * ms), frame));
             link.step(Instant::from_ms(10 * ms));
             assert_eq!(link.alive(), ms < 50);
         }
         assert_eq!((link.load_kg(), link.given()), (160e3, None));
         assert!(!link.ready() && !link.stands(Instant::from_ms(1000)));
-        let borders = TcmsToAtc {
-            effort: -1024,
-            load_100kg: 2688,
-            ..FRAME
-        };
+        let borders = with(FRAME, |it| (it.effort, it.load_100kg) = (-1024, 2688));
         assert!(link.take(Instant::from_ms(1000), borders));
     }
 

@@ -151,6 +151,7 @@ impl Cabs {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::with::with;
 
     const MOST: Duration = Duration::from_ms(6000);
     const STATION: u16 = 824;
@@ -184,31 +185,16 @@ mod tests {
         let asked = Stage::Asked {
             since: Instant::ZERO,
         };
-        let off = CabInputs {
-            hcr: Some(false),
-            ..STANDING
-        };
-        let lost = CabInputs {
-            hcr: None,
-            ..STANDING
-        };
-        let manual = CabInputs {
-            driverless: false,
-            ..STANDING
-        };
-        let moves = CabInputs {
-            standstill: false,
-            ..STANDING
-        };
+        let off = with(STANDING, |it| it.hcr = Some(false));
+        let lost = with(STANDING, |it| it.hcr = None);
+        let manual = with(STANDING, |it| it.driverless = false);
+        let moves = with(STANDING, |it| it.standstill = false);
         let data = |station, departure| CabInputs {
             departs_from: Some(station),
             departure,
             ..STANDING
         };
-        let runs = CabInputs {
-            running: true,
-            ..STANDING
-        };
+        let runs = with(STANDING, |it| it.running = true);
         use OrderState::{Failed, HandedOver, Idle, Ready, TakingOver, TurningBack};
         let cases: [(Stage, &[CabInputs], OrderState); 19] = [
             (Stage::Idle, &[STANDING], Idle),
@@ -224,10 +210,7 @@ mod tests {
             (Stage::HandedOver, &[off, STANDING], TakingOver),
             (
                 Stage::HandedOver,
-                &[CabInputs {
-                    hcr: Some(true),
-                    ..manual
-                }],
+                &[with(manual, |it| it.hcr = Some(true))],
                 Idle,
             ),
             (Stage::TakingOver, &[data(STATION, true)], TakingOver),
@@ -274,10 +257,7 @@ mod tests {
             step(&mut cabs, CabInputs { hcr, ..STANDING });
         }
         assert_eq!(cabs.state(), OrderState::TakingOver);
-        let data = CabInputs {
-            departs_from: Some(7),
-            ..STANDING
-        };
+        let data = with(STANDING, |it| it.departs_from = Some(7));
         step(&mut cabs, data);
         assert_eq!(cabs.state(), OrderState::Ready);
     }

@@ -129,6 +129,7 @@ impl Stabling {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::with::with;
 
     const ASLEEP: StablingInputs = StablingInputs {
         driverless: Some(true),
@@ -146,31 +147,16 @@ mod tests {
 
     #[test]
     fn putting_away_and_waking_up_is_this_table() {
-        let taken = StablingInputs {
-            driverless: Some(false),
-            ..ASLEEP
-        };
-        let lost = StablingInputs {
-            driverless: None,
-            ..ASLEEP
-        };
-        let testing = StablingInputs {
-            tested: None,
-            ..ASLEEP
-        };
+        let taken = with(ASLEEP, |it| it.driverless = Some(false));
+        let lost = with(ASLEEP, |it| it.driverless = None);
+        let testing = with(ASLEEP, |it| it.tested = None);
         let failed = StablingInputs {
             tested: Some(SelfTest::TRA),
             departure: true,
             ..ASLEEP
         };
-        let departs = StablingInputs {
-            departure: true,
-            ..ASLEEP
-        };
-        let runs = StablingInputs {
-            running: true,
-            ..ASLEEP
-        };
+        let departs = with(ASLEEP, |it| it.departure = true);
+        let runs = with(ASLEEP, |it| it.running = true);
         for (from, inputs, to) in [
             (Stage::Awake, taken, Stage::Awake),
             (Stage::PutAway, ASLEEP, Stage::PutAway),
@@ -183,10 +169,7 @@ mod tests {
             (Stage::Waking, ASLEEP, Stage::Ready),
             (
                 Stage::Waking,
-                StablingInputs {
-                    departure: true,
-                    ..taken
-                },
+                with(taken, |it| it.departure = true),
                 Stage::Ready,
             ),
             (Stage::Ready, ASLEEP, Stage::Ready),

@@ -72,26 +72,13 @@ impl PowerAndClock {
 mod tests {
     use alloc::vec::Vec;
 
-    use protocol::injection::{FaultMode, Occurrence};
+    use protocol::injection::Occurrence;
 
     use super::*;
+    use crate::faults::tests::fault;
 
     fn faults(place: Place, effect: Effect) -> Faults {
-        let mode = FaultMode {
-            id: "a.b".into(),
-            lru: protocol::LruId::from_static("a"),
-            mode: "m".into(),
-            severity: "major".into(),
-            weight: 1.0,
-            unsafe_: false,
-            place,
-            effect,
-            out_of_reach: None,
-            onset_s: 0.0,
-            car: None,
-            occurs: Occurrence::Always,
-            levels: Vec::new(),
-        };
+        let mode = fault(place, effect, Occurrence::Always);
         Faults::new(&[mode], 1)
     }
 

@@ -168,6 +168,7 @@ mod tests {
     use protocol::line::Line;
 
     use super::*;
+    use crate::with::with;
 
     /// After PSM2 of section 61 (741.53 m): marker, position by the wheel, what is made of it.
     #[test]
@@ -208,15 +209,9 @@ mod tests {
         // Wheels that nothing has calibrated can be wrong by more, and so can those that slid.
         let late = at(3, third + 2.0);
         assert_eq!(judged(late, None), MarkerCheck::Away(2.0));
-        let worn = Wheels {
-            uncertainty: 0.03,
-            ..wheels
-        };
+        let worn = with(wheels, |it| it.uncertainty = 0.03);
         assert_eq!(judged_with(worn, late), MarkerCheck::Accepted);
-        let slid = Wheels {
-            slid_m: 2.0,
-            ..wheels
-        };
+        let slid = with(wheels, |it| it.slid_m = 2.0);
         assert_eq!(judged_with(slid, at(3, third - 2.9)), MarkerCheck::Accepted);
         assert_eq!(judged(at(4, fourth - 0.8), None), MarkerCheck::Accepted);
         assert_eq!(judged(at(2, second + 0.5), None), MarkerCheck::OutOfOrder);

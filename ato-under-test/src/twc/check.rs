@@ -83,6 +83,7 @@ mod tests {
     use protocol::message::RunningMode;
 
     use super::*;
+    use crate::with::with;
 
     fn line() -> Line {
         Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap()
@@ -132,35 +133,14 @@ mod tests {
         let line = line();
         let good = arrival(&line, 0);
         for (data, event) in [
-            (
-                TwcWayside {
-                    station: 999,
-                    ..good
-                },
-                Event::TwcStationInvalid,
-            ),
-            (
-                TwcWayside {
-                    section: 999,
-                    ..good
-                },
-                Event::TwcStationInvalid,
-            ),
+            (with(good, |it| it.station = 999), Event::TwcStationInvalid),
+            (with(good, |it| it.section = 999), Event::TwcStationInvalid),
             (TwcWayside { route: 5, ..good }, Event::TwcStationInvalid),
             (
-                TwcWayside {
-                    loop_id: good.loop_id + 1,
-                    ..good
-                },
+                with(good, |it| it.loop_id = good.loop_id + 1),
                 Event::TwcStationInvalid,
             ),
-            (
-                TwcWayside {
-                    next_station: 999,
-                    ..good
-                },
-                Event::TwcWrongNext,
-            ),
+            (with(good, |it| it.next_station = 999), Event::TwcWrongNext),
             (
                 TwcWayside {
                     next_station: 999,
@@ -169,10 +149,7 @@ mod tests {
                 Event::TwcWrongNext,
             ),
             (
-                TwcWayside {
-                    running_mode: RunningMode::Unknown(3),
-                    ..good
-                },
+                with(good, |it| it.running_mode = RunningMode::Unknown(3)),
                 Event::TwcWrongMode,
             ),
         ] {

@@ -114,6 +114,7 @@ mod tests {
     use protocol::Duration;
 
     use super::*;
+    use crate::with::with;
 
     const OWN: TrainNumber = 8001;
 
@@ -148,24 +149,15 @@ mod tests {
             (long(1.2), Some(Event::TwcWrongLength)),
             (long(-1.2), Some(Event::TwcWrongLength)),
             (
-                TwcOrders {
-                    section: 999,
-                    ..good
-                },
+                with(good, |it| it.section = 999),
                 Some(Event::TwcWrongLength),
             ),
             (
-                TwcOrders {
-                    destination: 999,
-                    ..good
-                },
+                with(good, |it| it.destination = 999),
                 Some(Event::TwcWrongDestination),
             ),
             (
-                TwcOrders {
-                    order: TrainOrder::Unknown(9),
-                    ..good
-                },
+                with(good, |it| it.order = TrainOrder::Unknown(9)),
                 Some(Event::TwcWrongOrder),
             ),
         ];

@@ -1,20 +1,13 @@
 //! Automatic operation from station to station through the wire: position by markers and wheels,
 //! what ATO does with inputs it cannot believe, and the record of the run.
 
-use crate::common::{Bench, fault};
+use crate::common::{Bench, fault, fault_from};
 use crate::journey::Journey;
 use protocol::SCAN;
-use protocol::injection::{Effect, FaultMode, Place};
+use protocol::injection::{Effect, Place};
 use protocol::message::{
     AtoFailure, AtoState, Message, Mode, ModeSwitch, Outputs, ReadRun, Refusals, RunRow, StatusBits,
 };
-
-fn fault_from(place: Place, effect: Effect, onset_s: f64) -> FaultMode {
-    FaultMode {
-        onset_s,
-        ..fault(place, effect)
-    }
-}
 
 /// Distance of one tachometer pulse, m: at rest no position is known better.
 const PULSE_M: f64 = std::f64::consts::PI * 0.86 / 100.0;

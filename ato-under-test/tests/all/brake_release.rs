@@ -14,9 +14,7 @@ fn refusals(bench: &mut Bench) -> Vec<i32> {
 }
 
 fn moving(kmh: f64) -> Bench {
-    let mut bench = Bench::new(&[]);
-    bench.code("25");
-    bench.run(0.6);
+    let mut bench = Bench::under("25", 0.0);
     bench.speed_kmh(kmh);
     bench
 }

@@ -9,7 +9,7 @@ use protocol::message::{
     TwcOrders, TwcReport, TwcWayside,
 };
 
-use super::common::{Bench, config, departure, fault, line};
+use super::common::{Bench, config, departure, fault_from, line};
 use super::maintenance::{SESSION, arm};
 
 const OWN: u16 = 8001;
@@ -351,11 +351,7 @@ fn a_self_test_that_fails_lets_nobody_run() {
 }
 
 fn wakes_failed(place: Place, item: SelfTest) {
-    let late = FaultMode {
-        onset_s: 200.0,
-        ..fault(place, Effect::Dead)
-    };
-    let mut wayside = Wayside::arrived(&[late]);
+    let mut wayside = Wayside::arrived(&[fault_from(place, Effect::Dead, 200.0)]);
     wayside.order(TrainOrder::PutAway);
     let to_onset: f64 = 201.0 - wayside.bench.now.as_us() as f64 / 1e6;
     wayside.run(to_onset.max(0.0));

@@ -32,10 +32,7 @@ fn each_code_gives_its_limit_and_its_loss_the_most_restrictive_one() {
 
 #[test]
 fn overspeed_goes_from_alarm_to_service_brake_to_emergency_brake() {
-    let mut bench = Bench::new(&[]);
-    bench.code("55");
-    bench.run(0.6);
-    bench.speed_kmh(54.0);
+    let mut bench = Bench::under("55", 54.0);
     bench.run(1.0);
     assert!(!bench.has(Outputs::ALARM));
     bench.speed_kmh(57.0);
@@ -73,10 +70,7 @@ fn contacts_of_the_desk_that_never_come_to_rest_brake() {
         (switch, 100, "mode_switch_chatters"),
         (reverser, 20, "reverser_chatters"),
     ] {
-        let mut bench = Bench::new(&[]);
-        bench.code("75");
-        bench.run(0.6);
-        bench.speed_kmh(40.0);
+        let mut bench = Bench::under("75", 40.0);
         let began = bench.now;
         let braked_ms = loop {
             let ms = bench.now.since(began).as_ms();
@@ -105,10 +99,7 @@ fn contacts_of_the_desk_that_never_come_to_rest_brake() {
 /// pressed while the cab is not active.
 #[test]
 fn the_emergency_brake_is_released_only_by_a_press_while_it_may_be() {
-    let mut bench = Bench::new(&[]);
-    bench.code("55");
-    bench.run(0.6);
-    bench.speed_kmh(63.0);
+    let mut bench = Bench::under("55", 63.0);
     assert!(bench.until(1.0, Bench::braking).is_some());
     bench.input.lines.insert(TrainLines::ACKNOWLEDGE);
     bench.speed_kmh(0.0);
@@ -145,18 +136,12 @@ fn parameter(bench: &mut Bench, name: &str) -> i32 {
 /// 55 km/h are 1528 cm/s, 63 are 1750.
 #[test]
 fn what_brought_the_emergency_brake_is_logged_with_its_size() {
-    let mut bench = Bench::new(&[]);
-    bench.code("55");
-    bench.run(0.6);
-    bench.speed_kmh(63.0);
+    let mut bench = Bench::under("55", 63.0);
     assert!(bench.until(1.0, Bench::braking).is_some());
     let excess_cms = parameter(&mut bench, "overspeed_eb");
     assert!((170..=222).contains(&excess_cms), "{excess_cms} cm/s");
 
-    let mut bench = Bench::new(&[]);
-    bench.code("55");
-    bench.run(0.6);
-    bench.speed_kmh(60.0);
+    let mut bench = Bench::under("55", 60.0);
     while !bench.braking() {
         bench.speeds = bench.speeds.map(|speed| speed - 0.001);
         bench.run(0.01);
@@ -169,10 +154,7 @@ fn what_brought_the_emergency_brake_is_logged_with_its_size() {
 
 #[test]
 fn the_service_brake_releases_by_itself_under_the_limit() {
-    let mut bench = Bench::new(&[]);
-    bench.code("45");
-    bench.run(0.6);
-    bench.speed_kmh(49.0);
+    let mut bench = Bench::under("45", 49.0);
     bench.run(0.5);
     assert!(bench.has(Outputs::FSB));
     bench.speed_kmh(44.0);
@@ -182,10 +164,7 @@ fn the_service_brake_releases_by_itself_under_the_limit() {
 
 #[test]
 fn a_step_down_of_the_limit_gets_its_grace() {
-    let mut bench = Bench::new(&[]);
-    bench.code("55");
-    bench.run(0.6);
-    bench.speed_kmh(50.0);
+    let mut bench = Bench::under("55", 50.0);
     bench.run(0.5);
     bench.code("35");
     bench.run(1.5);
@@ -201,10 +180,7 @@ fn a_step_down_of_the_limit_gets_its_grace() {
 
 #[test]
 fn code_0_stops_a_train_by_the_service_brake_alone() {
-    let mut bench = Bench::new(&[]);
-    bench.code("75");
-    bench.run(0.6);
-    bench.speed_kmh(70.0);
+    let mut bench = Bench::under("75", 70.0);
     bench.code("0");
     assert!(bench.until(2.0, |b| b.has(Outputs::FSB)).is_some());
     let step = 0.97 / 100.0;
@@ -221,10 +197,7 @@ fn code_0_stops_a_train_by_the_service_brake_alone() {
 /// and once a second a pulse of 27 mm more in one tachometer, which for 100 ms is 0.27 m/s.
 #[test]
 fn a_spurious_pulse_while_the_service_brake_works_is_no_emergency() {
-    let mut bench = Bench::new(&[]);
-    bench.code("75");
-    bench.run(0.6);
-    bench.speed_kmh(70.0);
+    let mut bench = Bench::under("75", 70.0);
     bench.code("0");
     assert!(bench.until(2.0, |b| b.has(Outputs::FSB)).is_some());
     let mut speed = bench.speeds[0];
@@ -245,10 +218,7 @@ fn a_spurious_pulse_while_the_service_brake_works_is_no_emergency() {
 #[test]
 fn spurious_pulses_do_not_delay_the_emergency_brake_of_a_train_that_does_not_slow() {
     for period in [30, 33, 40, 60] {
-        let mut bench = Bench::new(&[]);
-        bench.code("55");
-        bench.run(0.6);
-        bench.speed_kmh(60.0);
+        let mut bench = Bench::under("55", 60.0);
         assert!(bench.until(2.0, |b| b.has(Outputs::FSB)).is_some());
         let speed = bench.speeds[0];
         let scans = (1..400).find(|scan| {
@@ -269,10 +239,7 @@ fn spurious_pulses_do_not_delay_the_emergency_brake_of_a_train_that_does_not_slo
 
 #[test]
 fn one_dead_tachometer_brakes_and_is_named() {
-    let mut bench = Bench::new(&[]);
-    bench.code("55");
-    bench.run(0.6);
-    bench.speed_kmh(40.0);
+    let mut bench = Bench::under("55", 40.0);
     bench.speeds[1] = 0.0;
     assert!(bench.until(2.0, Bench::braking).is_some());
     assert_eq!(bench.status.eb_cause, EbCause::Tachometer);
@@ -281,9 +248,7 @@ fn one_dead_tachometer_brakes_and_is_named() {
 
 #[test]
 fn rolling_back_brakes_within_half_a_metre() {
-    let mut bench = Bench::new(&[]);
-    bench.code("25");
-    bench.run(0.6);
+    let mut bench = Bench::under("25", 0.0);
     bench.speeds = [-0.5; 2];
     let ms = bench.until(3.0, Bench::braking).expect("brake");
     assert!((1000..1100).contains(&ms), "0.5 m at 0.5 m/s took {ms} ms");
@@ -291,9 +256,7 @@ fn rolling_back_brakes_within_half_a_metre() {
 
 #[test]
 fn doors_open_on_a_moving_train_brake() {
-    let mut bench = Bench::new(&[]);
-    bench.code("25");
-    bench.run(0.6);
+    let mut bench = Bench::under("25", 0.0);
     bench.input.lines.remove(TrainLines::DOORS_CLOSED);
     bench.run(0.5);
     assert!(

@@ -1,6 +1,6 @@
 //! The self-test that an armed tester asks for.
 
-use crate::common::{Bench, fault};
+use crate::common::{Bench, fault, fault_from};
 use crate::maintenance::{SESSION, answer_to, armed_with};
 use protocol::Instant;
 use protocol::injection::{Effect, FaultMode, Occurrence, Place};
@@ -41,10 +41,7 @@ fn tested(bench: &mut Bench) -> (Vec<SelfTestItem>, SelfTestEnd) {
 
 /// A fault that sets in when the tester is armed.
 fn later(place: Place, effect: Effect) -> FaultMode {
-    FaultMode {
-        onset_s: 4.0,
-        ..fault(place, effect)
-    }
+    fault_from(place, effect, 4.0)
 }
 
 #[test]

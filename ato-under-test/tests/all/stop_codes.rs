@@ -1,7 +1,7 @@
 //! Motion under a stop (code 0, absolute stop, no code), and what follows a service brake that does not slow the
 //! train, whatever asks for it.
 
-use crate::common::{Bench, fault};
+use crate::common::{Bench, fault, fault_from};
 use crate::journey::Journey;
 use proptest::prelude::*;
 use protocol::injection::{Effect, FaultMode, Place};
@@ -138,18 +138,11 @@ fn a_dead_guard_lets_a_train_creep() {
 type Brought = (FsbCause, fn() -> Bench);
 
 fn manual_overspeed() -> Bench {
-    let mut bench = Bench::new(&[]);
-    bench.code("45");
-    bench.run(0.6);
-    bench.speed_kmh(49.0);
-    bench
+    Bench::under("45", 49.0)
 }
 
 fn stopped_by_code_0() -> Bench {
-    let mut bench = Bench::new(&[]);
-    bench.code("25");
-    bench.run(0.6);
-    bench.speed_kmh(5.0);
+    let mut bench = Bench::under("25", 5.0);
     bench.code("0");
     bench
 }
@@ -200,11 +193,7 @@ fn not_permitted() -> Bench {
 }
 
 fn ato_failed() -> Bench {
-    let dead = FaultMode {
-        onset_s: 30.0,
-        ..fault(Place::AtoCpu, Effect::Dead)
-    };
-    on_the_way(&[dead], |_| {})
+    on_the_way(&[fault_from(Place::AtoCpu, Effect::Dead, 30.0)], |_| {})
 }
 
 const CAUSES: [Brought; 7] = [

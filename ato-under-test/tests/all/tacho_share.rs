@@ -13,9 +13,7 @@ fn shares(events: &[&'static str]) -> Vec<&'static str> {
 }
 
 fn running(kmh: f64) -> Bench {
-    let mut bench = Bench::new(&[]);
-    bench.code("75");
-    bench.run(0.6);
+    let mut bench = Bench::under("75", 0.0);
     bench.speed_kmh(kmh);
     bench
 }

@@ -1,16 +1,13 @@
-//! Carries out each stimulus on the rig, and makes the bench safe.
+//! Carries out each stimulus on the rig.
 
 use protocol::Instant;
 
 use crate::procedure::{Evidence, Refusal};
-use crate::stimulus::{
-    CarFailure, CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TachoCondition, WaysideCondition,
-};
-use crate::train::{EquipmentFaults, TrainData};
+use crate::stimulus::{CarFailure, CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TachoCondition};
+use crate::train::TrainData;
 
 use super::Rig;
 use super::session::{Request, test_signals};
-use super::train_side::DoorGear;
 use super::wayside::{Track, antenna_signal};
 use crate::stimulus::ranges::{U16_MAX, in_range, positive};
 
@@ -233,54 +230,6 @@ impl Rig {
     /// What the unit refused or did not answer, until the next stimulus.
     pub fn settled(&self) -> Result<bool, Refusal> {
         Ok(self.tester.settled()? && (!self.awaits_motion || self.motion_settled()))
-    }
-
-    /// Goes back to the quiescent state: at once what can be, and what a turning wheel needs so
-    /// that the unit sees nothing implausible (code, reverser, tachometers) at standstill.
-    pub fn make_safe(&mut self, now: Instant) {
-        self.train_driven = false;
-        self.wheel.stop();
-        self.antenna.drift(0.0, 0.0);
-        self.markers.clear();
-        self.desk.set_doors(true);
-        self.desk.line_said = Default::default();
-        self.door_gear = DoorGear::default();
-        self.tcms_port.reset();
-        self.wayside.set_condition(WaysideCondition::Good);
-        self.tester.make_safe(now);
-        self.making_safe = true;
-        self.finish_making_safe();
-    }
-
-    /// Quiescent: at standstill, tester listening, nothing under way.
-    pub fn safe(&self) -> bool {
-        !self.making_safe && !self.train_driven && self.wheel.standing() && self.tester.safe()
-    }
-
-    /// Once the wheels stand and the unit is disarmed, the rest of the bench rests, too: an armed unit takes a key, a
-    /// mode switch or a code that changes for a train that is no longer tested, and brakes.
-    pub(super) fn finish_making_safe(&mut self) {
-        if self.making_safe && self.wheel.standing() && self.tester.safe() {
-            self.rest_quiescent();
-        }
-    }
-
-    fn rest_quiescent(&mut self) {
-        self.making_safe = false;
-        self.quiescent = true;
-        self.tcms.rest();
-        self.train.set_conditions(&self.conditions);
-        self.made = EquipmentFaults::default();
-        self.fail_equipment();
-        self.antenna.off();
-        self.codes_along = false;
-        self.track = None;
-        self.desk.reset(self.now);
-        self.wayside.reset(&self.line.sections[0]);
-        let distance_m = self.wheel.axle().distance_m;
-        for tacho in &mut self.tachos {
-            tacho.set_condition(TachoCondition::Good, distance_m);
-        }
     }
 
     fn set_code(&mut self, carrier: f64, rate: f64, level: f64) -> Result<(), Refusal> {

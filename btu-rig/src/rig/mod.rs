@@ -15,6 +15,8 @@ mod bench;
 mod connection;
 mod intervention;
 mod link;
+mod making_safe;
+mod receiving;
 mod rig_signals;
 mod rolling;
 mod section_codes;
@@ -30,7 +32,7 @@ use protocol::config::{SpeedCode, UnitConfig};
 use protocol::injection::FaultMode;
 use protocol::line::Line;
 use protocol::link::{End, Link};
-use protocol::message::{Coil, IoInput, IoOutput, Message};
+use protocol::message::{Coil, IoInput};
 use protocol::{Duration, Instant, Random};
 
 use crate::conditions::Conditions;
@@ -306,82 +308,6 @@ impl Rig {
             .step(now, self.train_number, &mut self.link, in_loop);
         if self.faults.bench.twc_dead {
             in_loop.truncate(before);
-        }
-    }
-
-    /// Takes bytes from the unit.
-    pub fn receive(&mut self, now: Instant, bytes: &[u8]) {
-        self.now = now;
-        self.watch.note(bytes.len());
-        self.link.push(bytes);
-        while let Some(received) = self.link.poll(now) {
-            let stamp_ms = received.header.stamp_ms;
-            self.unit_stamp = Some((now, stamp_ms));
-            self.line_watch
-                .on_frame(now, received.header.channel, stamp_ms);
-            self.harness.note_frame(now, received.header.channel);
-            self.watch
-                .note_frame(received.header.channel, self.link.counters());
-            let harness = self.harness.is_there();
-            match &received.message {
-                Message::IoOutput(_)
-                | Message::AtcToTcms(_)
-                | Message::TwcTrain(_)
-                | Message::TwcReport(_)
-                    if !harness => {}
-                Message::IoOutput(io) => {
-                    let outputs = self.faults.bench.read(io.outputs);
-                    self.latest.on_io(now, &IoOutput { outputs, ..*io });
-                }
-                Message::AtcToTcms(command) => {
-                    if !self.tcms_port.silent() {
-                        self.tcms.receive(now, command);
-                    }
-                    self.latest.on_tcms(now, command);
-                }
-                Message::TwcTrain(answer) => {
-                    self.wayside.on_answer();
-                    self.latest.on_twc(now, answer, self.wayside.answers());
-                }
-                Message::TwcReport(report) => {
-                    self.wayside.orders.on_report();
-                    self.latest.on_report(now, report);
-                }
-                Message::Taken(taken) => self.watch.note_taken(*taken),
-                Message::TrainState(state) => {
-                    self.latest.on_train_state(now, state, harness);
-                    let counters = self.link.counters();
-                    self.subscription.on_state(stamp_ms, state, counters);
-                    if !harness {
-                        // The next one is for the next scan, so that each scan's sample has one stamp.
-                        break;
-                    }
-                }
-                message => self.on_tester(now, stamp_ms, message),
-            }
-        }
-    }
-
-    fn on_tester(&mut self, now: Instant, stamp_ms: u32, message: &Message) {
-        let restarts = self.tester.restarts();
-        self.tester.receive(now, message);
-        if self.tester.restarts() != restarts {
-            self.line_watch.note_restart(now);
-            self.subscription.restart();
-        }
-        if let Message::Identity(identity) = message {
-            self.identity.on_identity(identity);
-        }
-        if let Message::StimulusAnswer(_) | Message::ArmState(_) = message {
-            self.subscription.on_answer(stamp_ms);
-        }
-        if let Message::Status(status) = message {
-            self.subscription.on_status(stamp_ms);
-            self.latest.on_status(now, status);
-            if let Some((at, stamp_ms)) = self.unit_stamp {
-                self.line_watch.on_clock(at, stamp_ms);
-            }
-            self.line_watch.on_refused(now, status.rejected_frames);
         }
     }
 

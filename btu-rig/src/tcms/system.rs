@@ -1,5 +1,7 @@
 //! One scan of TCMS, from its inputs to the demands on the train.
 
+mod driving;
+
 use protocol::message::{AtcToTcms, Outputs};
 use protocol::{Duration, Instant};
 
@@ -9,15 +11,12 @@ use super::atc_link::{AtcLink, AtoOrder};
 use super::cab_change::CabChange;
 use super::causes::{Findings, lamps, power_cuts};
 use super::consist::Consist;
-use super::controller::{FULL_BRAKE, FULL_POWER};
 use super::data::TcmsData;
-use super::driving_control::{DrivingInputs, DrivingOutputs, driving_control};
-use super::effort::{Demands, Effort, Order};
+use super::effort::{Effort, Order};
 use super::emergency_line::{Line, LineInputs, emergency_line};
 use super::equipment_monitor::{EquipmentFailures, EquipmentMonitor, MonitorInputs};
 use super::feedback;
-use super::full_service_brake::{BrakeInputs, BrakeOutputs, full_service_brake};
-use super::holding_brake::{HoldingBrake, HoldingInputs};
+use super::holding_brake::HoldingBrake;
 use super::inputs::{CabInputs, TcmsInputs};
 use super::mode::TcmsMode;
 use super::report::{Report, Scan};
@@ -177,7 +176,7 @@ impl Tcms {
         let turned = self.turn(&scan, speed_mps);
         let power_cut = !power_cuts.is_empty() || !turned;
         let driving = self.drive(&scan, volts, power_cut, &line);
-        let share = share(&driving, &brake);
+        let share = Self::share(&driving, &brake);
         let demands = self.share_out(
             &scan,
             &Order {
@@ -255,105 +254,6 @@ impl Tcms {
         )
     }
 
-    /// The full-service-brake module. It hears of the controller at B7 one scan later.
-    fn full_service(&mut self, scan: &ScanContext<'_>, found: &EquipmentFailures) -> BrakeOutputs {
-        // The time begins with the mode: who takes the train over from ATO has to reach for it.
-        let released = !scan.mode.by_ato() && scan.cab.is_some_and(|cab| !cab.dead_man);
-        let limit = Duration::from_secs(self.data.dead_man_s);
-        self.dead_man_acts = self.dead_man.update(scan.now, released, limit);
-        let inputs = BrakeInputs {
-            bcxemod: scan.mode == TcmsMode::Emergency,
-            bcxymod: scan.mode == TcmsMode::Yard,
-            bcxmmod: scan.mode == TcmsMode::Manual,
-            bcxamod: scan.mode == TcmsMode::Automatic,
-            bcxdmod: scan.mode == TcmsMode::Driverless,
-            bcxvvvff: !found.inverters.is_empty(),
-            bcxecuf: !found.brake_units.is_empty(),
-            bcxbccsf: !found.cylinders.is_empty(),
-            bcxnrb: found.not_released_brakes,
-            bcxatof: scan.order.failed,
-            bcxdoreq: !scan.inputs.doors_closed,
-            bcxacfsb: scan.inputs.contact(Outputs::FSB),
-            bcxdmfsb: self.dead_man_acts,
-            bcxinb7: self.view.driving.dryinb7,
-        };
-        let brake = full_service_brake(&inputs);
-        self.full_service_otherwise = if inputs.bcxnrb {
-            let otherwise = BrakeInputs {
-                bcxnrb: false,
-                ..inputs
-            };
-            full_service_brake(&otherwise).bcymsb
-        } else {
-            brake.bcymsb
-        };
-        brake
-    }
-
-    fn hold(&mut self, scan: &ScanContext<'_>, speed_mps: f64) -> bool {
-        let ordered = self.view.driving.drytebe;
-        self.holding.step(
-            scan.now,
-            &HoldingInputs {
-                by_ato: scan.mode.by_ato(),
-                driverless: scan.mode == TcmsMode::Driverless,
-                requested: scan.inputs.holding_asked(scan.order.holding),
-                braking: self.view.driving.dryinb,
-                speed_mps,
-                traction: feedback::traction(scan.inputs.equipment, self.effort.as_ref(), ordered),
-                turn_back: scan.inputs.turn_back,
-            },
-        )
-    }
-
-    /// Takes ATO's direction of travel while the train stands; whether it goes as ATO orders it.
-    fn turn(&mut self, scan: &ScanContext<'_>, speed_mps: f64) -> bool {
-        let ordered = scan.mode.by_ato() && scan.order.backward;
-        if speed_mps < STANDS_MPS {
-            self.backward = ordered;
-        }
-        self.backward == ordered
-    }
-
-    /// The driving-control module, and the mask of the emergency brake behind it.
-    fn drive(&self, scan: &ScanContext<'_>, volts: f64, cut: bool, line: &Line) -> DrivingOutputs {
-        let (mode, order) = (scan.mode, &scan.order);
-        let controller = scan.cab.map(|cab| cab.controller);
-        let driving = driving_control(&DrivingInputs {
-            drxemod: mode == TcmsMode::Emergency,
-            drxymod: mode == TcmsMode::Yard,
-            drxmmod: mode == TcmsMode::Manual,
-            drxamod: mode == TcmsMode::Automatic,
-            drxdmod: mode == TcmsMode::Driverless,
-            drxmcrv: self.data.value(volts),
-            drxp: controller.is_some_and(|c| c.power),
-            drxb: controller.is_some_and(|c| c.brake),
-            drxcoa: controller.is_some_and(|c| c.neutral),
-            drxpcut: cut,
-            drxtebe: order.value,
-            drxaop: order.power,
-            drxaob: order.brake,
-        });
-        if !line.applied {
-            return driving;
-        }
-        DrivingOutputs {
-            dryinp: false,
-            drytebe: 0,
-            ..driving
-        }
-    }
-
-    fn share_out(&mut self, scan: &ScanContext<'_>, order: &Order) -> Demands {
-        let before = self.stepped.replace(scan.now).unwrap_or(scan.now);
-        let dt_s = scan.now.since(before).as_secs().min(LONGEST_STEP_S);
-        self.effort
-            .as_mut()
-            .map_or_else(Demands::default, |effort| {
-                effort.step(dt_s, order, scan.inputs.equipment)
-            })
-    }
-
     fn log(&mut self, scan: &ScanContext<'_>) {
         let failed = scan.cab.is_some() && self.data.controller_failed(self.view.volts);
         self.report.step(
@@ -405,19 +305,5 @@ fn line_inputs(scan: &ScanContext<'_>) -> LineInputs {
         atc_relay: scan.inputs.contact(Outputs::EB_RELAY),
         main_reservoir_low: scan.inputs.main_reservoir_low,
         cut_out: scan.inputs.eb_cut_out,
-    }
-}
-
-/// Share of full effort, −1..1. The maximum service brake is an order of its own: no mask of the value
-/// takes it away.
-fn share(driving: &DrivingOutputs, brake: &BrakeOutputs) -> f64 {
-    if brake.bcymsb {
-        return -1.0;
-    }
-    let value = f64::from(driving.drytebe);
-    if value < 0.0 {
-        value / -f64::from(FULL_BRAKE)
-    } else {
-        value / f64::from(FULL_POWER)
     }
 }

@@ -23,6 +23,12 @@ struct TrainRun {
     distance_m: f64,
 }
 
+fn conditions(change: impl FnOnce(&mut Conditions)) -> Conditions {
+    let mut conditions = Conditions::default();
+    change(&mut conditions);
+    conditions
+}
+
 impl TrainRun {
     fn new(conditions: Conditions, kmh: f64, inputs: TrainInputs) -> Self {
         let mut train = Train::new(&TrainData::line6(), &conditions);
@@ -210,10 +216,7 @@ fn brakes_build_up_in_their_times() {
     assert!((0.80..0.88).contains(&most), "{most}");
 
     // Twice as slow a train: twice the dead time and time constant.
-    let slow = Conditions {
-        delay_factor: 2.0,
-        ..Conditions::default()
-    };
+    let slow = conditions(|it| it.delay_factor = 2.0);
     let mut late = TrainRun::new(slow, 60.0, emergency.inputs);
     let late_most = late.run_until(|r| share(r, 4.5) >= 0.9);
     assert!((late_most / most - 2.0).abs() < 0.02, "{late_most}");
@@ -304,10 +307,7 @@ fn it_departs_without_rolling_back_or_jumping() {
 /// the tachometers rolls less distance than the train. On good rails again, everything recovers.
 #[test]
 fn braked_wheels_slide_on_leaves_and_recover() {
-    let leaves = Conditions {
-        adhesion: 0.05,
-        ..Conditions::default()
-    };
+    let leaves = conditions(|it| it.adhesion = 0.05);
     let mut ride = TrainRun::new(leaves, 60.0, demanding(-1.0));
     let mut axle_m = 0.0;
     let mut sliding_steps = 0;
@@ -336,10 +336,7 @@ fn braked_wheels_slide_on_leaves_and_recover() {
 /// Motor cars slip at full power on poor rails; the tachometers on a trailer do not see it.
 #[test]
 fn slip_under_power_does_not_reach_a_trailers_tachometers() {
-    let leaves = Conditions {
-        adhesion: 0.1,
-        ..Conditions::default()
-    };
+    let leaves = conditions(|it| it.adhesion = 0.1);
     let mut ride = TrainRun::new(leaves, 0.0, demanding(1.0));
     let mut slipped = false;
     for _ in 0..2000 {
@@ -355,10 +352,7 @@ fn slip_under_power_does_not_reach_a_trailers_tachometers() {
 /// A wet stop ends, and standing wheels stand.
 #[test]
 fn a_slide_to_a_stop_leaves_no_wheel_turning() {
-    let ice = Conditions {
-        adhesion: 0.03,
-        ..Conditions::default()
-    };
+    let ice = conditions(|it| it.adhesion = 0.03);
     let mut ride = TrainRun::new(ice, 30.0, demanding(-1.0));
     ride.run_until(|r| r.kmh() == 0.0);
     ride.run(5.0);
@@ -416,10 +410,7 @@ fn energy_is_kept() {
 #[test]
 fn it_stays_finite_and_deterministic() {
     let run = || {
-        let leaves = Conditions {
-            adhesion: 0.04,
-            ..Conditions::default()
-        };
+        let leaves = conditions(|it| it.adhesion = 0.04);
         let mut ride = TrainRun::new(leaves, 70.0, TrainInputs::default());
         for (i, demand) in [f64::NAN, 1e300, -1e300, f64::INFINITY, 0.0]
             .into_iter()

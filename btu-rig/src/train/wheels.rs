@@ -13,11 +13,11 @@ const GRAVITY_MPS2: f64 = 9.80665;
 /// Effort at the wheels of each car.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Efforts {
-    /// Traction, N, a size.
+    /// Traction, N, without a sign.
     pub traction_n: PerCar,
-    /// Electric brake, N, a size.
+    /// Electric brake, N, without a sign.
     pub electric_n: PerCar,
-    /// Air brake, N, a size.
+    /// Air brake, N, without a sign.
     pub air_n: PerCar,
 }
 
@@ -37,11 +37,11 @@ pub(super) struct TrainMotion {
 /// Efforts that the rails carry in one step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rails {
-    /// Traction, N, a size.
+    /// Traction, N, without a sign.
     pub traction_n: f64,
-    /// Electric brake, N, a size.
+    /// Electric brake, N, without a sign.
     pub electric_n: f64,
-    /// Air brake, N, a size.
+    /// Air brake, N, without a sign.
     pub air_n: f64,
     /// Mass accelerated, kg: wheels that slip or slide do not belong to it.
     pub inertia_kg: f64,

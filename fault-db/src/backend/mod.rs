@@ -86,6 +86,11 @@ impl Backend {
         }
     }
 
+    /// Whether a result has a row.
+    pub fn has(&self, sql: &str, values: &[Value<'_>]) -> SqlResult<bool> {
+        Ok(self.first(sql, values, |_| Ok(()))?.is_some())
+    }
+
     /// Executes a statement; the number of rows changed.
     pub fn execute(&self, sql: &str, values: &[Value<'_>]) -> SqlResult<u64> {
         match self {

@@ -1,7 +1,7 @@
 //! Errors of the store, each with the file or server it concerns and the next move. A message that tells to
 //! choose another file does not say how: the caller adds that.
 
-mod misplaced;
+mod file_change;
 mod query_limit;
 mod server;
 mod sqlite;
@@ -13,7 +13,7 @@ use crate::maintenance::Damage;
 use crate::trace::TraceError;
 use crate::values::fault_state::TransitionError;
 use crate::values::withdrawal_error::WithdrawalError;
-pub use misplaced::Misplaced;
+pub use file_change::FileChange;
 pub use query_limit::{MOST_RESULT_BYTES, QueryLimit};
 pub use server::ServerReason;
 
@@ -21,32 +21,20 @@ pub use server::ServerReason;
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// Another connection holds the file for longer than the busy timeout.
-    #[error("database busy: {} is locked by another program; close it or choose another file", .path.display())]
-    Locked {
-        /// The database file.
-        path: PathBuf,
-    },
+    #[error("database busy: {} is locked by another program; close it or choose another file", .0.display())]
+    Locked(PathBuf),
     /// The caller has stopped the work: nothing of it is kept.
     #[error("stopped before its end")]
     Stopped,
     /// No room for the write; what was committed before remains.
-    #[error("no room left to write {} (all that was recorded before is kept); free some space or choose another disk", .path.display())]
-    Full {
-        /// The database file.
-        path: PathBuf,
-    },
+    #[error("no room left to write {} (all that was recorded before is kept); free some space or choose another disk", .0.display())]
+    Full(PathBuf),
     /// The file or its directory is write-protected.
-    #[error("{} is read-only; make it and its directory writable or choose another file", .path.display())]
-    ReadOnly {
-        /// The database file.
-        path: PathBuf,
-    },
+    #[error("{} is read-only; make it and its directory writable or choose another file", .0.display())]
+    ReadOnly(PathBuf),
     /// The file is something else than a SQLite database.
-    #[error("{} is not a database; choose another file", .path.display())]
-    NotADatabase {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{} is not a database; choose another file", .0.display())]
+    NotADatabase(PathBuf),
     /// A SQLite database of another program.
     #[error("{} is a database of another program (application id {application_id:#010x}); choose another file", .path.display())]
     ForeignDatabase {
@@ -77,11 +65,11 @@ pub enum StoreError {
     },
     /// The file is no longer the one that was opened, or another name leads to it, too.
     #[error("the database {} {what}", .path.display())]
-    Misplaced {
+    FileChanged {
         /// The database file.
         path: PathBuf,
         /// Change of the file.
-        what: Misplaced,
+        what: FileChange,
     },
     /// The file is an older copy: more of its chain of seals is known elsewhere.
     #[error("{} is a copy from before: it ends with entry {here} of its chain of seals, and {there} are known there; if it is a backup that is to be gone on with, give it a name of its own with `db sync --as-copy`, else go on with the file itself", .path.display())]
@@ -124,11 +112,8 @@ pub enum StoreError {
         known: i32,
     },
     /// There is no such file; reading does not create one.
-    #[error("there is no database {}; a first run creates it, or choose another file", .path.display())]
-    Missing {
-        /// The file asked for.
-        path: PathBuf,
-    },
+    #[error("there is no database {}; a first run creates it, or choose another file", .0.display())]
+    Missing(PathBuf),
     /// The file cannot be opened at all.
     #[error("cannot open {}: {reason}; check the path and its directory or choose another file", .path.display())]
     CannotOpen {
@@ -146,11 +131,8 @@ pub enum StoreError {
         reason: String,
     },
     /// SQLite cannot follow the file's pages.
-    #[error("{} is damaged; run `db check`, then go on with a backup", .path.display())]
-    Malformed {
-        /// The database file.
-        path: PathBuf,
-    },
+    #[error("{} is damaged; run `db check`, then go on with a backup", .0.display())]
+    Malformed(PathBuf),
     /// The file's content contradicts itself.
     #[error("{} is damaged ({detail}); run `db check`, then go on with a backup", .path.display())]
     Corrupt {
@@ -189,11 +171,8 @@ pub enum StoreError {
         matches: Vec<Id>,
     },
     /// A search text without any word.
-    #[error("{asked:?} has no word to search for; give letters or digits")]
-    NoWords {
-        /// The words that were asked for.
-        asked: String,
-    },
+    #[error("{0:?} has no word to search for; give letters or digits")]
+    NoWords(String),
     /// Neither an id, nor a part of one, nor `latest`.
     #[error(
         "{asked:?} is no {what} id: give `latest`, a full id, or at least four hex digits of its beginning or end"
@@ -234,11 +213,8 @@ pub enum StoreError {
         last: u32,
     },
     /// The run already has its verdict.
-    #[error("run {run} is finished; begin a new run to record more")]
-    RunFinished {
-        /// The run.
-        run: Id,
-    },
+    #[error("run {0} is finished; begin a new run to record more")]
+    RunFinished(Id),
     /// Writing has failed for so long that no more steps can be buffered.
     #[error("{waiting} steps wait in memory because {} cannot be written; stop the run", .path.display())]
     StepsWaiting {
@@ -256,11 +232,8 @@ pub enum StoreError {
         source: TraceError,
     },
     /// A backup or export never overwrites.
-    #[error("{} exists already; name a file that does not", .path.display())]
-    TargetExists {
-        /// The target asked for.
-        path: PathBuf,
-    },
+    #[error("{} exists already; name a file that does not", .0.display())]
+    TargetExists(PathBuf),
     /// A backup or export cannot be made where it was asked for.
     #[error("cannot write {}: {reason}; name another target", .path.display())]
     CannotWrite {
@@ -270,47 +243,26 @@ pub enum StoreError {
         reason: String,
     },
     /// One file is both source and target.
-    #[error("{} cannot be merged into itself; name another file", .path.display())]
-    SameFile {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{} cannot be merged into itself; name another file", .0.display())]
+    SameFile(PathBuf),
     /// The statement does more than read.
-    #[error("only one reading statement is allowed here ({reason}); write a single SELECT")]
-    QueryRefused {
-        /// Why the statement was refused.
-        reason: String,
-    },
+    #[error("only one reading statement is allowed here ({0}); write a single SELECT")]
+    QueryRefused(String),
     /// SQLite rejected the statement.
-    #[error("the query failed: {reason}")]
-    QueryFailed {
-        /// Message of SQLite.
-        reason: String,
-    },
+    #[error("the query failed: {0}")]
+    QueryFailed(String),
     /// The result exceeds a limit.
-    #[error("the query was given up: {limit}")]
-    QueryExceeds {
-        /// Limit that was exceeded.
-        limit: QueryLimit,
-    },
+    #[error("the query was given up: {0}")]
+    QueryExceeds(QueryLimit),
     /// The operation needs a file, and this is a server.
-    #[error("{} is a server, and this needs a database file, which `db sync` brings to the server; name one", .path.display())]
-    NotAFile {
-        /// The server.
-        path: PathBuf,
-    },
+    #[error("{} is a server, and this needs a database file, which `db sync` brings to the server; name one", .0.display())]
+    NotAFile(PathBuf),
     /// The operation needs a server, and this is a file.
-    #[error("{} is a file, and this needs a server; name one as postgres://USER@HOST/DATABASE", .path.display())]
-    NotAServer {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{} is a file, and this needs a server; name one as postgres://USER@HOST/DATABASE", .0.display())]
+    NotAServer(PathBuf),
     /// The text is no address of a server.
-    #[error("bad server address: {reason}; write postgres://USER@HOST/DATABASE")]
-    BadAddress {
-        /// Fault of the address; never its password.
-        reason: String,
-    },
+    #[error("bad server address: {0}; write postgres://USER@HOST/DATABASE")]
+    BadAddress(String),
     /// The server does not answer, or no longer.
     #[error("{} is away ({doing}: {reason}); look at the network and the server, then try again (nothing is lost: the laptop's file has everything)", .path.display())]
     ServerUnreachable {
@@ -348,11 +300,8 @@ pub enum StoreError {
         reason: String,
     },
     /// There are no tables on the server yet.
-    #[error("there is no history on {} yet; who looks after the server makes its tables once: `ptu db server init ADDRESS`, as their owner", .path.display())]
-    ServerEmpty {
-        /// The server.
-        path: PathBuf,
-    },
+    #[error("there is no history on {} yet; who looks after the server makes its tables once: `ptu db server init ADDRESS`, as their owner", .0.display())]
+    ServerEmpty(PathBuf),
     /// The server's tables or rights cannot be set up.
     #[error("{} was not set up: {reason}", .path.display())]
     ServerSetup {
@@ -362,11 +311,8 @@ pub enum StoreError {
         reason: String,
     },
     /// The database on the server holds something else.
-    #[error("the database of {} holds tables of another program; make one of its own with createdb", .path.display())]
-    ServerForeign {
-        /// The server.
-        path: PathBuf,
-    },
+    #[error("the database of {} holds tables of another program; make one of its own with createdb", .0.display())]
+    ServerForeign(PathBuf),
     /// The server's tables are of an earlier version.
     #[error("{} has the older schema {found} (this program knows {known}); who looks after the server brings it up to date: `ptu db server init ADDRESS` of this program, as the owner of its tables", .path.display())]
     ServerOlderSchema {

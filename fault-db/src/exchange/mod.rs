@@ -7,6 +7,7 @@
 
 mod change_set;
 mod checksum;
+mod columns;
 pub(crate) mod domain;
 mod merge;
 mod rows;

@@ -2,7 +2,8 @@
 
 use std::rc::Rc;
 
-use super::tables::{Column, Kind, Table};
+use super::columns::{Column, Kind};
+use super::tables::Table;
 use crate::backend::Refusal;
 use crate::backend::{Field, Row, SqlError, SqlResult, Value};
 use crate::exchange::domain::{PACKED_BYTES, check, shown_id};

@@ -1,6 +1,7 @@
 //! The SQL that follows from the declaration of a table.
 
-use super::tables::{Column, Kind, Table};
+use super::columns::{Column, Kind};
+use super::tables::Table;
 use crate::exchange::domain::PACKED_BYTES;
 
 impl Table {

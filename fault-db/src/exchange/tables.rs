@@ -2,6 +2,7 @@
 //! them besides inserting. `statements` makes the SQL of it.
 
 use super::checksum::checksum;
+use super::columns::{Column, Kind, columns};
 use crate::backend::Value;
 use crate::exchange::domain::check_body;
 use crate::history::withdrawal::check_parents;
@@ -40,28 +41,6 @@ pub(super) struct Table {
     pub server_after: &'static [&'static str],
 }
 
-/// A column of a change set.
-pub(super) struct Column {
-    pub name: &'static str,
-    pub kind: Kind,
-    /// Value of a derived column in SQL, from the row `t`.
-    pub value: &'static str,
-}
-
-/// The type of a column, or the parent that it names.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Integer,
-    Real,
-    Text,
-    Bytes,
-    Unit,
-    Run,
-    Fault,
-    ChannelSet,
-    Trace,
-}
-
 /// The replicated tables, in the order of [`TABLES`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[rustfmt::skip]
@@ -78,37 +57,6 @@ impl TableId {
     pub fn table(self) -> &'static Table {
         &TABLES[self as usize]
     }
-}
-
-impl Kind {
-    /// The table that a parent is in, and the column of its identity.
-    pub fn parent(self) -> Option<(&'static str, &'static str)> {
-        Some(match self {
-            Self::Unit => ("unit", "serial"),
-            Self::Run => ("run", "id"),
-            Self::Fault => ("fault", "id"),
-            Self::ChannelSet => ("channel_set", "sha256"),
-            Self::Trace => ("trace", "id"),
-            Self::Integer | Self::Real | Self::Text | Self::Bytes => return None,
-        })
-    }
-
-    /// The type on the server.
-    pub fn server_type(self) -> &'static str {
-        match self {
-            Self::Integer => "bigint",
-            Self::Real => "float8",
-            Self::Text | Self::Unit => "text",
-            Self::Bytes | Self::Run | Self::Fault | Self::ChannelSet | Self::Trace => "bytea",
-        }
-    }
-}
-
-/// `columns![id Bytes, line Text]`: the columns of a table.
-macro_rules! columns {
-    ($($name:ident $kind:ident),* $(,)?) => {
-        &[$(Column { name: stringify!($name), kind: Kind::$kind, value: "" }),*]
-    };
 }
 
 const TABLE: Table = Table {

@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 use rusqlite::{Connection, params_from_iter};
 
 use super::change_set::{ChangeSet, Counts};
+use super::columns::Kind;
 use super::rows::Rows;
-use super::tables::{COUNT, Kind, TableId};
+use super::tables::{COUNT, TableId};
 use crate::backend::{Backend, SqlResult, values};
 use crate::history::event_graph::{fault_of, merge_faults};
 use crate::id::Id;
@@ -142,8 +143,7 @@ impl<'a> FileApplier<'a> {
         let mut count = 0;
         for id in &self.new_faults {
             let stays = "SELECT 1 FROM fault WHERE id = ?1";
-            let stays = self.file.first(stays, &values![*id], |_| Ok(()))?;
-            count += usize::from(stays.is_some());
+            count += usize::from(self.file.has(stays, &values![*id])?);
         }
         Ok(count)
     }

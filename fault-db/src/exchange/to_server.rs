@@ -6,8 +6,9 @@ use std::borrow::Cow;
 use postgres::types::ToSql;
 
 use super::change_set::{ChangeSet, Counts};
+use super::columns::{Column, Kind};
 use super::rows::Rows;
-use super::tables::{COUNT, Column, Kind, TableId};
+use super::tables::{COUNT, TableId};
 use crate::backend::{Backend, Server, SqlResult, Value};
 use crate::history::event_graph::settle;
 use crate::history::recurrence::HighWaterMark;

@@ -90,8 +90,7 @@ impl Store {
             let mut attributed = Vec::new();
             for fault in faults {
                 let seq = self.fault_row(*fault)?.seq;
-                let stays = self.first(DOING, STAYS, &values![seq, part.as_str()], |_| Ok(()))?;
-                if stays.is_none() {
+                if !self.has(DOING, STAYS, &values![seq, part.as_str()])? {
                     self.attribute(seq, DIAGNOSED, cause, "", at_us)?;
                     attributed.push(*fault);
                 }

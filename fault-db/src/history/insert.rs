@@ -264,7 +264,7 @@ fn acted_since(
     place: &FaultPlace<'_>,
     at_us: i64,
 ) -> SqlResult<bool> {
-    let acted = backend.first(
+    backend.has(
         concat!(
             "SELECT 1 FROM fault_event e
              WHERE e.fault = ?1 AND e.state IS NOT NULL AND e.at_us > ?2 AND e.kind NOT IN ('opened', 'recurred')
@@ -273,9 +273,7 @@ fn acted_since(
             " LIMIT 1"
         ),
         &values![fault, at_us, if place.of_log { 0 } else { place.known_events }],
-        |_| Ok(()),
-    )?;
-    Ok(acted.is_some())
+    )
 }
 
 fn open_fault(

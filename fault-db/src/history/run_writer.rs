@@ -301,7 +301,7 @@ impl<'a> RunWriter<'a> {
     /// was removed, replaced or written over meanwhile, or has a second name. Within a transaction that is not looked at.
     pub fn finish(&mut self, end: &RunEnd) -> Result<(), StoreError> {
         if self.finished {
-            return Err(StoreError::RunFinished { run: self.id });
+            return Err(StoreError::RunFinished(self.id));
         }
         if !self.ended {
             self.end(end)?;
@@ -350,7 +350,7 @@ impl<'a> RunWriter<'a> {
 
     pub(crate) fn check_unfinished(&self) -> Result<(), StoreError> {
         if self.ended || self.finished {
-            Err(StoreError::RunFinished { run: self.id })
+            Err(StoreError::RunFinished(self.id))
         } else {
             Ok(())
         }

@@ -183,9 +183,9 @@ impl Store {
             let kind = written.kind.clone();
             return refuse(WithdrawalError::Rested { kind, after });
         }
-        match self.first(DOING, SEEN_SINCE, &values![fault.seq], |_| Ok(()))? {
-            Some(()) => refuse(WithdrawalError::SeenSince),
-            None => Ok(()),
+        match self.has(DOING, SEEN_SINCE, &values![fault.seq])? {
+            true => refuse(WithdrawalError::SeenSince),
+            false => Ok(()),
         }
     }
 }

@@ -10,9 +10,7 @@ use crate::store::Store;
 /// # Errors
 /// [`StoreError::NoWords`] if the text has none.
 pub(super) fn search(note: &str) -> Result<Search, StoreError> {
-    Search::new(note).ok_or_else(|| StoreError::NoWords {
-        asked: note.to_owned(),
-    })
+    Search::new(note).ok_or_else(|| StoreError::NoWords(note.to_owned()))
 }
 
 /// The numbers of codes: given as such, or by the name of the fault.

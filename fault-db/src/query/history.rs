@@ -162,30 +162,26 @@ impl Store {
     ) -> Result<bool, StoreError> {
         let from_us = at_us.map_or(i64::MIN, |at| at.saturating_sub(SAME_ENTRY_US));
         let until_us = at_us.map_or(i64::MAX, |at| at.saturating_add(SAME_ENTRY_US));
-        let found = self.first(
+        self.has(
             "looking for a fault",
             "SELECT 1 FROM unit u JOIN fault f ON f.unit = u.seq
                  JOIN fault_occurrence o ON o.fault = f.seq
                  WHERE u.serial = ?1 AND f.code = ?2 AND o.at_us BETWEEN ?3 AND ?4
                     AND o.message = ?5 LIMIT 1",
             &values![unit, code, from_us, until_us, message],
-            |_| Ok(()),
-        )?;
-        Ok(found.is_some())
+        )
     }
 
     /// Whether an occurrence has this id.
     pub fn has_occurrence(&self, id: Id) -> Result<bool, StoreError> {
         let known = "SELECT 1 FROM fault_occurrence WHERE id = ?1";
-        let found = self.first("looking for an occurrence", known, &values![id], |_| Ok(()));
-        Ok(found?.is_some())
+        self.has("looking for an occurrence", known, &values![id])
     }
 
     /// Whether a trace has this id.
     pub fn has_trace(&self, id: Id) -> Result<bool, StoreError> {
         let known = "SELECT 1 FROM trace WHERE id = ?1";
-        let found = self.first("looking for a trace", known, &values![id], |_| Ok(()));
-        Ok(found?.is_some())
+        self.has("looking for a trace", known, &values![id])
     }
 
     /// The freeze frame of the entry of a unit's log that was imported last, as JSON.

@@ -378,13 +378,8 @@ impl Store {
     }
 
     fn has_measurement(&self, name: &str) -> Result<bool, StoreError> {
-        let found = self.first(
-            "looking for a measurement",
-            "SELECT 1 FROM measurement WHERE name = ?1 LIMIT 1",
-            &values![name],
-            |_| Ok(()),
-        )?;
-        Ok(found.is_some())
+        let known = "SELECT 1 FROM measurement WHERE name = ?1 LIMIT 1";
+        self.has("looking for a measurement", known, &values![name])
     }
 }
 

@@ -53,10 +53,7 @@ pub(crate) fn fill_empty_blocks(backend: &Backend) -> SqlResult<()> {
         return Ok(());
     };
     let few = "SELECT 1 FROM packed WHERE faults IS NULL LIMIT 1 OFFSET ?1";
-    if backend
-        .first(few, &values![FEW_EMPTY], |_| Ok(()))?
-        .is_none()
-    {
+    if !backend.has(few, &values![FEW_EMPTY])? {
         return Ok(());
     }
     let sql = format!(

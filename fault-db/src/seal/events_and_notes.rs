@@ -54,14 +54,12 @@ pub(crate) fn is_of_its_fault(
     else {
         return Ok(false);
     };
-    let same = backend.first(
+    backend.has(
         "SELECT 1 FROM fault_event e JOIN fault f ON f.seq = e.fault
          WHERE e.seq = ?1 AND e.seen <= ?3
             AND (f.id = ?2 OR EXISTS (SELECT 1 FROM fault_alias a WHERE a.id = ?2 AND a.fault = f.seq))",
         &values![event, of, payload.occurrences_known],
-        |_| Ok(()),
-    )?;
-    Ok(same.is_some())
+    )
 }
 
 /// Seals an event of this fault; `fields` as given, in the order of [`EVENT`], without those of the fault.

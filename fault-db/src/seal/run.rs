@@ -292,9 +292,7 @@ fn brought_by_others(
         .then(|| RunPayload::of(payload));
     for entry in payload.flatten().unwrap_or_default().entries {
         if let (Ok(id), Some(digest)) = (entry.id.parse::<Id>(), from_hex(&entry.sha256))
-            && backend
-                .first(BY_OTHER, &values![id, run], |_| Ok(()))?
-                .is_some()
+            && backend.has(BY_OTHER, &values![id, run])?
         {
             brought.insert(id, digest);
         }

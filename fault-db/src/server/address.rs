@@ -85,7 +85,7 @@ impl FromStr for Address {
     type Err = StoreError;
 
     fn from_str(text: &str) -> Result<Self, StoreError> {
-        parse(text).map_err(|reason| StoreError::BadAddress { reason })
+        parse(text).map_err(StoreError::BadAddress)
     }
 }
 

@@ -60,8 +60,10 @@ pub(super) fn open(address: &Address) -> Result<(Backend, PathBuf), StoreError> 
         let named = environment("PGUSER").or_else(|| environment(platform::LOGGED_IN));
         named.and_then(|name| name.into_string().ok())
     });
-    let user = user.ok_or_else(|| StoreError::BadAddress {
-        reason: "it names no user, and nobody is logged in; write postgres://USER@…".to_owned(),
+    let user = user.ok_or_else(|| {
+        StoreError::BadAddress(
+            "it names no user, and nobody is logged in; write postgres://USER@…".to_owned(),
+        )
     })?;
     let database = address.database.clone().unwrap_or_else(|| user.clone());
     let password = password::find(address, &user, &database, &environment);

@@ -32,8 +32,8 @@ enum Found {
 pub(super) fn check(backend: &Backend, path: &Path) -> Result<(), StoreError> {
     let path = path.to_path_buf();
     match look(backend).map_err(|error| StoreError::from_sql(&path, DOING, error))? {
-        Found::Nothing => Err(StoreError::ServerEmpty { path }),
-        Found::Others => Err(StoreError::ServerForeign { path }),
+        Found::Nothing => Err(StoreError::ServerEmpty(path)),
+        Found::Others => Err(StoreError::ServerForeign(path)),
         Found::Ours { schema } if schema < SERVER_SCHEMA_VERSION => {
             Err(StoreError::ServerOlderSchema {
                 path,

@@ -52,11 +52,11 @@ impl Store {
     ) -> Result<ServerSetup, StoreError> {
         let (backend, path) = open(address)?;
         let Backend::Server(server) = &backend else {
-            return Err(StoreError::NotAServer { path });
+            return Err(StoreError::NotAServer(path));
         };
         let schema_before = match schema::check(&backend, &path) {
             Ok(()) => Some(SERVER_SCHEMA_VERSION),
-            Err(StoreError::ServerEmpty { .. }) => None,
+            Err(StoreError::ServerEmpty(_)) => None,
             Err(StoreError::ServerOlderSchema { found, .. }) => Some(found),
             Err(other) => return Err(other),
         };

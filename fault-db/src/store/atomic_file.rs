@@ -106,7 +106,7 @@ impl AtomicFile {
         // After that look: a file that another program makes meanwhile is there, whatever it belongs to.
         if to.exists() {
             let path = to.to_path_buf();
-            return Err(StoreError::TargetExists { path });
+            return Err(StoreError::TargetExists(path));
         }
         if is_of_database {
             return Err(cannot_write(to, "it belongs to a database".to_owned()));
@@ -161,7 +161,7 @@ impl AtomicFile {
         let path = self.to.clone();
         let published = self.publish_as(&path);
         published.map_err(|(error, _)| match error.kind() {
-            ErrorKind::AlreadyExists => StoreError::TargetExists { path },
+            ErrorKind::AlreadyExists => StoreError::TargetExists(path),
             _ => StoreError::Io {
                 path,
                 reason: error.to_string(),

@@ -41,9 +41,7 @@ pub(crate) fn connect(
     }
     // Opening a pipe would block.
     if std::fs::metadata(path).is_ok_and(|about| !about.is_file()) {
-        return Err(StoreError::NotADatabase {
-            path: path.to_path_buf(),
-        });
+        return Err(StoreError::NotADatabase(path.to_path_buf()));
     }
     let failed = |error| StoreError::from_sqlite(path, "opening", error);
     // From the root: SQLite takes `:memory:`, `file:x` and no name for something else than a file.
@@ -72,9 +70,7 @@ pub(crate) fn connect(
 pub(crate) fn identify(conn: &Connection, path: &Path) -> Result<i32, StoreError> {
     // SQLite takes a file too short for its header for an empty one, and would overwrite it.
     if std::fs::metadata(path).is_ok_and(|file| (1..SMALLEST_FILE_BYTES).contains(&file.len())) {
-        return Err(StoreError::NotADatabase {
-            path: path.to_path_buf(),
-        });
+        return Err(StoreError::NotADatabase(path.to_path_buf()));
     }
     let failed = |error| StoreError::from_sqlite(path, "opening", error);
     // One snapshot: another program may be creating the file this moment.
@@ -156,7 +152,7 @@ pub(crate) fn keep_copy(conn: &Connection, path: &Path, version: i32) -> Result<
     let Some(copy) = copies.find(|copy| !copy.exists()) else {
         let mut first = path.as_os_str().to_owned();
         first.push(format!(".schema{version}"));
-        return Err(StoreError::TargetExists { path: first.into() });
+        return Err(StoreError::TargetExists(first.into()));
     };
     let part = AtomicFile::copy(conn, &copy, DOING)?;
     if part.version()? != version {
@@ -164,7 +160,7 @@ pub(crate) fn keep_copy(conn: &Connection, path: &Path, version: i32) -> Result<
     }
     match part.publish() {
         // Another program made the same copy a moment ago.
-        Err(StoreError::TargetExists { .. }) => Ok(()),
+        Err(StoreError::TargetExists(_)) => Ok(()),
         done => done,
     }
 }

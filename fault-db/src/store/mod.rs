@@ -1,19 +1,21 @@
-//! One open history, in a file or on a server: opening, queries, transactions.
+//! One open history, in a file or on a server: queries, transactions.
 
 pub(crate) mod atomic_file;
 pub(crate) mod file;
 mod head;
 mod lookup;
 pub(crate) mod open_options;
+mod opening;
 mod place;
 mod transaction;
+mod under_way;
 
 use std::cell::{RefCell, RefMut};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use rusqlite::{Connection, OpenFlags, Transaction, TransactionBehavior};
+use rusqlite::{Connection, Transaction, TransactionBehavior};
 
 use crate::backend::{Backend, Row, Server, SqlError, SqlResult, Value};
 use crate::error::StoreError;
@@ -22,15 +24,9 @@ use crate::id::{Id, IdSource};
 use crate::maintenance::Damage;
 use crate::schema::SCHEMA_VERSION;
 use crate::schema::guard;
+use crate::seal;
 use crate::signature::{Signer, sign_new_entries};
-use crate::store::atomic_file::make_private;
-use crate::store::file::{
-    READ_BUSY_TIMEOUT_MS, connect, has_write_ahead_log, identify, immutable_uri, keep_copy, set_up,
-    set_up_to_record,
-};
-use crate::store::open_options::OpenOptions;
 use crate::trace::{Channel, TraceCodec, TraceError};
-use crate::{schema, seal};
 
 /// More than the number of distinct repeated statements in this crate.
 const STATEMENT_CACHE: usize = 64;
@@ -60,97 +56,6 @@ impl std::fmt::Debug for Store {
 }
 
 impl Store {
-    /// Opens a file for writing; creates it, or migrates its schema, if need be. A file of an earlier schema
-    /// is copied first, to `FILE.schemaN` beside it. Created files are readable for their owner only.
-    pub fn open(path: &Path, options: OpenOptions) -> Result<Self, StoreError> {
-        // An existing file is not opened here: closing it would release SQLite's locks on it. If none can be
-        // created, SQLite's own attempt gives the reason.
-        if !path.exists() {
-            let _ = make_private(path);
-        }
-        let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
-            | OpenFlags::SQLITE_OPEN_CREATE
-            | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-        let looked = connect(path, path, flags, options.busy_timeout_ms)
-            .and_then(|conn| identify(&conn, path).map(|version| (conn, version)));
-        let (conn, version) = match looked {
-            // On a write-protected disk SQLite fails without the reason; a file that can be read but not
-            // opened for writing is read-only.
-            Err(StoreError::CannotOpen { .. }) if Self::open_read_only(path).is_ok() => {
-                return Err(StoreError::ReadOnly {
-                    path: path.to_path_buf(),
-                });
-            }
-            other => other?,
-        };
-        let failed = |error| StoreError::from_sqlite(path, "opening", error);
-        // SQLite silently opens a write-protected file for reading.
-        if conn.is_readonly("main").map_err(failed)? {
-            return Err(StoreError::ReadOnly {
-                path: path.to_path_buf(),
-            });
-        }
-        refuse_foreign_objects(&conn, path)?;
-        if (1..SCHEMA_VERSION).contains(&version) {
-            keep_copy(&conn, path, version)?;
-        }
-        let OpenOptions {
-            ids,
-            synchronous,
-            max_pages,
-            ..
-        } = options;
-        set_up(&conn, version, synchronous).map_err(failed)?;
-        let mut store = Self::of_file(conn, path, Some(ids))?;
-        // What is written to a file with two names is lost to one of them.
-        store.check_place()?;
-        store.bring_up_to_date(version)?;
-        store.log = Identity::at(&place::log_of(path));
-        set_up_to_record(store.file()?, max_pages).map_err(failed)?;
-        Ok(store)
-    }
-
-    /// Opens a file for reading only; never creates, migrates or locks it.
-    ///
-    /// In a read-only directory the file is read as it is, provided that no other program left unfinished
-    /// work beside it.
-    pub fn open_read_only(path: &Path) -> Result<Self, StoreError> {
-        if !path.exists() {
-            return Err(StoreError::Missing {
-                path: path.to_path_buf(),
-            });
-        }
-        let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-        let looked = connect(path, path, flags, READ_BUSY_TIMEOUT_MS)
-            .and_then(|conn| identify(&conn, path).map(|version| (conn, version)));
-        let (conn, version) = match looked {
-            // A write-ahead log needs a file beside the database, which this directory refuses.
-            Err(StoreError::CannotOpen { .. } | StoreError::ReadOnly { .. })
-                if !has_write_ahead_log(path) =>
-            {
-                let flags = flags | OpenFlags::SQLITE_OPEN_URI;
-                let conn = connect(path, &immutable_uri(path), flags, READ_BUSY_TIMEOUT_MS)?;
-                let version = identify(&conn, path)?;
-                (conn, version)
-            }
-            other => other?,
-        };
-        match version {
-            0 => Err(StoreError::Missing {
-                path: path.to_path_buf(),
-            }),
-            found if found < SCHEMA_VERSION => {
-                let known = SCHEMA_VERSION;
-                Err(StoreError::OlderSchema {
-                    path: path.to_path_buf(),
-                    found,
-                    known,
-                })
-            }
-            _ => Self::of_file(conn, path, None),
-        }
-    }
-
     /// Descriptions of objects in this file that this program did not make or that were altered. Opening such
     /// a file for writing is refused; a reader may be warned.
     pub fn foreign_objects(&self) -> Result<Vec<Damage>, StoreError> {
@@ -191,29 +96,6 @@ impl Store {
     /// Whether it was opened for reading only.
     pub fn is_read_only(&self) -> bool {
         self.ids.is_none()
-    }
-
-    /// Creates the tables of a new file, or migrates those of an earlier version, and begins its chain of
-    /// seals, in one transaction; returns the file's id, which is given once.
-    fn bring_up_to_date(&self, version: i32) -> Result<Id, StoreError> {
-        const DOING: &str = "bringing it up to date";
-        if version < SCHEMA_VERSION {
-            let minted = self.mint()?;
-            return self.write(DOING, |conn| {
-                let failed = |error| self.failed(DOING, error);
-                // Another program may have been first.
-                let from = schema::user_version(conn).map_err(failed)?;
-                if from == SCHEMA_VERSION {
-                    return self.name();
-                }
-                schema::bring_up_to_date(conn).map_err(failed)?;
-                if from > 0 {
-                    return self.name();
-                }
-                seal::begin(&self.backend, minted).map_err(|error| self.failed(DOING, error))
-            });
-        }
-        self.name()
     }
 
     /// The file's id. Without it its chain of seals is lost, and must not be begun again.
@@ -284,9 +166,7 @@ impl Store {
     pub(crate) fn file(&self) -> Result<&Connection, StoreError> {
         match &self.backend {
             Backend::File(conn) => Ok(conn),
-            Backend::Server(_) => Err(StoreError::NotAFile {
-                path: self.path.clone(),
-            }),
+            Backend::Server(_) => Err(StoreError::NotAFile(self.path.clone())),
         }
     }
 
@@ -294,9 +174,7 @@ impl Store {
     pub(crate) fn server(&self) -> Result<&Server, StoreError> {
         match &self.backend {
             Backend::Server(server) => Ok(server),
-            Backend::File(_) => Err(StoreError::NotAServer {
-                path: self.path.clone(),
-            }),
+            Backend::File(_) => Err(StoreError::NotAServer(self.path.clone())),
         }
     }
 
@@ -379,6 +257,17 @@ impl Store {
         found.map_err(|error| self.failed(doing, error))
     }
 
+    /// Whether a result has a row.
+    pub(crate) fn has(
+        &self,
+        doing: &'static str,
+        sql: &str,
+        values: &[Value<'_>],
+    ) -> Result<bool, StoreError> {
+        let found = self.backend.has(sql, values);
+        found.map_err(|error| self.failed(doing, error))
+    }
+
     pub(crate) fn backend(&self) -> &Backend {
         &self.backend
     }
@@ -389,9 +278,7 @@ impl Store {
 
     pub(crate) fn check_writable(&self) -> Result<(), StoreError> {
         if self.is_read_only() {
-            return Err(StoreError::ReadOnly {
-                path: self.path.clone(),
-            });
+            return Err(StoreError::ReadOnly(self.path.clone()));
         }
         Ok(())
     }
@@ -399,9 +286,7 @@ impl Store {
     pub(crate) fn mint(&self) -> Result<Id, StoreError> {
         match &self.ids {
             Some(ids) => Ok(ids.borrow_mut().mint()),
-            None => Err(StoreError::ReadOnly {
-                path: self.path.clone(),
-            }),
+            None => Err(StoreError::ReadOnly(self.path.clone())),
         }
     }
 
@@ -438,25 +323,3 @@ impl Store {
 
 /// Steps of SQLite's engine between two looks at whether to stop; a statement of a few rows has about as many.
 const STEPS_AT_ONCE: i32 = 50;
-
-/// Refuses to write to a file that holds objects which no version of this program made.
-fn refuse_foreign_objects(conn: &Connection, path: &Path) -> Result<(), StoreError> {
-    let look = || {
-        // One snapshot: another program may be migrating the file this moment.
-        let _snapshot = conn.unchecked_transaction()?;
-        match schema::user_version(conn)? {
-            0 => Ok(Vec::new()),
-            version => guard::foreign_objects(conn, version),
-        }
-    };
-    let foreign_objects =
-        look().map_err(|error| StoreError::from_sqlite(path, "opening", error))?;
-    match &foreign_objects[..] {
-        [] => Ok(()),
-        [first, rest @ ..] => Err(StoreError::Altered {
-            path: path.to_path_buf(),
-            what: Box::new(first.clone()),
-            more: rest.len(),
-        }),
-    }
-}

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use rusqlite::config::DbConfig;
 
 use super::Store;
-use crate::error::{Misplaced, StoreError};
+use crate::error::{FileChange, StoreError};
 use crate::files::databases::with_end;
 use crate::files::platform::Identity;
 use crate::id::Id;
@@ -20,19 +20,19 @@ impl Store {
     /// Checks that the names of file and log still lead to the opened ones, and that the file has no other name.
     ///
     /// # Errors
-    /// [`StoreError::Misplaced`] with what has happened to the file or its log.
+    /// [`StoreError::FileChanged`] with what has happened to the file or its log.
     pub fn check_place(&self) -> Result<(), StoreError> {
         let Some(opened) = self.identity else {
             return Ok(());
         };
         let what = match Identity::at(&self.path) {
-            None => Misplaced::Removed,
-            Some(now) if !opened.is_same(&now) => Misplaced::Replaced,
-            Some(now) if now.names > 1 && self.has_second_name() => Misplaced::SecondName,
-            Some(_) if self.has_lost_its_log() => Misplaced::NoLog,
+            None => FileChange::Removed,
+            Some(now) if !opened.is_same(&now) => FileChange::Replaced,
+            Some(now) if now.names > 1 && self.has_second_name() => FileChange::SecondName,
+            Some(_) if self.has_lost_its_log() => FileChange::NoLog,
             Some(_) => return Ok(()),
         };
-        Err(self.misplaced(what))
+        Err(self.file_changed(what))
     }
 
     /// Whether another name is left once the names that killed programs left are removed.
@@ -48,8 +48,8 @@ impl Store {
         self.log.as_ref().is_some_and(|opened| !is_same(opened))
     }
 
-    fn misplaced(&self, what: Misplaced) -> StoreError {
-        StoreError::Misplaced {
+    fn file_changed(&self, what: FileChange) -> StoreError {
+        StoreError::FileChanged {
             path: self.path.clone(),
             what,
         }
@@ -106,7 +106,7 @@ impl Store {
         };
         match is_there()? {
             true => self.check_place(),
-            false => Err(self.misplaced(Misplaced::WrittenOver)),
+            false => Err(self.file_changed(FileChange::WrittenOver)),
         }
     }
 

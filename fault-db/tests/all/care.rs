@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use crate::common::{
-    Deeds, T0_US, Traces, end, fault, ids, measurement, open, realistic_trace, run_record, step,
+    Deeds, T0_US, Traces, end, fault, ids, measurement, new_history, open, realistic_trace,
+    run_record, step,
 };
 use fault_db::{
     FaultFilter, FaultState, FaultStored, Id, OpenOptions, PruneRule, RunState, RunWriter, Store,
@@ -30,9 +31,7 @@ pub fn close_fault(store: &Store, fault: Id) {
 
 #[test]
 fn check_finds_a_flipped_bit_in_a_trace_and_a_lost_row() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (_dir, path, store) = new_history();
     let (_, stored, trace) = one_run(&store, "ATC-7", 1);
     let report = store.check().expect("checked");
     assert_eq!((report.traces, report.problems), (1, vec![]));
@@ -77,10 +76,7 @@ fn of_two_backups_to_one_path_one_is_made() {
         let made = both.iter().filter(|made| made.is_ok()).count();
         assert_eq!(made, 1, "{both:?}");
         for refused in both.into_iter().filter_map(Result::err) {
-            assert!(
-                matches!(refused, StoreError::TargetExists { .. }),
-                "{refused}"
-            );
+            assert!(matches!(refused, StoreError::TargetExists(_)), "{refused}");
         }
         let copy = Store::open_read_only(&to).expect("one of ours");
         assert_eq!(copy.check().expect("checked").problems, []);
@@ -103,9 +99,7 @@ fn parts(folder: &Path) -> Vec<String> {
 /// itself: its schema, its search words, its way of giving back room.
 #[test]
 fn a_backup_made_while_others_write_can_be_used_as_a_database() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (dir, path, store) = new_history();
     let (_, stored, _) = one_run(&store, "ATC-7", 1);
     store.put_note(stored.fault, "kim", "커넥터 재체결", T0_US);
     let stop = std::sync::atomic::AtomicBool::new(false);
@@ -148,8 +142,7 @@ fn a_backup_made_while_others_write_can_be_used_as_a_database() {
 
 #[test]
 fn prune_takes_old_traces_of_closed_faults_only_and_shrinks_the_file() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let (_, closed, gone) = one_run(&store, "ATC-7", 1);
     let (_, _, kept) = one_run(&store, "ATC-7", 2);
     let mut writer = RunWriter::begin(&store, &run_record("ATC-9")).expect("begun");
@@ -232,7 +225,7 @@ fn importing_twice_adds_nothing_twice() {
         .expect("exported");
     assert_eq!((counts.runs, counts.faults, counts.traces), (2, 2, 2));
     let error = ours.import(&path("a.db")).expect_err("itself");
-    assert!(matches!(error, StoreError::SameFile { .. }), "{error}");
+    assert!(matches!(error, StoreError::SameFile(_)), "{error}");
 }
 
 /// Goal: a copy taken in mid-run is completed by a later one, and the state with the latest event

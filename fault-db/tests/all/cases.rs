@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::{Deeds, T0_US, end, fault, ids, open, repair_of, rows, run_record, step};
+use crate::common::{Deeds, T0_US, end, fault, ids, open, repair_of, rows, run_record, step, with};
 use fault_db::{
     CauseRecord, FaultFilter, FaultRecord, FaultStat, FaultState, Id, OpenOptions, RepairRecord,
     RunWriter, StatKey, StatQuery, Store, Verdict,
@@ -283,10 +283,7 @@ fn causes_are_counted_by_cases() {
         Verdict::Failed,
     );
     store.put_diagnosed(&again[..2], &from("eb_relay"), later + 3);
-    let of_unit = FaultFilter {
-        unit: Some("ATC-1".to_owned()),
-        ..FaultFilter::default()
-    };
+    let of_unit = with(|it: &mut FaultFilter| it.unit = Some("ATC-1".to_owned()));
     for filter in [FaultFilter::default(), of_unit] {
         let (stats, total) = by_cause(&store, filter);
         let told = |stat: &FaultStat| {

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use crate::common::{
-    Deeds, T0_US, Traces, change, end, fault, measurement, open, repair_of, rows, run_record, step,
+    Deeds, T0_US, Traces, change, end, fault, measurement, new_history, open, repair_of, rows,
+    run_record, step, with,
 };
 use fault_db::{Id, Problem, PruneRule, RunWriter, Store, StoreError, Verdict};
 use rusqlite::Connection;
@@ -38,9 +39,7 @@ fn problems(store: &Store) -> Vec<Problem> {
 #[test]
 fn every_change_to_a_run_is_detected() {
     for [sql, expected] in rows(include_str!("checking/changed_runs.txt")) {
-        let dir = tempdir().expect("a directory");
-        let path = dir.path().join("a.db");
-        let store = open(&path);
+        let (_dir, path, store) = new_history();
         let runs = three_runs(&store);
         assert_eq!(problems(&store), []);
         assert_eq!(store.check().expect("checked").runs, 3);
@@ -69,9 +68,7 @@ fn every_change_to_a_run_is_detected() {
 #[test]
 fn derived_rows_are_checked_and_can_be_rebuilt() {
     for [sql, kind, expected] in rows(include_str!("checking/derived_rows.txt")) {
-        let dir = tempdir().expect("a directory");
-        let path = dir.path().join("a.db");
-        let store = open(&path);
+        let (_dir, path, store) = new_history();
         three_runs(&store);
         change(&path, sql);
         let reader = Store::open_read_only(&path).expect("opens");
@@ -99,9 +96,7 @@ fn derived_rows_are_checked_and_can_be_rebuilt() {
 /// A file with the same error everywhere gives a limited number of findings.
 #[test]
 fn at_most_a_hundred_findings_of_a_kind_are_listed() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (_dir, path, store) = new_history();
     store
         .transaction(|| {
             for _ in 0..120 {
@@ -212,9 +207,7 @@ fn a_planted_trigger_is_refused_by_name() {
 /// Goal: a trigger planted while a run is under way gets nothing sealed but what was recorded.
 #[test]
 fn the_seal_covers_the_recorded_values_not_those_changed_by_a_trigger() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (_dir, path, store) = new_history();
     let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
     writer.step(step(0)).expect("kept");
     let planted = "CREATE TRIGGER better AFTER UPDATE OF verdict ON run WHEN NEW.verdict = 'failed'
@@ -302,10 +295,7 @@ fn a_pruned_trace_leaves_a_seal_of_its_deletion() {
             T0_US + 99,
         );
     }
-    let rule = PruneRule {
-        at_us: T0_US + 100,
-        ..PruneRule::default()
-    };
+    let rule = with(|it: &mut PruneRule| it.at_us = T0_US + 100);
     let counts = store.prune(&rule).expect("pruned");
     assert_eq!((counts.traces, counts.recordings), (1, 1));
     assert_eq!(problems(&store), []);

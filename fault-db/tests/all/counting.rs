@@ -1,6 +1,6 @@
 //! Counts and lists that `counting_filters` does not hold against the rows.
 
-use crate::common::{Deeds, Random, T0_US, end, fault, open, repair_of, run_record};
+use crate::common::{Deeds, Random, T0_US, end, fault, new_history, open, repair_of, run_record};
 use crate::counting_filters::{DAY_US, history};
 use fault_db::{
     FaultFilter, RunFilter, RunRecord, RunWriter, StatKey, StatQuery, TrendQuery, Verdict,
@@ -53,8 +53,7 @@ fn days_of_a_measurement_on_all_lines_are_those_of_each() {
 /// A repair that a laptop with a slow clock recorded took no less than no time.
 #[test]
 fn a_repair_dated_before_its_fault_took_no_time() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let mut writer = RunWriter::begin(&store, &run_record("ATC-1")).expect("begun");
     let id = writer.fault(&fault(1, T0_US)).expect("stored").fault;
     let repair = repair_of("eb_relay", "", "", "");
@@ -75,8 +74,7 @@ fn a_repair_dated_before_its_fault_took_no_time() {
 /// One occurrence has to meet all conditions of a list on occurrences.
 #[test]
 fn all_conditions_on_an_occurrence_apply_to_the_same_one() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     for (train, month) in [("T1", 0), ("T2", 2)] {
         let at_us = T0_US + month * 31 * DAY_US;
         let record = RunRecord {
@@ -105,8 +103,7 @@ fn all_conditions_on_an_occurrence_apply_to_the_same_one() {
 /// a limit goes through all notes that have it, a short one through the faults.
 #[test]
 fn a_frequent_word_finds_the_same_faults_as_a_rare_one_would() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     history(&store, &mut Random::new(1));
     let everything = FaultFilter::default();
     let faults = store.faults(&everything).expect("listed");

@@ -4,14 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::common::{
-    Random, STAT_KEYS, T0_US, end, fault, ids, measurement, open, repair_of, run_record, step,
+    Random, STAT_KEYS, T0_US, end, fault, filter, ids, measurement, new_history, repair_of,
+    run_record, step,
 };
 use fault_db::{
     FaultFilter, FaultStat, FaultState, OpenOptions, RunRecord, RunWriter, StatKey, StatQuery,
     Store, Verdict,
 };
 use rusqlite::Connection;
-use tempfile::tempdir;
 
 pub const DAY_US: i64 = 86_400_000_000;
 const HOUR_US: i64 = 3_600_000_000;
@@ -88,51 +88,46 @@ fn of_faults() -> Vec<Case> {
         states: states.to_vec(),
         ..any()
     };
-    let with = |change: &dyn Fn(&mut FaultFilter)| {
-        let mut filter = any();
-        change(&mut filter);
-        filter
-    };
     vec![
         (any(), "1", "1"),
-        (with(&|f| f.unit = text("ATC-1")), "f.unit = (SELECT seq FROM unit WHERE serial = 'ATC-1')", "1"),
-        (with(&|f| f.severity = text("CRITICAL")), "f.severity = 'critical'", "1"),
+        (filter(|f| f.unit = text("ATC-1")), "f.unit = (SELECT seq FROM unit WHERE serial = 'ATC-1')", "1"),
+        (filter(|f| f.severity = text("CRITICAL")), "f.severity = 'critical'", "1"),
         (states(&[FaultState::Open]), "f.state = 'open'", "1"),
         (
             states(&[FaultState::Closed, FaultState::Repaired]),
             "f.state IN ('closed', 'repaired')",
             "1",
         ),
-        (with(&|f| f.code = text("1,3")), "f.code IN (1, 3)", "1"),
-        (with(&|f| f.lru = text("tra")), "f.lru IN ('tra', 'TRA')", "1"),
-        (with(&|f| f.lru = text("eb_relay")), "f.lru = 'eb_relay'", "1"),
+        (filter(|f| f.code = text("1,3")), "f.code IN (1, 3)", "1"),
+        (filter(|f| f.lru = text("tra")), "f.lru IN ('tra', 'TRA')", "1"),
+        (filter(|f| f.lru = text("eb_relay")), "f.lru = 'eb_relay'", "1"),
         (
-            with(&|f| (f.code, f.severity) = (text("2"), text("major"))),
+            filter(|f| (f.code, f.severity) = (text("2"), text("major"))),
             "f.code = 2 AND f.severity = 'major'",
             "1",
         ),
         (
-            with(&|f| (f.unit, f.severity) = (text("ATC-1"), text("minor"))),
+            filter(|f| (f.unit, f.severity) = (text("ATC-1"), text("minor"))),
             "f.unit = (SELECT seq FROM unit WHERE serial = 'ATC-1') AND f.severity = 'minor'",
             "1",
         ),
         (
-            with(&|f| (f.unit, f.lru) = (text("ATC-2"), text("tra"))),
+            filter(|f| (f.unit, f.lru) = (text("ATC-2"), text("tra"))),
             "f.unit = (SELECT seq FROM unit WHERE serial = 'ATC-2') AND f.lru IN ('tra', 'TRA')",
             "1",
         ),
         (
-            with(&|f| f.note = text("replaced")),
+            filter(|f| f.note = text("replaced")),
             "EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.body LIKE '%replaced%')",
             "1",
         ),
         (
-            with(&|f| f.serial = text("SN-3")),
+            filter(|f| f.serial = text("SN-3")),
             "EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.body LIKE '%\"SN-3\"%')",
             "1",
         ),
         (
-            with(&|f| (f.serial, f.note) = (text("SN-3"), text("replaced"))),
+            filter(|f| (f.serial, f.note) = (text("SN-3"), text("replaced"))),
             "EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.body LIKE '%\"SN-3\"%')
              AND EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = f.seq AND e.body LIKE '%replaced%')",
             "1",
@@ -142,35 +137,29 @@ fn of_faults() -> Vec<Case> {
 
 /// Filters on the properties of occurrences, alone and with others.
 fn of_occurrences() -> Vec<Case> {
-    let any = FaultFilter::default;
     let text = |text: &str| Some(text.to_owned());
-    let with = |change: &dyn Fn(&mut FaultFilter)| {
-        let mut filter = any();
-        change(&mut filter);
-        filter
-    };
     let overspeed = "s.procedure = 'atp/overspeed'";
     vec![
-        (with(&|f| f.procedure = text("atp/overspeed")), "1", overspeed),
-        (with(&|f| f.procedure = text("atp/none")), "1", "0"),
-        (with(&|f| f.train = text("T1")), "1", "r.train = 'T1'"),
+        (filter(|f| f.procedure = text("atp/overspeed")), "1", overspeed),
+        (filter(|f| f.procedure = text("atp/none")), "1", "0"),
+        (filter(|f| f.train = text("T1")), "1", "r.train = 'T1'"),
         (
-            with(&|f| (f.train, f.procedure) = (text("T0"), text("atp/overspeed"))),
+            filter(|f| (f.train, f.procedure) = (text("T0"), text("atp/overspeed"))),
             "1",
             "r.train = 'T0' AND s.procedure = 'atp/overspeed'",
         ),
         (
-            with(&|f| (f.procedure, f.line) = (text("atp/overspeed"), text("line-1"))),
+            filter(|f| (f.procedure, f.line) = (text("atp/overspeed"), text("line-1"))),
             "1",
             overspeed,
         ),
         (
-            with(&|f| (f.lru, f.line) = (text("eb_relay"), text("line-1"))),
+            filter(|f| (f.lru, f.line) = (text("eb_relay"), text("line-1"))),
             "f.lru = 'eb_relay'",
             "1",
         ),
         (
-            with(&|f| {
+            filter(|f| {
                 (f.note, f.procedure) = (text("replaced"), text("door/interlocks"));
                 f.states = vec![FaultState::Open];
             }),
@@ -383,9 +372,7 @@ fn compare(store: &Store, path: &Path, what: &str, turn: usize) {
 /// that may not write.
 #[test]
 fn counts_with_any_filter_are_those_of_the_rows() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (dir, path, store) = new_history();
     history(&store, &mut Random::new(1));
     assert!(empty(&path) > 0);
     let reader = Store::open_read_only(&path).expect("opens");
@@ -419,16 +406,11 @@ fn empty(path: &Path) -> i64 {
 /// empty packs them, one that leaves few does not.
 #[test]
 fn readers_count_what_is_committed_and_many_empty_blocks_are_packed() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (_dir, path, store) = new_history();
     let reader = Store::open_read_only(&path).expect("opens");
     let query = StatQuery {
         by: StatKey::All,
-        filter: FaultFilter {
-            severity: Some("major".into()),
-            ..FaultFilter::default()
-        },
+        filter: filter(|it| it.severity = Some("major".into())),
         now_us: T0_US + DAY_US,
         back_within_days: 30,
     };

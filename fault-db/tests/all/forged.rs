@@ -10,7 +10,9 @@ use rusqlite::Connection;
 use sha2::{Digest as _, Sha256};
 use tempfile::tempdir;
 
-use crate::common::{T0_US, change, end, fault, ids, open, realistic_trace, run_record};
+use crate::common::{
+    T0_US, change, end, fault, ids, new_history, open, realistic_trace, run_record,
+};
 
 fn signer() -> Arc<Signer> {
     Arc::new(Signer::new("Kim", "technician", &[3; 32]).expect("a key"))
@@ -74,9 +76,7 @@ fn append(path: &Path, what: &str, id: Id, says: &str) {
 /// Method: each signed document of a run and its fault is appended to another run, and to that run's fault.
 #[test]
 fn a_signature_signs_what_it_names_and_nothing_else() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (dir, path, store) = new_history();
     store.sign_with(Some(signer()));
     let (signed, of_signed) = run(&store, "ATC-7");
     store.sign_with(None);
@@ -139,9 +139,7 @@ fn a_signature_signs_what_it_names_and_nothing_else() {
 /// Goal: a run or note whose rows were changed after it was signed is nowhere shown as signed; traces are rows of the run.
 #[test]
 fn what_was_changed_is_not_shown_as_signed() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (dir, path, store) = new_history();
     store.sign_with(Some(signer()));
     let (id, seen) = run(&store, "ATC-7");
     let by_of = |store: &Store| {
@@ -258,9 +256,7 @@ fn a_rollback_is_seen_by_who_imported_the_later_runs() {
 /// Goal: no command makes a finding disappear: what a recount has put right is still told as found.
 #[test]
 fn a_recount_does_not_take_a_finding_away() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (_dir, path, store) = new_history();
     run(&store, "ATC-7");
     store.close().expect("closed");
     change(&path, "UPDATE fault SET state = 'closed'");
@@ -279,8 +275,7 @@ fn a_recount_does_not_take_a_finding_away() {
 /// Goal: a clock that went backward within a chain is told, by the check of the file and of the run.
 #[test]
 fn a_clock_that_went_backward_is_told() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let at = |serial: &str, days: i64| {
         let off = days * 86_400_000_000;
         let mut record = run_record(serial);

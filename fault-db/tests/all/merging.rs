@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::common::{
     Deeds, Random, STAT_KEYS, T0_US, change, end, fault, ids, measurement, repair_of, rows,
-    run_record, step,
+    run_record, step, with,
 };
 use fault_db::{
     CauseRecord, FaultFilter, FaultState, Id, MergeCounts, OpenOptions, RunWriter, StatQuery,
@@ -133,10 +133,7 @@ fn act(store: &Store, fault: Id, act: u64, at_us: i64) -> Result<(), StoreError>
 }
 
 fn from(part: &str) -> CauseRecord {
-    CauseRecord {
-        part: part.to_owned(),
-        ..CauseRecord::default()
-    }
+    with(|it: &mut CauseRecord| it.part = part.to_owned())
 }
 
 fn faults(store: &Store) -> Vec<Id> {

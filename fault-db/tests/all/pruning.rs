@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use crate::common::{Deeds, Random, T0_US, Traces, end, fault, open, realistic_trace, run_record};
+use crate::common::{
+    Deeds, Random, T0_US, Traces, end, fault, new_history, open, realistic_trace, run_record, with,
+};
 use fault_db::{FaultState, Id, PruneCounts, PruneRule, RunWriter, Store, StoreError, Verdict};
 use rusqlite::Connection;
-use tempfile::tempdir;
 
 /// A trace that a day began with, of a run with this verdict; nothing compresses well in it.
 fn trace(store: &Store, day: i64, verdict: Verdict) -> Id {
@@ -54,8 +55,7 @@ fn prune(store: &Store, rule: PruneRule) -> PruneCounts {
 
 #[test]
 fn traces_of_good_runs_go_alone_when_asked_for() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let good = trace(&store, 0, Verdict::Passed);
     let bad = trace(&store, 1, Verdict::Failed);
     let young = trace(&store, 9, Verdict::Passed);
@@ -75,27 +75,19 @@ fn traces_of_good_runs_go_alone_when_asked_for() {
 /// rest alone is larger, that is said.
 #[test]
 fn the_oldest_go_until_the_file_fits() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (_dir, path, store) = new_history();
     let traces: Vec<_> = (0..60)
         .rev()
         .map(|day| trace(&store, day, Verdict::Passed))
         .collect();
     prune(
         &store,
-        PruneRule {
-            older_than_us: Some(0),
-            ..PruneRule::default()
-        },
+        with(|it: &mut PruneRule| it.older_than_us = Some(0)),
     );
     let size = |path: &Path| std::fs::metadata(path).expect("there").len();
     let before = size(&path);
     let max_file_bytes = before - 100_000;
-    let rule = PruneRule {
-        max_file_bytes: Some(max_file_bytes),
-        ..PruneRule::default()
-    };
+    let rule = with(|it: &mut PruneRule| it.max_file_bytes = Some(max_file_bytes));
     let done = prune(&store, rule);
     assert!(
         size(&path) <= max_file_bytes && done.over_bytes == 0,
@@ -113,10 +105,7 @@ fn the_oldest_go_until_the_file_fits() {
     let again = prune(&store, rule);
     assert_eq!((again.traces, again.freed_bytes), (0, 0), "it fits");
 
-    let rule = PruneRule {
-        max_file_bytes: Some(50_000),
-        ..PruneRule::default()
-    };
+    let rule = with(|it: &mut PruneRule| it.max_file_bytes = Some(50_000));
     let done = prune(&store, rule);
     assert_eq!(done.traces as usize, 60 - gone);
     assert_eq!(
@@ -130,9 +119,7 @@ fn the_oldest_go_until_the_file_fits() {
 /// nothing waits. Traces of faults that are not closed stay in any case.
 #[test]
 fn traces_not_sent_yet_are_not_pruned() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (dir, path, store) = new_history();
     let sent = trace(&store, 0, Verdict::Passed);
     let waiting = trace(&store, 1, Verdict::Passed);
     let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
@@ -154,10 +141,7 @@ fn traces_not_sent_yet_are_not_pruned() {
         [sent, waiting, needed].map(|id| stays(&store, id)),
         [false, true, true]
     );
-    let anyway = PruneRule {
-        keep_unsent: false,
-        ..PruneRule::default()
-    };
+    let anyway = with(|it: &mut PruneRule| it.keep_unsent = false);
     assert_eq!(prune(&store, anyway).traces, 1);
     assert!(stays(&store, needed));
 

@@ -3,8 +3,8 @@
 
 use crate::checking::three_runs;
 use crate::common::{
-    Deeds, T0_US, Traces, end, fault, ids, measurement, open, realistic_trace, repair_of,
-    run_record, step,
+    Deeds, T0_US, Traces, end, fault, ids, measurement, new_history, open, realistic_trace,
+    repair_of, run_record, step,
 };
 use fault_db::limits::{MOST_NAME, MOST_TEXT};
 use fault_db::{
@@ -18,8 +18,7 @@ const PATIENCE_MS: u32 = 30_000;
 
 #[test]
 fn a_finished_run_reads_back_as_recorded() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let mut record = run_record("ATC-7");
     record.injected = Some("atp.rx.dead".to_owned());
     let mut writer = RunWriter::begin(&store, &record).expect("begun");
@@ -33,7 +32,7 @@ fn a_finished_run_reads_back_as_recorded() {
     writer.step(measured).expect("kept");
     writer.finish(&end(Verdict::Failed)).expect("finished");
     let after = writer.step(step(2)).expect_err("it is over");
-    assert!(matches!(after, StoreError::RunFinished { .. }));
+    assert!(matches!(after, StoreError::RunFinished(_)));
 
     let detail = store.run(writer.id()).expect("known");
     assert_eq!(detail.run.seed, u64::MAX - 3);
@@ -59,9 +58,7 @@ fn a_finished_run_reads_back_as_recorded() {
 /// cannot see its process. Method: look from a second connection, and at a copy, as which a kill leaves the file.
 #[test]
 fn a_killed_run_is_interrupted_and_keeps_its_fault() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (dir, path, store) = new_history();
     let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
     writer.step(step(0)).expect("kept");
     let stored = writer.fault(&fault(17, T0_US)).expect("committed");
@@ -101,8 +98,7 @@ fn a_killed_run_is_interrupted_and_keeps_its_fault() {
 /// Goal: an early return of the caller loses no step. Method: drop without finish.
 #[test]
 fn a_dropped_writer_writes_its_buffered_steps() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
     writer.step(step(0)).expect("kept");
     drop(writer);
@@ -196,12 +192,12 @@ fn a_full_disk_is_an_error_and_loses_nothing() {
             Err(error) => break error,
         }
     };
-    assert!(matches!(error, StoreError::Full { .. }), "{error}");
+    assert!(matches!(error, StoreError::Full(_)), "{error}");
     assert!(error.to_string().contains("a.db"), "{error}");
     let failed = writer
         .finish(&end(Verdict::Passed))
         .expect_err("still full");
-    assert!(matches!(failed, StoreError::Full { .. }), "{failed}");
+    assert!(matches!(failed, StoreError::Full(_)), "{failed}");
     let waiting = writer.waiting_steps() as u32;
     assert!(waiting > 0);
     let id = writer.id();
@@ -224,8 +220,7 @@ fn a_full_disk_is_an_error_and_loses_nothing() {
 
 #[test]
 fn step_indexes_must_rise() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
     writer.step(step(4)).expect("kept");
     let error = writer.step(step(4)).expect_err("again");
@@ -238,8 +233,7 @@ fn step_indexes_must_rise() {
 /// The rule of one fault per unit, code and part until it is closed.
 #[test]
 fn occurrences_join_reopen_or_begin_a_fault() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
     let first = writer.fault(&fault(17, T0_US)).expect("stored");
     assert!(first.is_new && !first.reopened);
@@ -299,8 +293,7 @@ fn occurrences_join_reopen_or_begin_a_fault() {
 
 #[test]
 fn a_trace_is_shared_by_occurrences_and_read_by_channel() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let mut writer = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
     let a = writer.fault(&fault(1, T0_US)).expect("stored");
     let b = writer.fault(&fault(2, T0_US)).expect("stored");
@@ -358,8 +351,7 @@ fn a_trace_is_shared_by_occurrences_and_read_by_channel() {
 /// there is as it was.
 #[test]
 fn texts_longer_than_are_kept_are_refused_and_messages_are_cut() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let (name, note) = ("이".repeat(MOST_NAME + 1), "이".repeat(MOST_TEXT + 1));
     let refused = |result: Result<(), StoreError>, word: &str| match result {
         Err(StoreError::TextTooLong { what, length, most }) => {
@@ -410,8 +402,7 @@ fn texts_longer_than_are_kept_are_refused_and_messages_are_cut() {
 /// back alone.
 #[test]
 fn a_transaction_commits_all_writes_or_none() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let count = |store: &Store| {
         let runs = store.runs(&RunFilter::default());
         runs.expect("listed").len()

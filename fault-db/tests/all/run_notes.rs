@@ -1,6 +1,6 @@
 //! Notes on runs: in their order, merged once, untouched by pruning, found when damaged.
 
-use crate::common::{T0_US, end, ids, open, realistic_trace, run_record};
+use crate::common::{T0_US, end, ids, new_history, open, realistic_trace, run_record, with};
 use fault_db::{
     Id, OpenOptions, PruneRule, RunNote, RunWriter, Store, StoreError, TracePlace, Verdict,
 };
@@ -24,15 +24,11 @@ fn notes(store: &Store, run: Id) -> Vec<RunNote> {
 
 #[test]
 fn notes_stand_at_their_run_in_their_order_and_survive_pruning() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let (run, other) = (one_run(&store), one_run(&store));
     note(&store, run, "second", T0_US + 2);
     note(&store, run, "first; \"김\"\n'--", T0_US + 1);
-    let rule = PruneRule {
-        older_than_us: Some(T0_US + 9),
-        ..PruneRule::default()
-    };
+    let rule = with(|it: &mut PruneRule| it.older_than_us = Some(T0_US + 9));
     assert_eq!(store.prune(&rule).expect("pruned").traces, 2);
     let texts: Vec<_> = notes(&store, run).into_iter().map(|n| n.text).collect();
     assert_eq!(texts, ["first; \"김\"\n'--", "second"]);
@@ -62,9 +58,7 @@ fn merging_takes_notes_along_once_and_both_files_notes_stay() {
 
 #[test]
 fn a_note_on_no_run_is_refused_and_one_whose_run_is_lost_is_found() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (_dir, path, store) = new_history();
     let run = one_run(&store);
     let nobody = "ffffffff-ffff-7fff-bfff-ffffffffffff"
         .parse()

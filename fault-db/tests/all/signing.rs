@@ -13,8 +13,8 @@ use rusqlite::types::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::common::{
-    T0_US, change, end, fault, ids, measurement, open, realistic_trace, repair_of, rows,
-    run_record, step,
+    T0_US, change, end, fault, ids, measurement, new_history, open, realistic_trace, repair_of,
+    rows, run_record, step,
 };
 
 fn signer(seed: u8) -> Arc<Signer> {
@@ -65,9 +65,7 @@ fn signed_run(store: &Store) -> Id {
 
 /// A signed run in a file `a.db` that is closed.
 fn signed_file() -> (TempDir, PathBuf, Id) {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (dir, path, store) = new_history();
     let id = signed_run(&store);
     store.close().expect("closed");
     (dir, path, id)
@@ -75,8 +73,7 @@ fn signed_file() -> (TempDir, PathBuf, Id) {
 
 #[test]
 fn a_signed_run_says_who_signed_it_and_when() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let id = signed_run(&store);
     let found = store.verify_run(id).expect("verified");
     assert_eq!(found.changes, [""; 0]);
@@ -100,8 +97,7 @@ fn a_signed_run_says_who_signed_it_and_when() {
 
 #[test]
 fn without_a_key_a_run_is_unsigned_and_nothing_else_changes() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let run = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
     let (id, mut run) = (run.id(), run);
     run.finish(&end(Verdict::Passed)).expect("finished");

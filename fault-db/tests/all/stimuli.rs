@@ -1,11 +1,12 @@
 //! Recordings of stimuli: kept beside their traces, merged, pruned and checked with them.
 
-use crate::common::{Deeds, T0_US, Traces, end, fault, ids, open, realistic_trace, run_record};
+use crate::common::{
+    Deeds, T0_US, Traces, end, fault, ids, new_history, realistic_trace, run_record,
+};
 use fault_db::{
     FaultState, Id, OpenOptions, PruneRule, RecordingRecord, RunWriter, Store, StoreError, Verdict,
 };
 use rusqlite::Connection;
-use tempfile::tempdir;
 
 const STIMULI: &str = r#"{"deeds":[{"at_us":10000,"act":"x"}],"lost":0}"#;
 
@@ -35,8 +36,7 @@ fn two_procedures(store: &Store) -> (Id, [Id; 2]) {
 
 #[test]
 fn a_trace_leads_to_the_recording_of_its_own_procedure() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let (_, traces) = two_procedures(&store);
     for (trace, ordinal) in traces.into_iter().zip([2, 5]) {
         let found = store.recording(trace).expect("read").expect("kept");
@@ -56,8 +56,7 @@ fn a_trace_leads_to_the_recording_of_its_own_procedure() {
 
 #[test]
 fn merging_takes_recordings_along_once() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (dir, _, store) = new_history();
     let (_, traces) = two_procedures(&store);
     let options = OpenOptions::new(ids(2));
     let other = Store::open(&dir.path().join("b.db"), options).expect("opens");
@@ -73,8 +72,7 @@ fn merging_takes_recordings_along_once() {
 
 #[test]
 fn a_recording_is_deleted_with_its_last_trace() {
-    let dir = tempdir().expect("a directory");
-    let store = open(&dir.path().join("a.db"));
+    let (_dir, _, store) = new_history();
     let (closed, _) = two_procedures(&store);
     let rule = |dry_run| PruneRule {
         older_than_us: Some(T0_US + 1),
@@ -92,9 +90,7 @@ fn a_recording_is_deleted_with_its_last_trace() {
 
 #[test]
 fn a_damaged_recording_is_reported_and_never_returned() {
-    let dir = tempdir().expect("a directory");
-    let path = dir.path().join("a.db");
-    let store = open(&path);
+    let (_dir, path, store) = new_history();
     let (_, traces) = two_procedures(&store);
     let damage = |sql: &str| {
         let other = Connection::open(&path).expect("opens");

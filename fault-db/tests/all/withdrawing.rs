@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::common::{
-    Deeds, Random, T0_US, change, end, fault, ids, open, repair_of, run_record, step,
+    Deeds, Random, T0_US, change, end, fault, ids, open, repair_of, run_record, step, with,
 };
 use fault_db::{
     CauseRecord, FaultFilter, FaultRecord, FaultState, Id, OpenOptions, RepairRecord, RepairsOf,
@@ -65,20 +65,14 @@ fn undo(store: &Store, fault: Id, at_us: i64) -> Withdrawn {
 fn said(store: &Store) -> Vec<String> {
     let mut said = Vec::new();
     for note in [None, Some("교체"), Some("relay"), Some("burnt")] {
-        let filter = FaultFilter {
-            note: note.map(str::to_owned),
-            ..FaultFilter::default()
-        };
+        let filter = with(|it: &mut FaultFilter| it.note = note.map(str::to_owned));
         said.push(format!(
             "{note:?} {:?}",
             store.faults(&filter).expect("listed")
         ));
     }
     for serial in ["SN-1", "SN-2"] {
-        let filter = FaultFilter {
-            serial: Some(serial.to_owned()),
-            ..FaultFilter::default()
-        };
+        let filter = with(|it: &mut FaultFilter| it.serial = Some(serial.to_owned()));
         said.push(format!(
             "{serial} {:?}",
             store.faults(&filter).expect("listed")
@@ -101,10 +95,7 @@ fn said(store: &Store) -> Vec<String> {
         for unit in [None, Some("ATC-1".to_owned())] {
             let query = StatQuery {
                 by,
-                filter: FaultFilter {
-                    unit,
-                    ..FaultFilter::default()
-                },
+                filter: with(|it: &mut FaultFilter| it.unit = unit),
                 now_us: T0_US + 1000 * HOUR_US,
                 back_within_days: 30,
             };
@@ -207,10 +198,7 @@ fn all_that_can_be_asked_is_after_an_undo_what_it_was_before_the_step() {
                         .add_note(fault, "kim", "burnt contacts", at_us)
                         .is_ok(),
                     _ => {
-                        let cause = CauseRecord {
-                            part: "io_board".to_owned(),
-                            ..CauseRecord::default()
-                        };
+                        let cause = with(|it: &mut CauseRecord| it.part = "io_board".to_owned());
                         store.set_cause(fault, &cause, "kim", at_us).is_ok()
                     }
                 }

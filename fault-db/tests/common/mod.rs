@@ -3,12 +3,12 @@
 
 use std::borrow::Borrow;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use fault_db::{
-    CauseRecord, ChangedFault, Channel, ChannelKind, FaultRecord, FaultState, FreezeSample, Id,
-    IdSource, MeasurementRecord, OpenOptions, RepairRecord, RunEnd, RunRecord, RunWriter,
-    ScriptRecord, StatKey, StepRecord, Store, TraceData, UnitRecord, Verdict,
+    CauseRecord, ChangedFault, Channel, ChannelKind, FaultFilter, FaultRecord, FaultState,
+    FreezeSample, Id, IdSource, MeasurementRecord, OpenOptions, RepairRecord, RunEnd, RunRecord,
+    RunWriter, ScriptRecord, StatKey, StepRecord, Store, TraceData, UnitRecord, Verdict,
 };
 
 /// 2026-03-01 00:00:00 UTC.
@@ -64,6 +64,26 @@ pub fn ids(seed: u64) -> IdSource {
 
 pub fn open(path: &Path) -> Store {
     Store::open(path, OpenOptions::new(ids(1))).expect("a new or known file opens")
+}
+
+/// A new file in a folder of its own, which goes with the first of the three.
+pub fn new_history() -> (tempfile::TempDir, PathBuf, Store) {
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join("a.db");
+    let store = open(&path);
+    (dir, path, store)
+}
+
+/// The default but for this change.
+pub fn with<T: Default>(change: impl FnOnce(&mut T)) -> T {
+    let mut made = T::default();
+    change(&mut made);
+    made
+}
+
+/// A filter of faults that is empty but for this change.
+pub fn filter(change: impl FnOnce(&mut FaultFilter)) -> FaultFilter {
+    with(change)
 }
 
 /// Permitted acts of people in a test.

@@ -1,6 +1,6 @@
 //! Every question gets the same answer from a file and from the server it was synced with.
 
-use crate::common::{Deeds, repair_of};
+use crate::common::{Deeds, filter, repair_of, with};
 use std::fmt::Debug;
 
 use fault_db::{
@@ -69,10 +69,7 @@ fn history(laptop: &Laptop) {
         if n % 5 == 0 {
             let seen = store.run_occurrences(id).expect("its faults");
             let seen: Vec<_> = seen.iter().map(|seen| seen.fault).collect();
-            let cause = CauseRecord {
-                part: "eb_relay".to_owned(),
-                ..CauseRecord::default()
-            };
+            let cause = with(|it: &mut CauseRecord| it.part = "eb_relay".to_owned());
             store.put_diagnosed(&seen, &cause, end.finished_at_us);
         }
         if n % 4 == 3 {
@@ -246,83 +243,26 @@ fn lists() -> Vec<Question> {
 
 fn filters() -> Vec<FaultFilter> {
     let text = |text: &str| Some(text.to_owned());
-    let all = FaultFilter::default;
     vec![
-        all(),
-        FaultFilter {
-            unit: text("U-1"),
-            ..all()
-        },
-        FaultFilter {
-            code: text("fault_102"),
-            ..all()
-        },
-        FaultFilter {
-            code: text("0x65"),
-            ..all()
-        },
-        FaultFilter {
-            code: text("102, FAULT_101,101,4711"),
-            ..all()
-        },
-        FaultFilter {
-            states: vec![FaultState::Repaired, FaultState::Closed],
-            ..all()
-        },
-        FaultFilter {
-            lru: text("EB_RELAY"),
-            ..all()
-        },
-        FaultFilter {
-            cause: text("EB_RELAY"),
-            ..all()
-        },
-        FaultFilter {
-            severity: text("MAJOR"),
-            ..all()
-        },
-        FaultFilter {
-            states: vec![FaultState::Open],
-            ..all()
-        },
-        FaultFilter {
-            line: text("line6"),
-            ..all()
-        },
-        FaultFilter {
-            train: text("T1"),
-            ..all()
-        },
-        FaultFilter {
-            procedure: text("door/b"),
-            ..all()
-        },
-        FaultFilter {
-            serial: text("SN-0"),
-            ..all()
-        },
-        FaultFilter {
-            note: text("교체"),
-            ..all()
-        },
-        FaultFilter {
-            note: text("clicks rel"),
-            ..all()
-        },
-        FaultFilter {
-            note: text("psm2 wai"),
-            ..all()
-        },
-        FaultFilter {
-            since_us: Some(day(10)),
-            until_us: Some(day(31)),
-            ..all()
-        },
-        FaultFilter {
-            limit: Some(2),
-            unit: text("U-2"),
-            ..all()
-        },
+        FaultFilter::default(),
+        filter(|f| f.unit = text("U-1")),
+        filter(|f| f.code = text("fault_102")),
+        filter(|f| f.code = text("0x65")),
+        filter(|f| f.code = text("102, FAULT_101,101,4711")),
+        filter(|f| f.states = vec![FaultState::Repaired, FaultState::Closed]),
+        filter(|f| f.lru = text("EB_RELAY")),
+        filter(|f| f.cause = text("EB_RELAY")),
+        filter(|f| f.severity = text("MAJOR")),
+        filter(|f| f.states = vec![FaultState::Open]),
+        filter(|f| f.line = text("line6")),
+        filter(|f| f.train = text("T1")),
+        filter(|f| f.procedure = text("door/b")),
+        filter(|f| f.serial = text("SN-0")),
+        filter(|f| f.note = text("교체")),
+        filter(|f| f.note = text("clicks rel")),
+        filter(|f| f.note = text("psm2 wai")),
+        filter(|f| (f.since_us, f.until_us) = (Some(day(10)), Some(day(31)))),
+        filter(|f| (f.limit, f.unit) = (Some(2), text("U-2"))),
     ]
 }
 
@@ -331,28 +271,18 @@ fn trends() -> Vec<TrendQuery> {
         measurement: measurement.to_owned(),
         ..TrendQuery::default()
     };
-    let eb = || of("eb_reaction");
+    let eb = |change: &dyn Fn(&mut TrendQuery)| {
+        let mut query = of("eb_reaction");
+        change(&mut query);
+        query
+    };
     vec![
-        eb(),
+        of("eb_reaction"),
         of("door_time"),
-        TrendQuery {
-            unit: Some("U-1".to_owned()),
-            ..eb()
-        },
-        TrendQuery {
-            line: Some("line8".to_owned()),
-            ..eb()
-        },
-        TrendQuery {
-            procedure: Some("atp/a".to_owned()),
-            since_us: Some(day(5)),
-            ..eb()
-        },
-        TrendQuery {
-            train: Some("T2".to_owned()),
-            until_us: Some(day(40)),
-            ..eb()
-        },
+        eb(&|q| q.unit = Some("U-1".to_owned())),
+        eb(&|q| q.line = Some("line8".to_owned())),
+        eb(&|q| (q.procedure, q.since_us) = (Some("atp/a".to_owned()), Some(day(5)))),
+        eb(&|q| (q.train, q.until_us) = (Some("T2".to_owned()), Some(day(40)))),
     ]
 }
 
@@ -529,7 +459,7 @@ fn an_sql_query_on_a_server_is_answered_and_cannot_change_anything() {
         };
         let stopped = writer.query_within(sql, bounds, || true).expect_err(sql);
         assert!(
-            matches!(stopped, StoreError::QueryExceeds { limit: found } if found == limit),
+            matches!(stopped, StoreError::QueryExceeds(found) if found == limit),
             "{stopped}"
         );
     }

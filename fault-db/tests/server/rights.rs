@@ -219,7 +219,7 @@ fn an_account_that_may_delete_rows_is_refused_as_the_laptops_account() {
         let refused = set_up(address, laptops).expect_err(words).to_string();
         assert!(refused.contains(words), "{refused}");
         let left = connect(address).expect_err("nothing was made");
-        assert!(matches!(left, StoreError::ServerEmpty { .. }), "{left}");
+        assert!(matches!(left, StoreError::ServerEmpty(_)), "{left}");
     }
     // The account everybody shared owned it all: somebody who may takes it over.
     let database = name_of(&address);

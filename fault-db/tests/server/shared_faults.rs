@@ -1,6 +1,6 @@
 //! Faults that several laptops saw: what each of them and the server make of all that was done about them.
 
-use crate::common::{Deeds, repair_of};
+use crate::common::{Deeds, repair_of, with};
 use fault_db::{CauseRecord, FaultFilter, FaultState, Store, ToWithdraw};
 
 use crate::laptop::{Laptop, connect, day, only_fault, open_faults, read_only};
@@ -124,10 +124,7 @@ fn a_case_is_one_on_laptops_and_server() {
     let (one, two) = (Laptop::new("one"), Laptop::new("two"));
     one.run("U-1", day(0), &[101, 102, 103], false);
     two.run("U-1", day(1), &[102], false);
-    let from = |part: &str| CauseRecord {
-        part: part.to_owned(),
-        ..CauseRecord::default()
-    };
+    let from = |part: &str| with(|it: &mut CauseRecord| it.part = part.to_owned());
     let store = one.open();
     let seen = open_faults(&store);
     store.put_diagnosed(&seen, &from("eb_relay"), day(0));

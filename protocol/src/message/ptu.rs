@@ -33,7 +33,7 @@ wire_bits! {
 }
 
 layout! {
-    /// Asks who the unit is.
+    /// Asks for the serial number, versions and configuration of the unit, which `Identity` tells.
     Identify, Ptu, 0x01 {}
 }
 layout! {

@@ -35,10 +35,7 @@ fn as_address(path: &Path) -> Option<Result<Address, StoreError>> {
 pub fn only_file(path: &Path) -> Result<&Path, Failure> {
     match as_address(path) {
         None => Ok(path),
-        Some(address) => Err(StoreError::NotAFile {
-            path: address?.to_string().into(),
-        }
-        .into()),
+        Some(address) => Err(StoreError::NotAFile(address?.to_string().into()).into()),
     }
 }
 
@@ -76,10 +73,9 @@ impl Database {
     pub fn file(&self) -> Result<PathBuf, Failure> {
         match self.place()? {
             DatabasePlace::File(path) => Ok(path),
-            DatabasePlace::Server(address) => Err(StoreError::NotAFile {
-                path: address.to_string().into(),
+            DatabasePlace::Server(address) => {
+                Err(StoreError::NotAFile(address.to_string().into()).into())
             }
-            .into()),
         }
     }
 
@@ -94,7 +90,7 @@ impl Database {
     /// Opens one that is there for writing: a name that is mistyped makes none.
     pub fn open(&self) -> Result<Store, Failure> {
         match self.place()? {
-            DatabasePlace::File(path) if !path.exists() => Err(StoreError::Missing { path }.into()),
+            DatabasePlace::File(path) if !path.exists() => Err(StoreError::Missing(path).into()),
             _ => self.open_or_make(),
         }
     }
@@ -103,7 +99,7 @@ impl Database {
     pub fn check_named(&self) -> Result<(), Failure> {
         match self.place()? {
             DatabasePlace::File(path) if self.named().is_some() && !path.exists() => {
-                Err(StoreError::Missing { path }.into())
+                Err(StoreError::Missing(path).into())
             }
             _ => Ok(()),
         }

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use crate::left_out::{
     left_out_json, left_out_text, other_faults_json, other_faults_text, pairs_json, pairs_text,
 };
+use crate::shares::{percent, share_json};
 use ptu_runs::campaign::{AdaptiveFigures, Effort, Figures, Outcome, Redundancy, Share, Shortfall};
 
 /// The connection of a laptop alone, as a dictionary names it.
@@ -74,10 +75,6 @@ fn need_bench(outcome: &Outcome) -> Vec<&str> {
 
 fn texts(checks: &[diagnosis::CheckName]) -> Vec<String> {
     checks.iter().map(ToString::to_string).collect()
-}
-
-pub(crate) fn share_json(share: Share) -> Value {
-    json!({ "of": share.of, "all": share.all, "share": share.value() })
 }
 
 fn shortfall(short: &Shortfall) -> Value {
@@ -246,10 +243,6 @@ fn list_shortfalls(text: &mut String, figures: &Figures) {
     for group in &figures.ambiguous {
         let _ = writeln!(text, "not distinguished in some run: {}", group.join(", "));
     }
-}
-
-pub(crate) fn percent(part: f64, of: f64) -> f64 {
-    if of > 0.0 { 100.0 * part / of } else { 0.0 }
 }
 
 fn list(text: &mut String, what: &str, shortfalls: &[Shortfall]) {

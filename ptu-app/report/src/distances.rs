@@ -8,8 +8,8 @@ use std::path::Path;
 
 use fault_db::read_regular_file;
 use ptu_runs::clock::Span;
-use ptu_runs::data::LONGEST_FILE;
 use ptu_runs::failure::{Failure, FileTrouble, Why, WrongCell};
+use ptu_runs::whole_file::LONGEST_FILE;
 
 /// The columns, in their order.
 const COLUMNS: [&str; 3] = ["train", "date", "km"];

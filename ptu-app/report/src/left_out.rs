@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use ptu_runs::campaign::{Baseline, LeftOut, OtherFaults, PairFigures, Share, UnseenFigures};
 
-use crate::campaign::{percent, share_json};
+use crate::shares::{percent, share_json};
 
 /// Pairs of parts, and answers, that are listed.
 const MOST_LISTED: usize = 20;

@@ -34,6 +34,7 @@ pub mod plot_page;
 mod proof;
 pub mod record;
 pub mod run;
+mod shares;
 pub mod signal;
 mod target;
 pub mod ticks;

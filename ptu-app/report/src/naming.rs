@@ -31,10 +31,7 @@ impl PartNames {
             return language.words().common.no_part;
         }
         let known = self.0.iter().find(|part| part.id == id);
-        known.map_or(id, |part| match language {
-            Language::English => &part.name,
-            Language::Korean => &part.name_ko,
-        })
+        known.map_or(id, |part| language.choose([&part.name, &part.name_ko]))
     }
 
     /// A fault that points at this part, in one line: the part, and what was seen as it is stored.

@@ -14,10 +14,11 @@ use crate::run::{self, CaseSheet, Printed, RunComparison, Sheet};
 use crate::words::{Language, Words, fill};
 use crate::{csv, junit};
 use ptu_runs::clock::now_us;
-use ptu_runs::data::{self, ScriptsDirectory};
+use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Asked, Failure};
 use ptu_runs::new_file::{Kind, NewFile, cannot_write, kind};
 use ptu_runs::stdio;
+use ptu_runs::whole_file;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Target {
@@ -62,7 +63,7 @@ impl Target {
     /// # Errors
     /// The file cannot be written.
     pub fn check(&self) -> Result<(), Failure> {
-        data::check_writable(&self.path, self.kind())
+        whole_file::check_writable(&self.path, self.kind())
     }
 
     /// Begins the file.
@@ -82,7 +83,7 @@ impl Target {
     }
 
     pub(crate) fn write(&self, content: Result<Vec<u8>, Failure>) -> Result<(), Failure> {
-        data::write(&self.path, self.kind(), content?)
+        whole_file::write(&self.path, self.kind(), content?)
     }
 
     /// A sheet of paper. Letters that it has as codes are told.

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::io::Write as _;
 use std::path::Path;
 
 use btu_rig::bench_scatter::BenchScatter;
@@ -16,10 +15,9 @@ use script_files::{Found, Layer, ScriptFiles};
 use sha2::{Digest, Sha256};
 
 use crate::failure::{Failure, FileTrouble, Unknown, Why, did_you_mean};
-use crate::new_file::{Kind, NewFile, cannot_write, head, kind};
-use crate::owner_only;
 use crate::places::{Model, Places};
 use crate::signal::unheard;
+use crate::whole_file::{LONGEST_FILE, cannot_read, read};
 
 /// Folder of unit configurations, the fault catalogue and the structure.
 const UNITS: &str = "units";
@@ -29,10 +27,6 @@ const INSTRUMENTS: &str = "instruments";
 const FAULTS: &str = "faults";
 /// The name of the structure there.
 const STRUCTURE: &str = "structure";
-/// Longest script, data file or other text that is read, bytes.
-pub const LONGEST_FILE: u64 = 4 << 20;
-/// Letters with which texts of one kind begin.
-const TEXT_HEAD: usize = 5;
 /// Longest all scripts together, bytes.
 const LONGEST_SCRIPTS: usize = 64 << 20;
 /// File of the scripts directory that says how good units, trains and benches differ.
@@ -375,23 +369,6 @@ pub fn sha256(text: &str) -> String {
         .collect()
 }
 
-/// Reads a file, or says which one could not be read.
-///
-/// # Errors
-/// The file cannot be read, is longer than scripts and data files are, or is not UTF-8.
-pub fn read(file: &Path) -> Result<String, Failure> {
-    read_within(file, LONGEST_FILE)
-}
-
-/// Reads a file of up to `most` bytes as [`read`] does.
-///
-/// # Errors
-/// As [`read`].
-pub fn read_within(file: &Path, most: u64) -> Result<String, Failure> {
-    let bytes = read_regular_file(file, most).map_err(|error| cannot_read(file, Why::of(error)))?;
-    String::from_utf8(bytes).map_err(|_| cannot_read(file, Why::NoText))
-}
-
 fn text(found: &Found) -> Result<String, Failure> {
     match found {
         Found::File(file) => read(file),
@@ -406,55 +383,4 @@ fn content(found: &Found, most: u64) -> Result<Vec<u8>, Failure> {
         }
         Found::Embedded(_, bytes) => Ok(bytes.to_vec()),
     }
-}
-
-fn cannot_read(file: &Path, why: Why) -> Failure {
-    Failure::usage(FileTrouble::Unread(file.display().to_string(), why))
-}
-
-/// Finds out whether a file of a kind can be written, leaving an existing file as it is.
-///
-/// # Errors
-/// The file cannot be written; the error says why.
-pub fn check_writable(file: &Path, kind: Kind<'_>) -> Result<(), Failure> {
-    NewFile::begin(file, kind).map(drop)
-}
-
-/// Writes a file of a kind whole: until it is, what stood there stays. Says which one could not be written.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn write(file: &Path, kind: Kind<'_>, content: impl AsRef<[u8]>) -> Result<(), Failure> {
-    let mut new = NewFile::begin(file, kind)?;
-    new.write_all(content.as_ref())
-        .map_err(|error| cannot_write(file, &error))?;
-    new.finish()
-}
-
-/// Writes a text whole, over none that begins otherwise; the folder is made if need be.
-///
-/// # Errors
-/// The file or its folder cannot be written.
-pub fn write_text(file: &Path, text: impl AsRef<[u8]>) -> Result<(), Failure> {
-    if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder).map_err(|error| cannot_write(file, &error))?;
-    }
-    let begins: String = head(text.as_ref()).chars().take(TEXT_HEAD).collect();
-    write(file, &[&begins], text)
-}
-
-/// Keeps a value as JSON in a file whose folder is made if need be: whole, or as it was.
-///
-/// # Errors
-/// The file or its folder cannot be written.
-pub fn keep(file: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
-    let failed = |error: &dyn Display| cannot_write(file, error);
-    if let Some(folder) = file.parent() {
-        owner_only::folder(folder).map_err(|error| failed(&error))?;
-    }
-    let content = serde_json::to_vec_pretty(value).map_err(|error| failed(&error))?;
-    let mut new = NewFile::begin(file, kind::OWN)?;
-    new.keep_to_owner()?;
-    new.write_all(&content).map_err(|error| failed(&error))?;
-    new.finish()
 }

@@ -9,10 +9,7 @@ use btu_rig::rig::LinkTrouble;
 use fault_db::{Id, StoreError, TraceError};
 use script_files::ScriptsError;
 
-mod near;
-
 pub use crate::words::*;
-pub use near::{Near, did_you_mean, did_you_mean_number};
 
 /// Exit codes of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,11 +83,11 @@ impl Trouble {
 }
 
 impl Say for Trouble {
-    fn say(&self, how: Manner) -> String {
+    fn say(&self, how: TextStyle) -> String {
         match self {
             Self::Store(error) => error.say(how),
-            Self::NamedStore(error) if how == Manner::COMMAND_LINE => error.to_string(),
-            Self::NamedStore(error) => error.say(Manner {
+            Self::NamedStore(error) if how == TextStyle::COMMAND_LINE => error.to_string(),
+            Self::NamedStore(error) => error.say(TextStyle {
                 commands: false,
                 ..how
             }),
@@ -127,7 +124,12 @@ impl Say for Trouble {
 }
 
 /// A run that the history does not hold, for this reason and without so many of its traces, and the file that has it.
-fn not_stored(how: Manner, run: Id, (why, left_out): (&str, usize), kept: Option<&Path>) -> String {
+fn not_stored(
+    how: TextStyle,
+    run: Id,
+    (why, left_out): (&str, usize),
+    kept: Option<&Path>,
+) -> String {
     let run = run.short();
     let Some(kept) = kept.map(Path::display) else {
         return how.choose([
@@ -156,7 +158,7 @@ fn not_stored(how: Manner, run: Id, (why, left_out): (&str, usize), kept: Option
     }
 }
 
-fn joined(how: Manner, all: &[impl Say], by: &str) -> String {
+fn joined(how: TextStyle, all: &[impl Say], by: &str) -> String {
     let all: Vec<_> = all.iter().map(|one| one.say(how)).collect();
     all.join(by)
 }
@@ -164,9 +166,9 @@ fn joined(how: Manner, all: &[impl Say], by: &str) -> String {
 /// Finding for a run that could not begin or go on for this reason.
 pub fn prevented_by(why: &impl Say) -> Finding {
     let said = |korean| {
-        why.say(Manner {
+        why.say(TextStyle {
             korean,
-            ..Manner::COMMAND_LINE
+            ..TextStyle::COMMAND_LINE
         })
     };
     Finding::Prevented {
@@ -177,7 +179,40 @@ pub fn prevented_by(why: &impl Say) -> Finding {
 
 impl fmt::Display for Trouble {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.say(Manner::COMMAND_LINE))
+        f.write_str(&self.say(TextStyle::COMMAND_LINE))
+    }
+}
+
+/// Each refusal is trouble.
+macro_rules! refusals {
+    ($($area:ident),*) => {
+        $(impl From<$area> for Trouble {
+            fn from(of: $area) -> Self {
+                Self::Refused(Box::new(Refusal::$area(of)))
+            }
+        })*
+    };
+}
+refusals!(
+    Asked,
+    DiagnosisTrouble,
+    DriveTrouble,
+    EndpointError,
+    FieldTrouble,
+    FileTrouble,
+    KeepTrouble,
+    KeyTrouble,
+    NoUnit,
+    RecordTrouble,
+    RunTrouble,
+    SoundTrouble,
+    Unknown,
+    Warning
+);
+
+impl From<NoUnit> for Failure {
+    fn from(why: NoUnit) -> Self {
+        Self::bench(why)
     }
 }
 
@@ -266,46 +301,22 @@ impl From<StoreError> for Failure {
             | StoreError::TraceMissing { .. }
             | StoreError::Ambiguous { .. }
             | StoreError::BadId { .. }
-            | StoreError::NoWords { .. }
+            | StoreError::NoWords(_)
             | StoreError::TextTooLong { .. }
-            | StoreError::NotAFile { .. }
-            | StoreError::NotAServer { .. }
-            | StoreError::BadAddress { .. }
+            | StoreError::NotAFile(_)
+            | StoreError::NotAServer(_)
+            | StoreError::BadAddress(_)
             | StoreError::Transition { .. }
-            | StoreError::TargetExists { .. }
-            | StoreError::SameFile { .. }
-            | StoreError::QueryRefused { .. }
-            | StoreError::QueryFailed { .. }
-            | StoreError::QueryExceeds { .. } => Exit::Usage,
+            | StoreError::TargetExists(_)
+            | StoreError::SameFile(_)
+            | StoreError::QueryRefused(_)
+            | StoreError::QueryFailed(_)
+            | StoreError::QueryExceeds(_) => Exit::Usage,
             _ => Exit::Bench,
         };
         Self {
             exit,
             message: Trouble::Store(Arc::new(error)),
         }
-    }
-}
-
-/// The message of a database error. Where its next move is another database, the flag that names one is added.
-pub fn store_message(error: &StoreError) -> String {
-    match in_place_of(error) {
-        Some(_) => format!("{error} with --db"),
-        None => error.to_string(),
-    }
-}
-
-/// The file in whose place an error says to choose another.
-pub fn in_place_of(error: &StoreError) -> Option<&Path> {
-    match error {
-        StoreError::Locked { path }
-        | StoreError::Full { path }
-        | StoreError::ReadOnly { path }
-        | StoreError::NotADatabase { path }
-        | StoreError::ForeignDatabase { path, .. }
-        | StoreError::NewerSchema { path, .. }
-        | StoreError::Missing { path }
-        | StoreError::CannotOpen { path, .. }
-        | StoreError::NotAFile { path } => Some(path),
-        _ => None,
     }
 }

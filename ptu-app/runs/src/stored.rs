@@ -3,8 +3,10 @@
 //! program.
 
 use btu_rig::procedure::plan::Connection;
-use btu_rig::procedure::{Findings, Outside, OutsideStep, Procedure, ResultKind, Verdict};
-use fault_db::{FaultRecord, StepKind, StepRecord};
+use btu_rig::procedure::{
+    Findings, Measurement, Outside, OutsideStep, Procedure, ResultKind, StepResult, Verdict,
+};
+use fault_db::{FaultRecord, MeasurementRecord, StepKind, StepRecord};
 use protocol::lru;
 
 use crate::run::FaultSeen;
@@ -34,6 +36,58 @@ pub fn from_stored(verdict: fault_db::Verdict) -> Verdict {
         fault_db::Verdict::Inconclusive => Verdict::Inconclusive,
         fault_db::Verdict::Aborted => Verdict::Aborted,
     }
+}
+
+/// A step of a procedure as the database stores it, begun then on the bench's clock; its place in the run is the
+/// caller's to say.
+pub fn step_record(procedure: &str, result: StepResult, started_bench_us: i64) -> StepRecord {
+    StepRecord {
+        index: 0,
+        procedure: procedure.to_owned(),
+        kind: kind(result.kind),
+        place: Some(result.index as u32),
+        name: result.name,
+        turn: result.turn,
+        turns: result.turns,
+        verdict: stored(result.verdict),
+        started_bench_us,
+        bench_time_us: result.bench_time.as_us() as i64,
+        message: result.findings.to_string(),
+        findings: result.findings.to_json(),
+        script_line: Some(result.line),
+        limit_source: result.limit_source,
+        measurements: result.measurements.into_iter().flat_map(records).collect(),
+    }
+}
+
+/// A measurement as it is stored: its uncertainty, if it has one, is a measurement of its own.
+fn records(measured: Measurement) -> impl Iterator<Item = MeasurementRecord> {
+    let verdict = stored(measured.verdict);
+    let unit = String::from(measured.unit);
+    let uncertainty = measured.uncertainty.map(|uncertainty| MeasurementRecord {
+        name: uncertainty_of(&measured.name),
+        value: Some(uncertainty),
+        unit: unit.clone(),
+        low: None,
+        high: None,
+        limit_source: None,
+        verdict: stored(Verdict::Passed),
+    });
+    let value = MeasurementRecord {
+        name: measured.name,
+        value: measured.value,
+        unit,
+        low: measured.low,
+        high: measured.high,
+        limit_source: measured.limit_source,
+        verdict,
+    };
+    std::iter::once(value).chain(uncertainty)
+}
+
+/// Name under which the uncertainty of a measurement is stored.
+pub fn uncertainty_of(name: &str) -> String {
+    format!("{name}, uncertainty")
 }
 
 /// An occurrence of a fault as the database stores it, dated `at_us` (UTC), at `bench_us` on the bench's clock.

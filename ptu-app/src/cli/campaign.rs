@@ -129,7 +129,7 @@ impl CampaignArguments {
         let count = campaign::samples(&modes, &suite.structure.relations.shared, &asked).len();
         let count = asked.keep.ours(count).count();
         if let Some(file) = &self.out {
-            ptu_runs::data::check_writable(file, kind::DICTIONARY)?;
+            ptu_runs::whole_file::check_writable(file, kind::DICTIONARY)?;
         }
         // A shard makes no dictionary: nodes of a cluster need no database.
         let store = match self.keep.is_part() {
@@ -163,7 +163,7 @@ impl CampaignArguments {
             ))
         })?;
         if let Some(file) = &self.out {
-            ptu_runs::data::write(file, kind::DICTIONARY, &data)?;
+            ptu_runs::whole_file::write(file, kind::DICTIONARY, &data)?;
         }
         store.put_dictionary(&DictionaryRecord {
             made_at_us: clock::now_us(),

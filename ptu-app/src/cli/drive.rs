@@ -11,13 +11,14 @@ use super::keep::KeepOptions;
 use super::{Json, ScriptsOption, answered, made_by};
 use ptu_report::Target;
 use ptu_report::drive::{self as report, Outcomes, Results};
-use ptu_runs::data::{ScriptsDirectory, read};
+use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::drive::{
     Driven, Fixed, Request, SectionChoice, Setting, disturbance, drive_all, monte_carlo,
 };
 use ptu_runs::failure::{DriveTrouble, Exit, Failure, FileTrouble, did_you_mean};
 use ptu_runs::pool::cores;
 use ptu_runs::stop::Stop;
+use ptu_runs::whole_file::read;
 
 /// Drive from station to station and measure the stop
 ///

@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Command, CommandFactory as _};
 
 use super::{Cli, WindowOptions, help, print_out};
-use ptu_runs::data::write_text;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::new_file::cannot_write;
+use ptu_runs::whole_file::write_text;
 
 /// The type of a history among files, with a gap for the number that marks one.
 const FILE_TYPES: &str = include_str!("../../../packaging/ptu.xml");

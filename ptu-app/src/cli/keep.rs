@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::print_out;
 use ptu_runs::batch::{Keep, Shard};
-use ptu_runs::data::check_writable;
 use ptu_runs::failure::{Exit, Failure, KeepTrouble};
 use ptu_runs::new_file::kind;
+use ptu_runs::whole_file::check_writable;
 
 /// Where runs are kept, and which are made here.
 #[derive(Debug, Args)]

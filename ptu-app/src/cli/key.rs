@@ -9,6 +9,7 @@ use serde_json::json;
 use super::signing::PinOption;
 use super::{Json, print_out};
 use ptu_report::words::{Words, fill};
+use ptu_runs::clock;
 use ptu_runs::failure::{Asked, Exit, Failure, KeyTrouble, Unknown, did_you_mean};
 use ptu_runs::keys::{
     KeyEntry, KeyFile, KeyList, NewKey, Standing, TRUSTED, day_argument, day_of, day_text, located,
@@ -16,7 +17,7 @@ use ptu_runs::keys::{
 };
 use ptu_runs::owner_only;
 use ptu_runs::table::Table;
-use ptu_runs::{clock, data};
+use ptu_runs::whole_file;
 
 /// Years for which a new key holds.
 const YEARS: u32 = 2;
@@ -131,7 +132,7 @@ impl KeysOption {
             false => KeyList::default(),
         };
         let stands = list.add(entry).map_err(Failure::usage)?;
-        data::write_text(&file, list.text())?;
+        whole_file::write_text(&file, list.text())?;
         Ok((stands, file))
     }
 }

@@ -11,10 +11,10 @@ use matrix::{
 
 use super::{Json, ScriptsOption, print_out};
 use ptu_report::json_safe;
-use ptu_runs::data::read_within;
 use ptu_runs::failure::{DriveTrouble, Exit, Failure, FileTrouble, Why, did_you_mean};
 use ptu_runs::stdio;
 use ptu_runs::table::Table;
+use ptu_runs::whole_file::read_within;
 
 /// States a table shows; JSON has all.
 const SHOWN_STATES: usize = 20;

@@ -91,7 +91,7 @@ impl Form {
     }
 }
 
-/// Form of an answer.
+/// Options of a question: how its answer is printed, and a name to save it under.
 #[derive(Clone, Debug, Args)]
 pub struct Output {
     #[command(flatten)]

@@ -16,9 +16,9 @@ use ptu_report::words::{Language, Words, fill};
 use ptu_report::{Target, count_short, run_json, run_summary_json, write_comparison};
 use ptu_runs::clock::{self, Span};
 use ptu_runs::coverage::counts_of;
-use ptu_runs::data;
 use ptu_runs::failure::{Asked, Exit, Failure};
 use ptu_runs::table::Table;
+use ptu_runs::whole_file;
 
 /// Show recorded runs, and note what is to be said of them
 #[derive(Debug, Args)]
@@ -226,7 +226,7 @@ fn certificate(store: &Store, id: &str, out: &Path) -> Result<Exit, Failure> {
     let Some(signed) = signed else {
         return Err(Failure::usage(Asked::Unsigned(run)));
     };
-    data::write_text(out, format!("{signed}\n"))?;
+    whole_file::write_text(out, format!("{signed}\n"))?;
     print_out(&fill(
         Words::shown().terminal.files_written,
         &[("files", &out.display())],

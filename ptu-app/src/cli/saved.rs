@@ -9,9 +9,10 @@ use fault_db::{limits, read_regular_file};
 
 use super::{Cli, print_out, quoted};
 use ptu_report::words::{Words, fill};
-use ptu_runs::data::{self, LONGEST_FILE};
 use ptu_runs::failure::{Exit, Failure, FileTrouble, KeepTrouble, Unknown, Why, did_you_mean};
 use ptu_runs::table::Table;
+use ptu_runs::whole_file;
+use ptu_runs::whole_file::LONGEST_FILE;
 
 /// Ask a saved question again, or list them all
 ///
@@ -210,7 +211,7 @@ fn load(file: &Path) -> Result<Questions, Failure> {
 }
 
 fn store(file: &Path, questions: &Questions) -> Result<(), Failure> {
-    data::keep(file, questions)
+    whole_file::keep(file, questions)
 }
 
 #[cfg(test)]

@@ -13,10 +13,10 @@ use protocol::config::UnitConfig;
 use ptu_report::run::html;
 use ptu_report::signal::{self as report, Recording};
 use ptu_report::words::{Words, fill};
-use ptu_runs::data::{check_writable, write};
 use ptu_runs::failure::{Exit, Failure, SoundTrouble};
 use ptu_runs::new_file::kind;
 use ptu_runs::signal::{self, FULL_SCALE_MV, Made, Strength, Teeth, Wave};
+use ptu_runs::whole_file::{check_writable, write};
 use serde_json::Value;
 
 /// Make the waveform of a speed code, of TWC, a marker or a speed sensor, read what is in a recording, play and record

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use crate::common::{Place, Said, record_bad_unit};
+use crate::common::{Place, Said};
 
 /// Commands of a technician, on the history of a unit with a bad relay.
 const COMMANDS: &[&str] = &[
@@ -134,8 +134,7 @@ fn english(text: &str, names: &BTreeSet<String>) -> Vec<String> {
 /// a computer whose locale is Korean; no word of an answer is English but names, which commands take.
 #[test]
 fn a_korean_computer_is_answered_in_korean() {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     let names = names(&place);
     let mut left = Vec::new();
     for command in COMMANDS {
@@ -170,8 +169,7 @@ fn a_korean_computer_is_answered_in_korean() {
 /// locales and options.
 #[test]
 fn the_language_is_asked_for_or_that_of_the_locale() {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     let asked = |variables: &[(&str, &str)], question: &str| {
         let mut command = place.command(question);
         command

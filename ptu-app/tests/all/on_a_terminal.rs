@@ -2,8 +2,8 @@
 
 use unicode_width::UnicodeWidthStr as _;
 
+use crate::common::Place;
 use crate::common::terminal::Terminal;
-use crate::common::{Place, record_bad_unit};
 
 const WIDTH: u16 = 80;
 
@@ -22,8 +22,7 @@ fn shown(place: &Place, words: &str, variables: &[(&str, &str)]) -> String {
 /// terminal, the columns at the right stand for themselves, and colours come and go with the options and variables.
 #[test]
 fn a_table_fits_the_terminal_and_has_colours_where_they_are_wanted() {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     let plain = shown(&place, "runs list --color never", &[]);
     assert!(
         plain.starts_with("RUN ") && !plain.contains('\x1b'),

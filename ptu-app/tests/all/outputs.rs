@@ -8,12 +8,11 @@ use std::time::{Duration, Instant};
 use fuzzing::draw;
 use serde_json::Value;
 
-use crate::common::{Place, Said, list, record_bad_unit, relay_fault, text};
+use crate::common::{Place, Said, list, relay_fault, text};
 
 /// A place whose history has this name, and the run of a bad unit.
 fn named(history: &str) -> Place {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     std::fs::rename(place.path("history.db"), place.path(history)).expect("renamed");
     place
 }
@@ -88,8 +87,7 @@ fn no_output_is_ever_the_history() {
 /// command twice.
 #[test]
 fn an_existing_file_of_another_kind_is_refused() {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     place.recorded_run();
     let fault = text(&relay_fault(&place)["id"]).to_owned();
     let runs = place.run_ids().join(" ");

@@ -6,12 +6,11 @@ use ptu_report::run::page::{Item, pages};
 use ptu_report::words::Language;
 
 use crate::common::is_english;
-use crate::common::{Place, list, number, record_bad_unit, relay_fault, text};
+use crate::common::{Place, list, number, relay_fault, text};
 
 /// A unit whose relay was slow and was replaced, and the id of the fault.
 fn repaired() -> (Place, String) {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     let fault = text(&relay_fault(&place)["id"]).to_owned();
     let repair = format!(
         "faults repair {fault} --part eb_relay --who Kim --old SN-41 --new SN-77 --note 'contacts burnt'"

@@ -83,6 +83,13 @@ impl Place {
         }
     }
 
+    /// One with the history of a bad unit.
+    pub fn with_bad_unit() -> Self {
+        let place = Self::new();
+        record_bad_unit(&place);
+        place
+    }
+
     /// One with a database in which nothing is recorded.
     pub fn with_database() -> Self {
         let place = Self::new();

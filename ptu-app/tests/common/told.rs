@@ -258,10 +258,10 @@ pub fn conclusion(text: &str, language: Language) -> Told {
     let inside = open.filter_map(|rest| rest.split_once(')'));
     let shares = inside.filter_map(|(inside, _)| inside.strip_suffix(" %")?.split_once(", "));
     let shares = shares.map(|(part, share)| fact(format!("share of {part}"), share));
-    let checks = match language {
-        Language::English => before(text, " of ").filter(|_| text.contains(" checks were made")),
-        Language::Korean => before(text, "개 수행").filter(|_| text.contains("점검 ")),
-    };
+    let checks = language.choose([
+        before(text, " of ").filter(|_| text.contains(" checks were made")),
+        before(text, "개 수행").filter(|_| text.contains("점검 ")),
+    ]);
     let checks = checks.map(|made| fact("checks made", made));
     let said = fact(format!("conclusion {}", language.code()), text);
     shares.chain([said]).chain(checks).collect()

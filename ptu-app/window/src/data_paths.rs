@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use fault_db::{Address, Misplaced, Store, StoreError};
+use fault_db::{Address, FileChange, Store, StoreError};
 
 use ptu_runs::clock;
 use ptu_runs::data::ScriptsDirectory;
@@ -68,11 +68,11 @@ impl DataPaths {
     pub fn open(&self) -> Result<Store, Failure> {
         if self.is_server() {
             let path = self.database.clone();
-            return Err(StoreError::ReadOnly { path }.into());
+            return Err(StoreError::ReadOnly(path).into());
         }
         if self.is_gone() {
-            let (path, what) = (self.database.clone(), Misplaced::Gone);
-            return Err(StoreError::Misplaced { path, what }.into());
+            let (path, what) = (self.database.clone(), FileChange::Gone);
+            return Err(StoreError::FileChanged { path, what }.into());
         }
         owner_only::folder_of(&self.database)?;
         Ok(self.seen(Store::open(&self.database, clock::open_options())?))

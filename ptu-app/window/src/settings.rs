@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 use super::{Density, Page, SavedQuestion};
 use ptu_report::words::Language;
 use ptu_runs::clock;
-use ptu_runs::data::LONGEST_FILE;
 use ptu_runs::failure::Failure;
 use ptu_runs::run::BenchChoice;
+use ptu_runs::whole_file::LONGEST_FILE;
 
 /// Everything is at least and at most so large.
 pub const SMALLEST_ZOOM: f32 = 0.7;
@@ -164,7 +164,7 @@ impl Settings {
     /// # Errors
     /// The file or its folder cannot be written.
     pub fn save(&self, file: &Path) -> Result<(), Failure> {
-        ptu_runs::data::keep(file, self)
+        ptu_runs::whole_file::keep(file, self)
     }
 }
 

@@ -4,6 +4,7 @@ use protocol::Random;
 
 use super::*;
 use crate::ato::tests::config;
+use crate::with::with;
 
 const MASS_KG: f64 = 300e3;
 
@@ -156,18 +157,9 @@ fn what_it_cannot_reach_it_gives_up_at_once() {
         last_marker: true,
         jogs: true,
     };
-    let far = JogInputs {
-        to_stop_m: Some(-5.1),
-        ..near
-    };
-    let unproved = JogInputs {
-        last_marker: false,
-        ..near
-    };
-    let dead = JogInputs {
-        jogs: false,
-        ..near
-    };
+    let far = with(near, |it| it.to_stop_m = Some(-5.1));
+    let unproved = with(near, |it| it.last_marker = false);
+    let dead = with(near, |it| it.jogs = false);
     for (inputs, failed_m) in [(far, Some(-5.1)), (unproved, None), (dead, Some(-1.0))] {
         let mut jog = Jog::default();
         let outcome = jog.step(&inputs, &config().jog);
@@ -175,10 +167,7 @@ fn what_it_cannot_reach_it_gives_up_at_once() {
         assert!(outcome.ended && jog.gave_up());
     }
     // Before the stop point an ordinary run leads on.
-    let short = JogInputs {
-        to_stop_m: Some(5.1),
-        ..near
-    };
+    let short = with(near, |it| it.to_stop_m = Some(5.1));
     let mut jog = Jog::default();
     assert_eq!(jog.step(&short, &config().jog), JogOutcome::default());
     assert!(!jog.acts());

@@ -88,6 +88,7 @@ pub struct FinalStop {
 
 /// Distance to the stop point within which the rate stays as it is, m: a share of nothing is no rate.
 const HOLD_M: f64 = 0.1;
+
 /// Bounds of the last metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FinalStopLimits {

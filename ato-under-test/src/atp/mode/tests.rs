@@ -3,6 +3,7 @@
 use protocol::Duration;
 
 use super::*;
+use crate::with::with;
 
 const GOOD: ModeInputs = ModeInputs {
     ready: true,
@@ -21,14 +22,47 @@ const GOOD: ModeInputs = ModeInputs {
     forced: false,
 };
 
+/// A driverless train with a departure given.
+const DRIVERLESS: ModeInputs = ModeInputs {
+    switch: ModeSwitch::Driverless,
+    ..GOOD
+};
+
+/// The departure withheld.
+fn withheld(inputs: ModeInputs) -> ModeInputs {
+    with(inputs, |it| (it.departure, it.heard) = (false, Some(false)))
+}
+
 /// A switch at driverless, a departure that is heard given or withheld, and preconditions that do not hold.
 fn driverless(departure: bool, lacking: Refusals) -> ModeInputs {
     ModeInputs {
-        switch: ModeSwitch::Driverless,
         departure,
         heard: Some(departure),
         lacking,
-        ..GOOD
+        ..DRIVERLESS
+    }
+}
+
+struct Train {
+    sequence: ModeSequence,
+    log: EventLog,
+    now: Instant,
+}
+
+impl Train {
+    fn new() -> Self {
+        let (log, now) = (EventLog::default(), Instant::ZERO);
+        let sequence = ModeSequence::new();
+        Self { sequence, log, now }
+    }
+
+    /// The mode after so many steps, each that long after the one before.
+    fn after(&mut self, steps: u64, ms: u64, inputs: ModeInputs) -> Mode {
+        for _ in 0..steps {
+            self.now += Duration::from_ms(ms);
+            self.sequence.step(self.now, inputs, &mut self.log);
+        }
+        self.sequence.mode()
     }
 }
 
@@ -42,19 +76,10 @@ fn a_line_that_others_open_is_logged_once() {
         (true, true, None),
         (true, false, Some(1)),
     ] {
-        let mut sequence = ModeSequence::new();
-        let mut log = EventLog::default();
-        let mut now = Instant::ZERO;
-        let mut after = |inputs| {
-            now += Duration::from_ms(600);
-            sequence.step(now, inputs, &mut log);
-            sequence.mode()
-        };
+        let mut train = Train::new();
+        let mut after = |inputs| train.after(1, 600, inputs);
         after(GOOD);
-        let run = ModeInputs {
-            start: true,
-            ..GOOD
-        };
+        let run = with(GOOD, |it| it.start = true);
         assert_eq!(after(run), Mode::AutomaticRun);
         let mut lacking = Refusals::EB_APPLIED;
         lacking.set(Refusals::NOT_STANDSTILL, moves);
@@ -66,6 +91,7 @@ fn a_line_that_others_open_is_logged_once() {
         };
         assert_eq!((after(open), after(open)), (Mode::Manual, Mode::Manual));
         let code = Event::LineOpened.definition().code;
+        let log = train.log;
         let entries = (0..log.next_index()).filter_map(|at| log.entries().at_or_after(at));
         let of_line = entries.filter(|entry| entry.code == code);
         let parameters = of_line.map(|entry| entry.parameter);
@@ -84,27 +110,10 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
         .into_iter()
         .flat_map(|one| by_others.map(|line_open| (one, line_open)))
     {
-        let mut sequence = ModeSequence::new();
-        let mut log = EventLog::default();
-        let mut now = Instant::ZERO;
-        let mut after = |inputs| {
-            for _ in 0..3 {
-                now += Duration::from_ms(600);
-                sequence.step(now, inputs, &mut log);
-            }
-            (sequence.mode(), sequence.stops())
-        };
-        let given = ModeInputs {
-            switch,
-            start,
-            ..GOOD
-        };
-        after(ModeInputs {
-            start: false,
-            departure: false,
-            heard: Some(false),
-            ..given
-        });
+        let mut train = Train::new();
+        let mut after = |inputs| (train.after(3, 600, inputs), train.sequence.stops());
+        let given = with(GOOD, |it| (it.switch, it.start) = (switch, start));
+        after(withheld(with(given, |it| it.start = false)));
         assert_eq!(after(given).0, Mode::AutomaticRun);
         let open = ModeInputs {
             lacking: Refusals::EB_APPLIED | Refusals::NOT_STANDSTILL,
@@ -113,29 +122,20 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
             ..given
         };
         assert_eq!(after(open), (Mode::Manual, line_open));
-        let moving = ModeInputs {
-            lacking: Refusals::NOT_STANDSTILL,
-            start: false,
-            ..given
-        };
+        let moving = with(given, |it| {
+            (it.lacking, it.start) = (Refusals::NOT_STANDSTILL, false)
+        });
         assert_eq!(
             after(moving),
             (Mode::Manual, line_open),
             "closed again on the way"
         );
-        let stands = ModeInputs {
-            start: false,
-            ..given
-        };
+        let stands = with(given, |it| it.start = false);
         assert_eq!(after(stands), (Mode::Automatic, false));
         let again = match start {
             true => given,
             false => {
-                after(ModeInputs {
-                    departure: false,
-                    heard: Some(false),
-                    ..stands
-                });
+                after(withheld(stands));
                 stands
             }
         };
@@ -148,14 +148,8 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
 #[test]
 fn a_departure_given_on_the_way_or_under_the_brake_sends_no_train_off() {
     for lacking in [Refusals::NOT_STANDSTILL, Refusals::EB_APPLIED] {
-        let mut sequence = ModeSequence::new();
-        let mut log = EventLog::default();
-        let mut now = Instant::ZERO;
-        let mut after = |departure, lacking| {
-            now += Duration::from_ms(1_100);
-            sequence.step(now, driverless(departure, lacking), &mut log);
-            sequence.mode()
-        };
+        let mut train = Train::new();
+        let mut after = |departure, lacking| train.after(1, 1_100, driverless(departure, lacking));
         let free = Refusals::empty();
         for (departure, lacking) in [(false, free), (false, lacking), (true, lacking)] {
             after(departure, lacking);
@@ -173,28 +167,16 @@ fn a_departure_given_on_the_way_or_under_the_brake_sends_no_train_off() {
 #[test]
 fn a_run_goes_on_by_the_switch_and_through_the_section_that_began_it() {
     let turned = |switch| ModeInputs { switch, ..GOOD };
-    let moves = ModeInputs {
-        lacking: Refusals::NOT_STANDSTILL,
-        ..GOOD
-    };
-    let next_section = ModeInputs {
-        relocated: true,
-        ..GOOD
-    };
+    let moves = with(GOOD, |it| it.lacking = Refusals::NOT_STANDSTILL);
+    let next_section = with(GOOD, |it| it.relocated = true);
     for (then, mode) in [
         (turned(ModeSwitch::Driverless), Mode::AutomaticRun),
         (turned(ModeSwitch::Automatic), Mode::Automatic),
         (moves, Mode::AutomaticRun),
         (next_section, Mode::Automatic),
     ] {
-        let mut sequence = ModeSequence::new();
-        let mut log = EventLog::default();
-        let mut now = Instant::ZERO;
-        let mut after = |inputs| {
-            now += Duration::from_ms(1_100);
-            sequence.step(now, inputs, &mut log);
-            sequence.mode()
-        };
+        let mut train = Train::new();
+        let mut after = |inputs| train.after(1, 1_100, inputs);
         for departure in [false, false, true] {
             after(driverless(departure, Refusals::empty()));
         }
@@ -212,13 +194,12 @@ fn a_door_or_the_cab_that_ends_a_run_in_motion_stops_the_train() {
         (Refusals::CAB_INACTIVE, true),
         (Refusals::CONTROLLER_NOT_NEUTRAL, false),
     ] {
-        let mut sequence = ModeSequence::new();
-        let mut log = EventLog::default();
-        let mut now = Instant::ZERO;
+        let mut train = Train::new();
         let mut after = |departure, lacking| {
-            now += Duration::from_ms(1_100);
-            sequence.step(now, driverless(departure, lacking), &mut log);
-            (sequence.mode(), sequence.stops())
+            (
+                train.after(1, 1_100, driverless(departure, lacking)),
+                train.sequence.stops(),
+            )
         };
         after(false, Refusals::empty());
         after(false, Refusals::empty());
@@ -240,104 +221,45 @@ fn a_door_or_the_cab_that_ends_a_run_in_motion_stops_the_train() {
 
 #[test]
 fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
-    let mut sequence = ModeSequence::new();
-    let mut log = EventLog::default();
-    let driverless = ModeInputs {
-        switch: ModeSwitch::Driverless,
-        ..GOOD
-    };
-    let mut now = Instant::ZERO;
-    let mut after = |inputs| {
-        for _ in 0..3 {
-            now += Duration::from_ms(600);
-            sequence.step(now, inputs, &mut log);
-        }
-        (sequence.mode(), sequence.refusals())
-    };
+    let mut train = Train::new();
+    let mut after = |inputs| (train.after(3, 600, inputs), train.sequence.refusals());
     let none = Refusals::empty();
-    let waits = ModeInputs {
-        departure: false,
-        heard: Some(false),
-        ..driverless
-    };
+    let waits = withheld(DRIVERLESS);
     assert_eq!(after(waits).0, Mode::Automatic);
-    assert_eq!(after(driverless), (Mode::AutomaticRun, none));
-    let failed = ModeInputs {
-        lacking: Refusals::ATO_NOT_READY,
-        ..driverless
-    };
+    assert_eq!(after(DRIVERLESS), (Mode::AutomaticRun, none));
+    let failed = with(DRIVERLESS, |it| it.lacking = Refusals::ATO_NOT_READY);
     let refused = (Mode::Manual, Refusals::ATO_NOT_READY);
     assert_eq!(after(failed), refused);
-    assert_eq!(after(driverless), refused, "ready again, not acknowledged");
-    let acknowledged = ModeInputs {
-        acknowledge: true,
-        ..driverless
-    };
+    assert_eq!(after(DRIVERLESS), refused, "ready again, not acknowledged");
+    let acknowledged = with(DRIVERLESS, |it| it.acknowledge = true);
     assert_eq!(after(acknowledged), (Mode::Automatic, none));
     assert_eq!(
-        after(driverless),
+        after(DRIVERLESS),
         (Mode::Automatic, none),
         "the old departure"
     );
     assert_eq!(after(waits).0, Mode::Automatic);
-    assert_eq!(after(driverless).0, Mode::AutomaticRun);
+    assert_eq!(after(DRIVERLESS).0, Mode::AutomaticRun);
     assert_eq!(after(failed), refused);
-    let manual = ModeInputs {
-        switch: ModeSwitch::Manual,
-        ..GOOD
-    };
+    let manual = with(GOOD, |it| it.switch = ModeSwitch::Manual);
     assert_eq!(after(manual).0, Mode::Manual);
-    assert_eq!(after(driverless).0, Mode::Automatic);
-    let pressed = ModeInputs {
-        start: true,
-        ..driverless
-    };
+    assert_eq!(after(DRIVERLESS).0, Mode::Automatic);
+    let pressed = with(DRIVERLESS, |it| it.start = true);
     assert_eq!(after(pressed).0, Mode::AutomaticRun);
-}
-
-/// A departure given to a driverless train, and the same train with it withheld.
-fn departure() -> (ModeInputs, ModeInputs) {
-    let given = ModeInputs {
-        switch: ModeSwitch::Driverless,
-        ..GOOD
-    };
-    let withheld = ModeInputs {
-        departure: false,
-        heard: Some(false),
-        ..given
-    };
-    (given, withheld)
 }
 
 /// Goal: neither a power-up nor mode off in a run lets a driverless train drive off by the departure that is still given.
 /// Method: that departure is the first thing heard, is heard again after silence, then withheld and given again.
 #[test]
 fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
-    let (given, withheld) = departure();
-    let silent = ModeInputs {
-        departure: false,
-        heard: None,
-        ..given
-    };
-    let cab_lost = ModeInputs {
-        cab_active: false,
-        lacking: Refusals::CAB_INACTIVE,
-        ..given
-    };
-    let starting = ModeInputs {
-        ready: false,
-        ..silent
-    };
-    let mut sequence = ModeSequence::new();
-    let mut log = EventLog::default();
-    let mut now = Instant::ZERO;
-    let mut after = |inputs| {
-        for _ in 0..3 {
-            now += Duration::from_ms(600);
-            sequence.step(now, inputs, &mut log);
-        }
-        sequence.mode()
-    };
+    let (given, withheld) = (DRIVERLESS, withheld(DRIVERLESS));
+    let silent = with(given, |it| (it.departure, it.heard) = (false, None));
+    let cab_lost = with(given, |it| {
+        (it.cab_active, it.lacking) = (false, Refusals::CAB_INACTIVE)
+    });
+    let starting = with(silent, |it| it.ready = false);
+    let mut train = Train::new();
+    let mut after = |inputs| train.after(3, 600, inputs);
     for off in [starting, cab_lost] {
         assert_eq!(after(off), Mode::Off);
         assert_eq!(after(given), Mode::Automatic, "the old departure");
@@ -349,10 +271,7 @@ fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
     }
     after(cab_lost);
     assert_eq!(after(given), Mode::Automatic);
-    let pressed = ModeInputs {
-        start: true,
-        ..given
-    };
+    let pressed = with(given, |it| it.start = true);
     assert_eq!(after(pressed), Mode::AutomaticRun, "by the start button");
 }
 
@@ -360,26 +279,12 @@ fn after_a_power_up_or_mode_off_a_driverless_train_waits_for_a_new_departure() {
 /// and while a failure of ATO is not acknowledged; then the brake is released, the failure acknowledged.
 #[test]
 fn a_departure_given_while_the_train_is_held_does_not_count_afterwards() {
-    let (given, withheld) = departure();
-    let acknowledged = ModeInputs {
-        acknowledge: true,
-        ..given
-    };
+    let (given, withheld) = (DRIVERLESS, withheld(DRIVERLESS));
+    let acknowledged = with(given, |it| it.acknowledge = true);
     for held in [Refusals::EB_APPLIED, Refusals::ATO_NOT_READY] {
-        let mut sequence = ModeSequence::new();
-        let mut log = EventLog::default();
-        let mut now = Instant::ZERO;
-        let mut after = |inputs| {
-            for _ in 0..3 {
-                now += Duration::from_ms(600);
-                sequence.step(now, inputs, &mut log);
-            }
-            sequence.mode()
-        };
-        let lacking = |inputs| ModeInputs {
-            lacking: held,
-            ..inputs
-        };
+        let mut train = Train::new();
+        let mut after = |inputs| train.after(3, 600, inputs);
+        let lacking = |inputs: ModeInputs| with(inputs, |it| it.lacking = held);
         after(lacking(given));
         after(lacking(withheld));
         after(lacking(given));
@@ -399,10 +304,7 @@ fn a_departure_given_while_the_train_is_held_does_not_count_afterwards() {
         // Withheld while it was held, and given when it may go.
         after(lacking(given));
         after(lacking(withheld));
-        after(ModeInputs {
-            acknowledge: true,
-            ..withheld
-        });
+        after(with(withheld, |it| it.acknowledge = true));
         assert_eq!(after(given), Mode::AutomaticRun, "{held:?}: given after");
     }
 }
@@ -410,159 +312,63 @@ fn a_departure_given_while_the_train_is_held_does_not_count_afterwards() {
 /// A switch that passes driverless, and a door that was forced at a stop, send no train off by the departure that is given.
 #[test]
 fn a_position_that_is_passed_and_a_forced_door_begin_no_run() {
-    let driverless = ModeInputs {
-        switch: ModeSwitch::Driverless,
-        ..GOOD
-    };
-    let withheld = ModeInputs {
-        heard: Some(false),
-        departure: false,
-        ..driverless
-    };
-    let (mut sequence, mut log) = (ModeSequence::new(), EventLog::default());
-    let mut now = Instant::ZERO;
-    let mut after = |ms: u64, inputs| {
-        for _ in 0..ms / 50 {
-            now += Duration::from_ms(50);
-            sequence.step(now, inputs, &mut log);
-        }
-        sequence.mode()
-    };
-    let emergency = ModeInputs {
-        switch: ModeSwitch::Emergency,
-        ..GOOD
-    };
-    after(
-        2_000,
-        ModeInputs {
-            heard: Some(false),
-            departure: false,
-            ..emergency
-        },
-    );
+    let mut train = Train::new();
+    let mut after = |ms: u64, inputs| train.after(ms / 50, 50, inputs);
+    let emergency = with(GOOD, |it| it.switch = ModeSwitch::Emergency);
+    after(2_000, withheld(emergency));
     after(2_000, emergency);
-    assert_eq!(after(400, driverless), Mode::Automatic, "passed");
+    assert_eq!(after(400, DRIVERLESS), Mode::Automatic, "passed");
     assert_eq!(after(2_000, GOOD), Mode::Automatic);
-    assert_eq!(after(1_200, driverless), Mode::AutomaticRun, "chosen");
-    after(
-        200,
-        ModeInputs {
-            arrived: true,
-            ..withheld
-        },
-    );
-    after(200, driverless);
+    assert_eq!(after(1_200, DRIVERLESS), Mode::AutomaticRun, "chosen");
+    after(200, with(withheld(DRIVERLESS), |it| it.arrived = true));
+    after(200, DRIVERLESS);
     after(
         100,
         ModeInputs {
             arrived: true,
             forced: true,
             lacking: Refusals::DOORS_OPEN,
-            ..driverless
+            ..DRIVERLESS
         },
     );
-    assert_eq!(after(2_000, driverless), Mode::Automatic, "forced");
-    after(200, withheld);
-    assert_eq!(after(200, driverless), Mode::AutomaticRun, "given anew");
+    assert_eq!(after(2_000, DRIVERLESS), Mode::Automatic, "forced");
+    after(200, withheld(DRIVERLESS));
+    assert_eq!(after(200, DRIVERLESS), Mode::AutomaticRun, "given anew");
 }
 
 #[test]
 fn the_sequence_is_this_table() {
-    let lacking = |r| ModeInputs { lacking: r, ..GOOD };
-    let switch = |s| ModeInputs { switch: s, ..GOOD };
-    let cases = [
+    let lacking = |r| with(GOOD, |it| it.lacking = r);
+    let switch = |s| with(GOOD, |it| it.switch = s);
+    let moves = Refusals::NOT_STANDSTILL;
+    let of_run = [
+        (lacking(moves), Mode::AutomaticRun),
+        (lacking(Refusals::NO_TWC), Mode::AutomaticRun),
+        (lacking(Refusals::DOORS_OPEN), Mode::Manual),
+        (lacking(Refusals::ATO_NOT_READY), Mode::Manual),
+        (lacking(Refusals::ATO_NOT_READY | moves), Mode::AutomaticRun),
+        (
+            lacking(Refusals::TCMS_NOT_READY | moves),
+            Mode::AutomaticRun,
+        ),
+        (lacking(Refusals::TCMS_NOT_READY), Mode::Manual),
+        (with(GOOD, |it| it.arrived = true), Mode::Automatic),
+        (switch(ModeSwitch::Manual), Mode::Manual),
+        (with(GOOD, |it| it.cab_active = false), Mode::Off),
+    ];
+    let of_run = of_run.map(|(inputs, to)| (Mode::AutomaticRun, inputs, false, to));
+    let (lost, starting) = (lacking(Refusals::NO_TWC), with(GOOD, |it| it.ready = false));
+    let others = [
         (Mode::Manual, GOOD, false, Mode::Automatic),
         (Mode::Manual, GOOD, true, Mode::Automatic),
         (Mode::Automatic, GOOD, true, Mode::AutomaticRun),
-        (
-            Mode::Automatic,
-            lacking(Refusals::NO_TWC),
-            true,
-            Mode::Manual,
-        ),
-        (
-            Mode::AutomaticRun,
-            lacking(Refusals::NOT_STANDSTILL),
-            false,
-            Mode::AutomaticRun,
-        ),
-        (
-            Mode::AutomaticRun,
-            lacking(Refusals::NO_TWC),
-            false,
-            Mode::AutomaticRun,
-        ),
-        (
-            Mode::AutomaticRun,
-            lacking(Refusals::DOORS_OPEN),
-            false,
-            Mode::Manual,
-        ),
-        (
-            Mode::AutomaticRun,
-            lacking(Refusals::ATO_NOT_READY),
-            false,
-            Mode::Manual,
-        ),
-        (
-            Mode::AutomaticRun,
-            lacking(Refusals::ATO_NOT_READY.union(Refusals::NOT_STANDSTILL)),
-            false,
-            Mode::AutomaticRun,
-        ),
-        (
-            Mode::AutomaticRun,
-            lacking(Refusals::TCMS_NOT_READY.union(Refusals::NOT_STANDSTILL)),
-            false,
-            Mode::AutomaticRun,
-        ),
-        (
-            Mode::AutomaticRun,
-            lacking(Refusals::TCMS_NOT_READY),
-            false,
-            Mode::Manual,
-        ),
-        (
-            Mode::AutomaticRun,
-            ModeInputs {
-                arrived: true,
-                ..GOOD
-            },
-            false,
-            Mode::Automatic,
-        ),
-        (
-            Mode::AutomaticRun,
-            switch(ModeSwitch::Manual),
-            false,
-            Mode::Manual,
-        ),
-        (
-            Mode::AutomaticRun,
-            ModeInputs {
-                cab_active: false,
-                ..GOOD
-            },
-            false,
-            Mode::Off,
-        ),
-        (
-            Mode::Manual,
-            ModeInputs {
-                ready: false,
-                ..GOOD
-            },
-            true,
-            Mode::Off,
-        ),
+        (Mode::Automatic, lost, true, Mode::Manual),
+        (Mode::Manual, starting, true, Mode::Off),
         (Mode::Off, switch(ModeSwitch::Yard), false, Mode::Yard),
         (Mode::Off, switch(ModeSwitch::Unknown(9)), false, Mode::Off),
     ];
-    for (from, inputs, departing, to) in cases {
-        assert_eq!(
-            next(from, &inputs, departing),
-            to,
-            "{from:?} {inputs:?} {departing}"
-        );
+    for (from, inputs, departing, to) in of_run.into_iter().chain(others) {
+        let then = next(from, &inputs, departing);
+        assert_eq!(then, to, "{from:?} {inputs:?} {departing}");
     }
 }

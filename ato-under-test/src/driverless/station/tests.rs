@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use protocol::Random;
 
 use super::*;
+use crate::with::with;
 
 const CONFIG: DriverlessConfig = DriverlessConfig {
     dwell_min_ms: 5000,
@@ -28,18 +29,11 @@ const HELD: StationInputs = StationInputs {
 const CYCLE: Duration = Duration::from_ms(50);
 
 fn open(inputs: StationInputs) -> StationInputs {
-    StationInputs {
-        open: DoorSide::Left,
-        closed: false,
-        ..inputs
-    }
+    with(inputs, |it| (it.open, it.closed) = (DoorSide::Left, false))
 }
 
 fn departs(inputs: StationInputs) -> StationInputs {
-    StationInputs {
-        departure: true,
-        ..inputs
-    }
+    with(inputs, |it| it.departure = true)
 }
 
 struct Stop {
@@ -111,10 +105,7 @@ fn a_departure_withdrawn_while_doors_close_opens_them_and_given_anew_closes_them
     assert_eq!(stop.after(open(departs(HELD)), 500), CLOSES);
     assert_eq!(stop.after(open(HELD), 500), OPENS);
     assert_eq!(stop.after(open(departs(HELD)), 500), CLOSES);
-    let away = StationInputs {
-        enabled: DoorSide::None,
-        ..open(HELD)
-    };
+    let away = with(open(HELD), |it| it.enabled = DoorSide::None);
     assert_eq!(stop.after(away, 500), CLOSES, "not enabled, not opened");
 }
 
@@ -123,10 +114,7 @@ fn an_obstacle_opens_the_doors_twice_and_then_refuses_departure() {
     for (goes_on, expected) in [
         (open(HELD), OPENS),
         (
-            StationInputs {
-                acknowledge: true,
-                ..open(departs(HELD))
-            },
+            with(open(departs(HELD)), |it| it.acknowledge = true),
             CLOSES,
         ),
     ] {
@@ -159,10 +147,7 @@ fn doors_that_do_not_open_are_told_and_do_not_keep_the_train() {
 #[test]
 fn doors_that_somebody_opened_are_closed_for_departure_without_an_enable() {
     let mut stop = Stop::new();
-    let away = StationInputs {
-        enabled: DoorSide::None,
-        ..HELD
-    };
+    let away = with(HELD, |it| it.enabled = DoorSide::None);
     assert_eq!(stop.after(departs(away), 0), GOES);
     assert_eq!(stop.after(open(departs(away)), 4_900).0, DoorSide::None);
     assert_eq!(stop.after(open(departs(away)), 100), CLOSES);
@@ -172,18 +157,9 @@ fn doors_that_somebody_opened_are_closed_for_departure_without_an_enable() {
 #[test]
 fn nothing_is_ordered_in_a_run_in_motion_or_in_another_mode() {
     for other in [
-        StationInputs {
-            running: true,
-            ..HELD
-        },
-        StationInputs {
-            standstill: false,
-            ..HELD
-        },
-        StationInputs {
-            driverless: false,
-            ..HELD
-        },
+        with(HELD, |it| it.running = true),
+        with(HELD, |it| it.standstill = false),
+        with(HELD, |it| it.driverless = false),
     ] {
         let mut stop = Stop::new();
         assert_eq!(stop.after(other, 2_000), GOES, "{other:?}");
@@ -193,10 +169,7 @@ fn nothing_is_ordered_in_a_run_in_motion_or_in_another_mode() {
 
 #[test]
 fn at_the_next_stop_doors_are_served_anew() {
-    let moves = StationInputs {
-        standstill: false,
-        ..HELD
-    };
+    let moves = with(HELD, |it| it.standstill = false);
     for (moves_ms, expected) in [(500, GOES), (1_500, OPENS)] {
         let mut stop = Stop::new();
         stop.after(HELD, 0);

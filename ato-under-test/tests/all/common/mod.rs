@@ -35,6 +35,14 @@ pub fn fault(place: Place, effect: Effect) -> FaultMode {
     }
 }
 
+/// A fault that sets in at this time after power-up, s.
+pub fn fault_from(place: Place, effect: Effect, onset_s: f64) -> FaultMode {
+    FaultMode {
+        onset_s,
+        ..fault(place, effect)
+    }
+}
+
 pub struct Bench {
     pub unit: Unit,
     pub link: Link,
@@ -116,6 +124,15 @@ pub fn test_station(session: u32, data: TwcWayside) -> TestTwc {
 impl Bench {
     pub fn new(faults: &[FaultMode]) -> Self {
         Self::with_line(faults, false)
+    }
+
+    /// A sound unit that hears this code, and a train at this speed from now on.
+    pub fn under(code: &str, speed_kmh: f64) -> Self {
+        let mut bench = Self::new(&[]);
+        bench.code(code);
+        bench.run(0.6);
+        bench.speed_kmh(speed_kmh);
+        bench
     }
 
     /// Powered up while something else opens the emergency brake line.

@@ -85,6 +85,13 @@ impl Default for FakeUnit {
 }
 
 impl FakeUnit {
+    /// A unit as any other but for this.
+    pub fn with(change: impl FnOnce(&mut Self)) -> Self {
+        let mut unit = Self::default();
+        change(&mut unit);
+        unit
+    }
+
     pub fn log_event(&mut self, code: u16) {
         let index = self.oldest + self.log.len() as u32;
         self.log.push(LogEntry {

@@ -24,10 +24,7 @@ fn reached(asked: Harness, unit: FakeUnit) -> Bench<FakeUnit> {
 }
 
 fn aboard() -> FakeUnit {
-    FakeUnit {
-        harness: false,
-        ..FakeUnit::default()
-    }
+    FakeUnit::with(|it| it.harness = false)
 }
 
 /// A procedure of one step that looks at these.

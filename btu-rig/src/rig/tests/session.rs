@@ -108,10 +108,7 @@ fn refusals_name_the_request_and_the_reason() {
 
 #[test]
 fn a_starting_unit_is_waited_for() {
-    let mut bench = bench(FakeUnit {
-        refusal: ArmRefusal::StartingUp,
-        ..FakeUnit::default()
-    });
+    let mut bench = bench(FakeUnit::with(|it| it.refusal = ArmRefusal::StartingUp));
     bench.apply(Stimulus::PtuArm);
     bench.run_ms(1500);
     assert_eq!(bench.rig().settled(), Ok(false));
@@ -142,10 +139,7 @@ fn a_unit_that_never_answers_is_given_up_and_a_bench_still_becomes_safe() {
 /// Frames lost each way: requests are repeated, the log arrives whole and in order.
 #[test]
 fn a_bad_line_loses_nothing() {
-    let mut bench = bench(FakeUnit {
-        loss: 0.1,
-        ..FakeUnit::default()
-    });
+    let mut bench = bench(FakeUnit::with(|it| it.loss = 0.1));
     let mut armed = 0;
     for _ in 0..10 {
         armed += u32::from(bench.settle(Stimulus::PtuArm).is_ok());
@@ -170,10 +164,7 @@ fn a_bad_line_loses_nothing() {
 
 #[test]
 fn log_entries_come_once_each_and_overwritten_ones_are_counted() {
-    let mut unit = FakeUnit {
-        oldest: 40,
-        ..FakeUnit::default()
-    };
+    let mut unit = FakeUnit::with(|it| it.oldest = 40);
     (0..5).for_each(|_| unit.log_event(7));
     let mut bench = bench(unit);
     bench.run_ms(2000);

@@ -170,10 +170,7 @@ fn on_a_good_line_nothing_is_harmed() {
 /// so fast that frames are late to it every 30 s.
 #[test]
 fn frames_that_are_late_to_a_fast_clock_are_not_the_lines() {
-    let mut bench = bench(FakeUnit {
-        clock_gains: 0.017,
-        ..FakeUnit::default()
-    });
+    let mut bench = bench(FakeUnit::with(|it| it.clock_gains = 0.017));
     bench.run_ms(120_000);
     assert!(bench.link().link.counters().rejected_total() > 200);
     assert_eq!(bench.rig().evidence().line, LineState::default());
@@ -185,10 +182,7 @@ fn frames_that_are_late_to_a_fast_clock_are_not_the_lines() {
 /// refuses frames for seconds on end, and stalls.
 #[test]
 fn a_fast_clock_is_measured_and_stays_wrong_over_a_stall() {
-    let mut bench = bench(FakeUnit {
-        clock_gains: 0.03,
-        ..FakeUnit::default()
-    });
+    let mut bench = bench(FakeUnit::with(|it| it.clock_gains = 0.03));
     bench.run_ms(10_000);
     assert_eq!(
         bench.rig().evidence().clock_wrong_by_permille,
@@ -228,10 +222,7 @@ fn a_log_that_is_never_answered_is_an_error_with_the_count_of_questions() {
 /// A unit whose log is empty and is never answered: whether it could be read is not known.
 #[test]
 fn a_unit_that_never_shows_its_log_is_an_error_though_nothing_is_in_it() {
-    let mut bench = bench(FakeUnit {
-        answers_log: false,
-        ..FakeUnit::default()
-    });
+    let mut bench = bench(FakeUnit::with(|it| it.answers_log = false));
     bench.run_ms(2_000);
     assert_eq!(bench.rig().evidence().log, LogState::Unanswered);
     bench.run_ms(5_000);
@@ -242,10 +233,7 @@ fn a_unit_that_never_shows_its_log_is_an_error_though_nothing_is_in_it() {
 /// A unit says that it has logged something, and answers with the end of the log alone.
 #[test]
 fn a_log_without_the_entries_it_should_have_is_an_error() {
-    let mut bench = bench(FakeUnit {
-        entries_per_cycle: 0,
-        ..FakeUnit::default()
-    });
+    let mut bench = bench(FakeUnit::with(|it| it.entries_per_cycle = 0));
     bench.link_mut().log_event(7);
     bench.run_ms(60_000);
     let error = link_error(&bench);
@@ -259,10 +247,7 @@ fn a_log_without_the_entries_it_should_have_is_an_error() {
 /// sends them as fast as they come.
 #[test]
 fn a_log_without_end_is_bounded_counted_and_an_error() {
-    let mut bench = bench(FakeUnit {
-        entries_per_cycle: 400,
-        ..FakeUnit::default()
-    });
+    let mut bench = bench(FakeUnit::with(|it| it.entries_per_cycle = 400));
     let (mut taken, mut logged) = (0, 0_u64);
     for _ in 0..1_000 {
         for _ in 0..50 {
@@ -284,10 +269,7 @@ fn a_log_without_end_is_bounded_counted_and_an_error() {
 
 #[test]
 fn entries_that_were_gone_before_they_could_be_read_are_an_error_unless_they_are_history() {
-    let mut unit = FakeUnit {
-        oldest: 40,
-        ..FakeUnit::default()
-    };
+    let mut unit = FakeUnit::with(|it| it.oldest = 40);
     unit.log_event(1);
     let mut bench = bench(unit);
     bench.run_ms(4_000);

@@ -27,7 +27,7 @@ pub struct CabDeskFaults {
 }
 
 /// Sets the generators of faults apart from all others of the bench.
-const FAULTS: u64 = 0xFA01_75ED;
+const FAULT_SEED: u64 = 0xFA01_75ED;
 /// Voltage of a broken potentiometer, V: its supply or nothing.
 const SUPPLY_V: f64 = 10.0;
 
@@ -69,7 +69,7 @@ impl Injected {
     pub fn new(seed: u64) -> Self {
         Self {
             modes: Vec::new(),
-            random: Random::new(seed ^ FAULTS),
+            random: Random::new(seed ^ FAULT_SEED),
             from: Instant::ZERO,
         }
     }

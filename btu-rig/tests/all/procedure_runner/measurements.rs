@@ -1,10 +1,10 @@
 //! Measurements of a step and their limits.
 
-use btu_rig::procedure::{RunOptions, Verdict};
+use btu_rig::procedure::Verdict;
 use protocol::message::SelfTest;
 use protocol::signal::Signal;
 
-use super::stand_in::{HEAD, run, run_with};
+use super::stand_in::{HEAD, options, run, run_with};
 
 #[test]
 fn a_time_is_measured_from_change_to_change() {
@@ -99,10 +99,7 @@ step('c', expect = becomes(speed, above = measured('a/v')))"
     assert_eq!(outcome.steps()[1].measurements[0].low, Some(11.0));
 
     // Without the step that measures it, the limit is missing: an error, not a pass.
-    let options = RunOptions {
-        chosen: Some(vec![1]),
-        ..RunOptions::default()
-    };
+    let options = options(|it| it.chosen = Some(vec![1]));
     let outcome = run_with(&script, options, |_| {});
     let message = "w: a limit refers to a measurement without a value";
     assert_eq!(outcome.summary(), [("b", Verdict::Error, message)]);

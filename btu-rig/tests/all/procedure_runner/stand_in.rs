@@ -158,6 +158,13 @@ impl Outcome {
     }
 }
 
+/// Options as ever but for this.
+pub fn options(change: impl FnOnce(&mut RunOptions)) -> RunOptions {
+    let mut options = RunOptions::default();
+    change(&mut options);
+    options
+}
+
 pub fn run_with(
     script: &str,
     options: RunOptions,

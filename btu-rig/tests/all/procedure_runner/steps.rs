@@ -1,12 +1,12 @@
 //! The order of steps: setup, conditions, repetitions, choice of steps, prompts.
 
 use btu_rig::procedure::link_trouble::LinkTrouble;
-use btu_rig::procedure::{PromptPolicy, RunEvent, RunOptions, Verdict};
+use btu_rig::procedure::{PromptPolicy, RunEvent, Verdict};
 use btu_rig::stimulus::Stimulus;
 use protocol::Instant;
 use protocol::signal::Signal;
 
-use super::stand_in::{HEAD, OFF, ON, Outcome, run, run_round, run_with};
+use super::stand_in::{HEAD, OFF, ON, Outcome, options, run, run_round, run_with};
 
 #[test]
 fn setup_steps_and_clean_up_run_in_order_and_outputs_end_safe() {
@@ -67,10 +67,7 @@ fn every_repetition_must_pass() {
     assert_eq!(outcome.finished().0, Verdict::Failed);
 
     // The second of two repetitions of the procedure.
-    let options = RunOptions {
-        repeat: 2,
-        ..RunOptions::default()
-    };
+    let options = options(|it| it.repeat = 2);
     let outcome = run_round(&script, options, 1, |_| {});
     assert_eq!(
         turns(&outcome),
@@ -83,10 +80,7 @@ fn every_repetition_must_pass() {
 #[test]
 fn a_step_whose_condition_has_no_data_can_stop_the_procedure() {
     let script = format!("{HEAD}look('a', when = is_(limit, above = kmh(3)))\nlook('b')");
-    let options = RunOptions {
-        stop_on_fail: true,
-        ..RunOptions::default()
-    };
+    let options = options(|it| it.stop_on_fail = true);
     let outcome = run_with(&script, options, |_| {});
     let verdicts: Vec<_> = outcome.steps().iter().map(|s| s.verdict).collect();
     assert_eq!(verdicts, [Verdict::Error, Verdict::Skipped]);
@@ -106,10 +100,7 @@ fn a_failed_step_can_stop_the_procedure() {
         "not run, \"a\" did not pass"
     );
     let script = script.replace(", on_fail = 'stop'", "");
-    let options = RunOptions {
-        stop_on_fail: true,
-        ..RunOptions::default()
-    };
+    let options = options(|it| it.stop_on_fail = true);
     let outcome = run_with(&script, options, |_| {});
     assert_eq!(outcome.steps()[1].verdict, Verdict::Skipped);
 }
@@ -117,10 +108,7 @@ fn a_failed_step_can_stop_the_procedure() {
 #[test]
 fn nothing_chosen_is_an_error() {
     for chosen in [vec![], vec![7]] {
-        let options = RunOptions {
-            chosen: Some(chosen),
-            ..RunOptions::default()
-        };
+        let options = options(|it| it.chosen = Some(chosen));
         let outcome = run_with(&format!("{HEAD}look('a')"), options, |_| {});
         assert_eq!(outcome.finished(), (Verdict::Error, "no step to run"));
         assert_eq!(outcome.fake.made_safe, 1);
@@ -140,10 +128,7 @@ fn prompts_need_an_operator() {
         (None, Verdict::Error),
     ];
     for (answer, verdict) in answers {
-        let options = RunOptions {
-            prompts: PromptPolicy::Ask,
-            ..RunOptions::default()
-        };
+        let options = options(|it| it.prompts = PromptPolicy::Ask);
         let outcome = run_with(&script, options, |world| {
             if let (1000, Some(yes)) = (world.ms(), answer) {
                 world.runner.answer(yes);
@@ -161,10 +146,7 @@ fn an_answer_is_for_one_question() {
         "{HEAD}step('a', do = [prompt('One?', within = s(5)), prompt('Two?', within = s(5))])\n\
          step('b', do = prompt('Three?', within = s(5)))"
     );
-    let options = RunOptions {
-        prompts: PromptPolicy::Ask,
-        ..RunOptions::default()
-    };
+    let options = options(|it| it.prompts = PromptPolicy::Ask);
     let outcome = run_with(&script, options, |world| {
         if [1000, 2000].contains(&world.ms()) {
             world.runner.answer(true);

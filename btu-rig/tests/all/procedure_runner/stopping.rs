@@ -1,9 +1,9 @@
 //! Stop, pause, time limits and problems: clean-up always runs and outputs always end safe.
 
 use btu_rig::procedure::link_trouble::LinkTrouble;
-use btu_rig::procedure::{RunEvent, RunOptions, Verdict};
+use btu_rig::procedure::{RunEvent, Verdict};
 
-use super::stand_in::{HEAD, OFF, ON, run, run_with};
+use super::stand_in::{HEAD, OFF, ON, options, run, run_with};
 
 #[test]
 fn a_step_that_runs_too_long_ends_as_an_error_before_clean_up() {
@@ -119,10 +119,7 @@ fn a_procedure_can_be_left_between_two_steps() {
     let script = format!(
         "{HEAD}step('a', expect = holds(eb, 'released', for_ = ms(50)))\nlook('b')\nlook('c')"
     );
-    let options = RunOptions {
-        one_by_one: true,
-        ..RunOptions::default()
-    };
+    let options = options(|it| it.one_by_one = true);
     let outcome = run_with(&script, options.clone(), |world| {
         if world.ms() == 20 {
             world.runner.leave();

@@ -21,9 +21,7 @@ impl Store {
     pub fn import(&self, from: &Path) -> Result<MergeCounts, StoreError> {
         let same = |path: &Path| std::fs::canonicalize(path).ok();
         if same(from).is_some() && same(from) == same(self.path()) {
-            return Err(StoreError::SameFile {
-                path: from.to_path_buf(),
-            });
+            return Err(StoreError::SameFile(from.to_path_buf()));
         }
         // Opening checks that the schema version is ours, and restricts the file's own SQL.
         let other = Store::open_read_only(from)?;
@@ -40,7 +38,7 @@ impl Store {
     /// Adds all rows of this file to another one, which is created if need be.
     pub fn export(&self, to: &Path, options: OpenOptions) -> Result<MergeCounts, StoreError> {
         match AtomicFile::can_be_made(to) {
-            Err(StoreError::TargetExists { .. }) => {}
+            Err(StoreError::TargetExists(_)) => {}
             made => made?,
         }
         let target = Store::open(to, options)?;

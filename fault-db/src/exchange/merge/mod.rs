@@ -20,10 +20,7 @@ use crate::history::event_graph::{fault_of, settle};
 use crate::history::recurrence::HighWaterMark;
 use crate::id::Id;
 use crate::seal::{BY_IMPORT, known_heads};
-use trust::{
-    event_mismatch, is_same, is_unwritten_remainder, note_mismatch, recordings_mismatch,
-    seal_mismatch, trace_mismatch,
-};
+use trust::{is_same, is_unwritten_remainder, seal_mismatch};
 
 /// The result of a merge.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -218,7 +215,7 @@ impl<'a> Merge<'a> {
         })?;
         let theirs = self.theirs;
         if let (Some((ours, true)), Ok(id)) = (known, entry.id[..].try_into()) {
-            if !is_same(self.ours, ours, theirs, entry.seq)? {
+            if !is_same(self.ours, ours, theirs, entry)? {
                 let id = Id::from_bytes(id);
                 self.different_runs.insert(id);
                 (self.counts.different).push(Difference { what: "run", id });
@@ -231,10 +228,10 @@ impl<'a> Merge<'a> {
             set.run(theirs, entry.seq)?;
             let reason = if refers_to_nothing {
                 Some("a step or fault it speaks of is not there".to_owned())
-            } else if known.is_some() && is_unwritten_remainder(theirs, entry.seq)? {
+            } else if known.is_some() && is_unwritten_remainder(theirs, entry)? {
                 None
             } else {
-                seal_mismatch(theirs, entry.seq)?
+                seal_mismatch(theirs, entry)?
             };
             match reason {
                 Some(reason) => Err(Refusal::of("run", shown_id(&entry.id), reason)),
@@ -254,14 +251,7 @@ impl<'a> Merge<'a> {
         let theirs = self.theirs;
         let refused = set.whole(|set| {
             set.read(theirs, TableId::Recording, entry.seq)?;
-            match !set.refused.is_empty() {
-                true => Ok(()),
-                false => fits(
-                    TableId::Recording,
-                    entry,
-                    recordings_mismatch(theirs, entry.seq)?,
-                ),
-            }
+            fits(theirs, set, TableId::Recording, entry)
         })?;
         if let Some(refusal) = refused {
             let what = format!("recordings of run {}", shown_id(&entry.id));
@@ -270,11 +260,25 @@ impl<'a> Merge<'a> {
         Ok(())
     }
 
-    /// Whether the entry is here already: it stays as it is, and the other file's seal of it is compared with it.
-    fn is_known(&self, of: TableId, entry: &Entry) -> SqlResult<bool> {
+    /// Reads an event, note or trace. One that is here already stays as it is, and the other file's seal of
+    /// it is compared with it; another one must fit its seal there.
+    fn take_sealed(
+        &mut self,
+        set: &mut ChangeSet,
+        of: TableId,
+        entry: &Entry,
+        read: impl FnOnce(&mut ChangeSet, &Backend) -> SqlResult<()>,
+    ) -> SqlResult<bool> {
+        let theirs = self.theirs;
         let known = format!("SELECT 1 FROM {} WHERE id = ?1", of.table().name);
-        let known = (self.ours).first(&known, &values![&entry.id[..]], |_| Ok(()))?;
-        Ok(known.is_some())
+        let is_known = self.ours.has(&known, &values![&entry.id[..]])?;
+        self.take(set, of, entry, |set| {
+            read(set, theirs)?;
+            match is_known {
+                true => Ok(()),
+                false => fits(theirs, set, of, entry),
+            }
+        })
     }
 
     /// Applies the other ids that a fault has there.
@@ -298,22 +302,12 @@ impl<'a> Merge<'a> {
     }
 
     fn event(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
-        let theirs = self.theirs;
-        let is_known = self.is_known(TableId::Event, entry)?;
         let here = self.fault_here(entry.parent)?;
-        if here == LocalFault::LeftOut {
-            return Ok(false);
-        }
-        self.take(set, TableId::Event, entry, |set| {
-            match here {
-                LocalFault::Known => set.read(theirs, TableId::Event, entry.seq)?,
-                _ => set.event(theirs, entry.seq)?,
-            }
-            match is_known || !set.refused.is_empty() {
-                true => Ok(()),
-                false => fits(TableId::Event, entry, event_mismatch(theirs, entry)?),
-            }
-        })
+        Ok(here != LocalFault::LeftOut
+            && self.take_sealed(set, TableId::Event, entry, |set, theirs| match here {
+                LocalFault::Known => set.read(theirs, TableId::Event, entry.seq),
+                _ => set.event(theirs, entry.seq),
+            })?)
     }
 
     /// Whether a fault of theirs is here: it was, or it came with a run.
@@ -325,10 +319,7 @@ impl<'a> Merge<'a> {
         let ids = (self.theirs).select(ids, &values![fault], |row| row.get::<Vec<u8>>(0))?;
         let mut found = LocalFault::SeenByNobody;
         let seen = "SELECT 1 FROM fault_occurrence WHERE fault = ?1";
-        if (self.theirs)
-            .first(seen, &values![fault], |_| Ok(()))?
-            .is_some()
-        {
+        if self.theirs.has(seen, &values![fault])? {
             found = LocalFault::LeftOut;
         }
         for id in ids {
@@ -343,37 +334,26 @@ impl<'a> Merge<'a> {
     }
 
     fn note(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
-        let theirs = self.theirs;
-        let is_known = self.is_known(TableId::Note, entry)?;
-        let read = |set: &mut ChangeSet| {
-            set.read(theirs, TableId::Note, entry.seq)?;
-            match is_known || !set.refused.is_empty() {
-                true => Ok(()),
-                false => fits(TableId::Note, entry, note_mismatch(theirs, entry)?),
-            }
-        };
         Ok(!self.refused_runs.contains(&entry.parent)
-            && self.take(set, TableId::Note, entry, read)?)
+            && self.take_sealed(set, TableId::Note, entry, |set, theirs| {
+                set.read(theirs, TableId::Note, entry.seq)
+            })?)
     }
 
     fn trace(&mut self, set: &mut ChangeSet, entry: &Entry) -> SqlResult<bool> {
-        let theirs = self.theirs;
-        let is_known = self.is_known(TableId::Trace, entry)?;
-        let read = |set: &mut ChangeSet| {
-            set.trace(theirs, entry.seq)?;
-            match is_known || !set.refused.is_empty() {
-                true => Ok(()),
-                false => fits(TableId::Trace, entry, trace_mismatch(theirs, entry)?),
-            }
-        };
         Ok(!self.refused_runs.contains(&entry.parent)
-            && self.take(set, TableId::Trace, entry, read)?)
+            && self.take_sealed(set, TableId::Trace, entry, |set, theirs| {
+                set.trace(theirs, entry.seq)
+            })?)
     }
 }
 
-/// Refuses an entry for the reason why it does not fit its seal, if there is one.
-fn fits(of: TableId, entry: &Entry, why: Option<String>) -> SqlResult<()> {
-    match why {
+/// Refuses an entry that does not fit its seal, unless a row of it is refused already.
+fn fits(theirs: &Backend, set: &ChangeSet, of: TableId, entry: &Entry) -> SqlResult<()> {
+    if !set.refused.is_empty() {
+        return Ok(());
+    }
+    match trust::mismatch(theirs, of, entry)? {
         Some(reason) => Err(Refusal::of(of.table().name, shown_id(&entry.id), reason)),
         None => Ok(()),
     }

@@ -3,7 +3,7 @@
 
 use super::{Entry, Merge};
 use crate::backend::{Backend, SqlError, SqlResult, values};
-use crate::exchange::tables::TABLES;
+use crate::exchange::tables::{TABLES, TableId};
 use crate::id::Id;
 use crate::seal::events_and_notes::{EventPayload, event_digest, is_of_its_fault, note_digest};
 use crate::seal::run::{self, RunPayload};
@@ -46,93 +46,87 @@ impl Merge<'_> {
 
 /// Whether a run is only the remainder that a busy file could not take: ended without a seal, and not passed.
 /// Such a run is sealed as found in the file where it began.
-pub(super) fn is_unwritten_remainder(theirs: &Backend, run: i64) -> SqlResult<bool> {
-    let rest =
-        "SELECT 1 FROM run r WHERE r.seq = ?1 AND r.verdict IN ('error', 'failed', 'aborted')
-         AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = r.id AND s.what = 'run')";
-    Ok(theirs.first(rest, &values![run], |_| Ok(()))?.is_some())
+pub(super) fn is_unwritten_remainder(theirs: &Backend, run: &Entry) -> SqlResult<bool> {
+    let rest = "SELECT 1 FROM run WHERE seq = ?1 AND verdict IN ('error', 'failed', 'aborted')";
+    Ok(theirs.has(rest, &values![run.seq])? && seals(theirs, "run", &run.id)?.is_empty())
 }
 
 /// Difference between a run and its seals, if there is one.
-pub(super) fn seal_mismatch(theirs: &Backend, run: i64) -> SqlResult<Option<String>> {
-    let is_over = "SELECT 1 FROM run WHERE seq = ?1 AND verdict IS NOT NULL";
-    let is_over = theirs.first(is_over, &values![run], |_| Ok(()))?.is_some();
-    let sealed = seals(theirs, run)?;
-    let reason = match (is_over, sealed.is_empty()) {
+pub(super) fn seal_mismatch(theirs: &Backend, run: &Entry) -> SqlResult<Option<String>> {
+    let sealed = seals(theirs, "run", &run.id)?;
+    let reason = match (theirs.has(IS_OVER, &values![run.seq])?, sealed.is_empty()) {
         (false, true) => return Ok(None),
         (false, false) => "it has a seal and no verdict: the verdict was taken away",
         (true, true) => "it has a verdict and no seal: the seal was taken away",
-        (true, false) => {
-            let mut fits = true;
-            for seal in sealed {
-                fits &= run::digest(theirs, run, &seal.payload)? == seal.digest[..];
-            }
-            if fits {
-                return Ok(None);
-            }
-            CHANGED
-        }
+        (true, false) => return Ok(changed(fits_all(theirs, run.seq, &sealed)?)),
     };
     Ok(Some(reason.to_owned()))
 }
 
+const IS_OVER: &str = "SELECT 1 FROM run WHERE seq = ?1 AND verdict IS NOT NULL";
+
 /// Reason for refusing a row that does not fit its seal.
 const CHANGED: &str = "it was changed after it was sealed";
 
-/// Why an event of theirs is not taken, if it does not fit a seal that it has there.
-pub(super) fn event_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option<String>> {
-    for (payload, digest) in seals_of(theirs, "event", &entry.id)? {
-        let fits = event_digest(theirs, entry.seq, &payload)? == digest[..];
-        if !fits || !is_of_its_fault(theirs, entry.seq, EventPayload::of(&payload).as_ref())? {
-            return Ok(Some(CHANGED.to_owned()));
-        }
-    }
-    Ok(None)
+fn changed(fits: bool) -> Option<String> {
+    (!fits).then(|| CHANGED.to_owned())
 }
 
-/// Why a note of the other file is not taken, if the note does not fit a seal there.
-pub(super) fn note_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option<String>> {
-    for (payload, digest) in seals_of(theirs, "note", &entry.id)? {
-        if note_digest(theirs, entry.seq, &payload)? != digest[..] {
-            return Ok(Some(CHANGED.to_owned()));
+/// Why an event, note or trace of theirs, or the recordings of a run, which come together, are not taken, if
+/// they do not fit a seal there.
+pub(super) fn mismatch(theirs: &Backend, of: TableId, entry: &Entry) -> SqlResult<Option<String>> {
+    let (seq, mut fits) = (entry.seq, true);
+    match of {
+        TableId::Event => {
+            for Seal { payload, digest } in seals(theirs, "event", &entry.id)? {
+                let said = EventPayload::of(&payload);
+                fits &= event_digest(theirs, seq, &payload)? == digest[..]
+                    && is_of_its_fault(theirs, seq, said.as_ref())?;
+            }
         }
+        TableId::Note => {
+            for Seal { payload, digest } in seals(theirs, "note", &entry.id)? {
+                fits &= note_digest(theirs, seq, &payload)? == digest[..];
+            }
+        }
+        TableId::Trace => fits = trace_fits(theirs, entry)?,
+        _ => return recordings_mismatch(theirs, entry),
     }
-    Ok(None)
+    Ok(changed(fits))
 }
 
-/// Why a trace of the other file is not taken, if its digest differs from the one in the seal of
-/// its run.
-pub(super) fn trace_mismatch(theirs: &Backend, entry: &Entry) -> SqlResult<Option<String>> {
-    let (seq, run) = (entry.seq, entry.parent);
-    let read = "SELECT id, recording FROM trace WHERE seq = ?1";
-    let read = theirs.first(read, &values![seq], |row| {
-        Ok((row.get::<Id>(0)?, row.get::<Option<i64>>(1)?))
+/// Whether a trace has the digest that the seals of its run list.
+fn trace_fits(theirs: &Backend, entry: &Entry) -> SqlResult<bool> {
+    let read = "SELECT t.id, t.recording, r.id FROM trace t JOIN run r ON r.seq = t.run
+        WHERE t.seq = ?1";
+    let read = theirs.first(read, &values![entry.seq], |row| {
+        let (id, run): (Id, Vec<u8>) = (row.get(0)?, row.get(2)?);
+        Ok((id, row.get::<Option<i64>>(1)?, run))
     })?;
-    let (Some((id, recording)), sealed) = (read, payloads(theirs, run)?) else {
-        return Ok(None);
+    let Some((id, recording, run)) = read else {
+        return Ok(true);
     };
-    for payload in sealed {
+    let mut fits = true;
+    for payload in payloads(theirs, &run)? {
         let said = payload.traces.into_iter().find(|t| t.id == id.to_string());
-        let fits = match said {
+        fits &= match said {
             Some(said) => {
-                said.recording == recording && hex(&trace::digest(theirs, seq)?) == said.sha256
+                said.recording == recording
+                    && hex(&trace::digest(theirs, entry.seq)?) == said.sha256
             }
             None => false,
         };
-        if !fits {
-            return Ok(Some(CHANGED.to_owned()));
-        }
     }
-    Ok(None)
+    Ok(fits)
 }
 
-/// Why the recordings of a run, which come together, are not taken, if one differs from its seal.
-pub(super) fn recordings_mismatch(theirs: &Backend, run: i64) -> SqlResult<Option<String>> {
-    let sealed = payloads(theirs, run)?;
-    for ordinal in trace::recordings(theirs, run)? {
+/// The recording of a run that differs from its seal, if there is one.
+fn recordings_mismatch(theirs: &Backend, run: &Entry) -> SqlResult<Option<String>> {
+    let sealed = payloads(theirs, &run.id)?;
+    for ordinal in trace::recordings(theirs, run.seq)? {
         for payload in &sealed {
             let said = payload.recordings.iter().find(|r| r.ordinal == ordinal);
-            let sha256 = hex(&trace::recording_digest(theirs, run, ordinal)?);
+            let sha256 = hex(&trace::recording_digest(theirs, run.seq, ordinal)?);
             if said.is_none_or(|said| said.sha256 != sha256) {
                 return Ok(Some(format!("recording {ordinal}: {CHANGED}")));
             }
@@ -142,65 +136,53 @@ pub(super) fn recordings_mismatch(theirs: &Backend, run: i64) -> SqlResult<Optio
 }
 
 /// Traces and recordings that the seals of a run list.
-fn payloads(theirs: &Backend, run: i64) -> SqlResult<Vec<RunPayload>> {
-    let sealed = seals(theirs, run)?;
+fn payloads(theirs: &Backend, run: &[u8]) -> SqlResult<Vec<RunPayload>> {
+    let sealed = seals(theirs, "run", run)?;
     let payloads = sealed
         .iter()
         .filter_map(|seal| RunPayload::of(&seal.payload));
     Ok(payloads.collect())
 }
 
-fn seals_of(theirs: &Backend, what: &str, id: &[u8]) -> SqlResult<Vec<(String, Vec<u8>)>> {
-    theirs.select(
-        "SELECT says, digest FROM seal WHERE what = ?1 AND id = ?2",
-        &values![what, id],
-        |row| Ok((row.get(0)?, row.get(1)?)),
-    )
-}
-
-/// A seal of a run. A run that came without one has one of each file that sealed it as found.
+/// A seal of a row. A run that came without one has one of each file that sealed it as found.
 #[derive(PartialEq, Eq)]
 struct Seal {
     payload: String,
     digest: Vec<u8>,
 }
 
-fn seals(backend: &Backend, run: i64) -> SqlResult<Vec<Seal>> {
-    backend.select(
-        "SELECT s.says, s.digest FROM run r JOIN seal s ON s.id = r.id AND s.what = 'run'
-         WHERE r.seq = ?1",
-        &values![run],
-        |row| {
-            Ok(Seal {
-                payload: row.get(0)?,
-                digest: row.get(1)?,
-            })
-        },
-    )
+fn seals(backend: &Backend, what: &str, id: &[u8]) -> SqlResult<Vec<Seal>> {
+    let sealed = "SELECT says, digest FROM seal WHERE what = ?1 AND id = ?2";
+    backend.select(sealed, &values![what, id], |row| {
+        let (payload, digest) = (row.get(0)?, row.get(1)?);
+        Ok(Seal { payload, digest })
+    })
 }
 
-/// Whether a run that is finished here is the same in the other file. One copied while it was running may
-/// well hold less.
-pub(super) fn is_same(ours: &Backend, here: i64, theirs: &Backend, there: i64) -> SqlResult<bool> {
-    let is_over = "SELECT 1 FROM run WHERE seq = ?1 AND (verdict IS NOT NULL
-        OR EXISTS (SELECT 1 FROM seal s WHERE s.id = run.id AND s.what = 'run'))";
-    if theirs
-        .first(is_over, &values![there], |_| Ok(()))?
-        .is_none()
-    {
+fn fits_all(backend: &Backend, run: i64, seals: &[Seal]) -> SqlResult<bool> {
+    for seal in seals {
+        if run::digest(backend, run, &seal.payload)? != seal.digest[..] {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Whether a run that is finished here, under the number `here`, is the same in the other file. One copied
+/// while it was running may well hold less.
+pub(super) fn is_same(ours: &Backend, here: i64, theirs: &Backend, run: &Entry) -> SqlResult<bool> {
+    let mut sealed = seals(theirs, "run", &run.id)?;
+    if sealed.is_empty() && !theirs.has(IS_OVER, &values![run.seq])? {
         return Ok(true);
     }
-    let sealed = seals(theirs, there)?;
     // Entries of an imported log may stand under different runs here and there; each side is held to its seal.
     let of_log = |seal: &Seal| seal.payload.contains("\"entries\"");
     if sealed.iter().any(of_log) {
-        for seal in &sealed {
-            if run::digest(theirs, there, &seal.payload)? != seal.digest[..] {
-                return Ok(false);
-            }
+        if !fits_all(theirs, run.seq, &sealed)? {
+            return Ok(false);
         }
     } else {
-        match run::digest(theirs, there, "") {
+        match run::digest(theirs, run.seq, "") {
             Ok(theirs) if theirs == run::digest(ours, here, "")? => {}
             // No text, or of another type.
             Ok(_) | Err(SqlError::Value { .. }) => return Ok(false),
@@ -208,11 +190,7 @@ pub(super) fn is_same(ours: &Backend, here: i64, theirs: &Backend, there: i64) -
         }
     }
     // A row changed by hand still has its old seal; a row sealed again by hand has another digest.
-    let known = seals(ours, here)?;
-    for seal in sealed {
-        if !known.contains(&seal) && run::digest(ours, here, &seal.payload)? != seal.digest[..] {
-            return Ok(false);
-        }
-    }
-    Ok(true)
+    let known = seals(ours, "run", &run.id)?;
+    sealed.retain(|seal| !known.contains(seal));
+    fits_all(ours, here, &sealed)
 }

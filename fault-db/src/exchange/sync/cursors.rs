@@ -60,8 +60,7 @@ pub(super) fn load(file: &Backend, server_id: Id) -> SqlResult<Cursors> {
 
 /// Whether the file has ever been synced with any server.
 pub(super) fn has_met_a_server(file: &Backend) -> SqlResult<bool> {
-    let found = file.first("SELECT 1 FROM sync_server LIMIT 1", &[], |_| Ok(()))?;
-    Ok(found.is_some())
+    file.has("SELECT 1 FROM sync_server LIMIT 1", &[])
 }
 
 /// Stores the cursors in the file.

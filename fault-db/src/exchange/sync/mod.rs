@@ -47,9 +47,7 @@ impl Store {
         let mut file_id = self.file_id()?;
         let wire = server.server()?;
         let id = server_id(server.backend()).map_err(|error| server.failed(DOING, error))?;
-        let id = id.ok_or_else(|| StoreError::ServerForeign {
-            path: server.path().to_path_buf(),
-        })?;
+        let id = id.ok_or_else(|| StoreError::ServerForeign(server.path().to_path_buf()))?;
         let known = self.change(DOING, |file| {
             let prepare = || {
                 outbox::enqueue_interrupted_runs(self)?;

@@ -194,10 +194,7 @@ pub(super) fn check_traces_and_recordings(
             None => {
                 // Two laptops that read the same record of a unit: the seal of the other's run covers it.
                 let elsewhere = "SELECT 1 FROM trace WHERE id = ?1";
-                if backend
-                    .first(elsewhere, &values![of], |_| Ok(()))?
-                    .is_none()
-                {
+                if !backend.has(elsewhere, &values![of])? {
                     summary.missing.insert((of, None), came);
                 }
             }
@@ -245,7 +242,7 @@ fn check_begun(
 ) -> SqlResult<()> {
     let copied = "SELECT 1 FROM seal WHERE origin = ?1 AND what = 'copied' AND ordinal = 1";
     let is_copy = match own {
-        Some(own) => backend.first(copied, &values![own], |_| Ok(()))?.is_some(),
+        Some(own) => backend.has(copied, &values![own])?,
         None => false,
     };
     if !is_begun && !is_copy {

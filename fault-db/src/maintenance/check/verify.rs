@@ -152,8 +152,7 @@ impl<'a> Look<'a> {
                     };
                     let id = statement.id.parse::<Id>().unwrap_or(group);
                     let there = format!("SELECT 1 FROM {table} WHERE id = ?1");
-                    let there = self.backend.first(&there, &values![id], |_| Ok(()))?;
-                    if there.is_none() {
+                    if !self.backend.has(&there, &values![id])? {
                         self.change(format!("{} {id} was taken out", statement.what));
                     }
                     self.found.signatures.push(statement);

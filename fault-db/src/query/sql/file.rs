@@ -38,9 +38,7 @@ pub(super) fn answer(
         .collect();
     let answer = read(&mut statement, bounds.rows).map_err(|error| match error.sqlite_error() {
         Some(_) => failed_query(store, error),
-        None => StoreError::QueryFailed {
-            reason: error.to_string(),
-        },
+        None => StoreError::QueryFailed(error.to_string()),
     })?;
     let Some((rows, truncated)) = answer else {
         return Err(exceeds(QueryLimit::Row));
@@ -58,9 +56,7 @@ fn failed_query(store: &Store, error: rusqlite::Error) -> StoreError {
         return exceeds(limit);
     }
     match store.failed("answering a query", error) {
-        StoreError::Sqlite { source, .. } => StoreError::QueryFailed {
-            reason: source.to_string(),
-        },
+        StoreError::Sqlite { source, .. } => StoreError::QueryFailed(source.to_string()),
         other => other,
     }
 }
@@ -82,9 +78,7 @@ fn prepare_single<'a>(conn: &'a Connection, sql: &str) -> Result<Statement<'a>, 
         Some(ErrorCode::AuthorizationForStatementDenied) => refused("it would do more than read"),
         _ => match limit_of(&error) {
             Some(limit) => exceeds(limit),
-            None => StoreError::QueryFailed {
-                reason: error.to_string(),
-            },
+            None => StoreError::QueryFailed(error.to_string()),
         },
     };
     let statement = batch

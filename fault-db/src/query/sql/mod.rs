@@ -98,12 +98,10 @@ impl Store {
 }
 
 fn exceeds(limit: QueryLimit) -> StoreError {
-    StoreError::QueryExceeds { limit }
+    StoreError::QueryExceeds(limit)
 }
 
 /// The error for a statement that does more than read.
 fn refused(reason: &str) -> StoreError {
-    StoreError::QueryRefused {
-        reason: reason.to_owned(),
-    }
+    StoreError::QueryRefused(reason.to_owned())
 }

@@ -73,9 +73,9 @@ pub(super) fn answer(
     };
     let rows = rows.into_iter().collect::<Result<_, _>>();
     let rows = rows.map_err(|error| match error {
-        SqlError::Value { column, reason } => StoreError::QueryFailed {
-            reason: format!("column {}: {reason}", columns[column]),
-        },
+        SqlError::Value { column, reason } => {
+            StoreError::QueryFailed(format!("column {}: {reason}", columns[column]))
+        }
         other => StoreError::from_sql(path, DOING, other),
     })?;
     Ok(QueryResult {
@@ -114,12 +114,8 @@ fn classify(path: &Path, error: postgres::Error) -> StoreError {
             Some(said) if said.message().contains("multiple commands") => {
                 refused("there is a second statement")
             }
-            Some(said) => StoreError::QueryFailed {
-                reason: said.message().to_owned(),
-            },
-            None => StoreError::QueryFailed {
-                reason: source.to_string(),
-            },
+            Some(said) => StoreError::QueryFailed(said.message().to_owned()),
+            None => StoreError::QueryFailed(source.to_string()),
         },
         other => other,
     }

@@ -18,9 +18,9 @@ use fault_db::{QueryBounds, QueryResult, SqlValue, Store};
 use serde::{Deserialize, Serialize};
 
 use partition::Partition;
-use ptu_runs::data;
 use ptu_runs::failure::{Failure, FileTrouble, Why};
 use ptu_runs::new_file::kind;
+use ptu_runs::whole_file;
 use views::{VIEWS, View};
 
 /// File that lists the content of a folder's partitions, so that the next export need not read
@@ -87,7 +87,7 @@ pub fn export_history(store: &Store, to: &Path) -> Result<Exported, Failure> {
                 if let Some(folder) = file.parent() {
                     std::fs::create_dir_all(folder).map_err(cannot)?;
                 }
-                data::write(&file, kind::PARQUET, bytes)?;
+                whole_file::write(&file, kind::PARQUET, bytes)?;
                 done.written += 1;
             }
             if view.is_final {
@@ -98,9 +98,9 @@ pub fn export_history(store: &Store, to: &Path) -> Result<Exported, Failure> {
         known.retain(|month, _| there.contains(month));
         done.removed += remove_others(&folder, &there).map_err(cannot)?;
     }
-    data::write_text(&to.join("views.sql"), views_sql())?;
+    whole_file::write_text(&to.join("views.sql"), views_sql())?;
     let known = serde_json::to_string_pretty(&known).unwrap_or_default();
-    data::write(&to.join(KNOWN), &["{"], known)?;
+    whole_file::write(&to.join(KNOWN), &["{"], known)?;
     Ok(done)
 }
 

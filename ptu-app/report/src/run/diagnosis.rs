@@ -3,7 +3,7 @@
 use super::Sheet;
 use super::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
 use crate::diagnosis::{MOST_PARTS, Possible, ranked, shown_reasons};
-use crate::words::{Language, Words, fill};
+use crate::words::{Words, fill};
 use diagnosis::Conclusion;
 use fault_db::Verdict;
 use protocol::lru::from_stored;
@@ -92,10 +92,7 @@ impl Sheet {
     /// A part by the name people use for it, with its identifier.
     pub(super) fn part(&self, lru: &str, words: &Words) -> String {
         let names = self.parts.get(lru);
-        let name = names.map(|[english, korean]| match words.language {
-            Language::English => english,
-            Language::Korean => korean,
-        });
+        let name = names.map(|[english, korean]| words.language.choose([english, korean]));
         match name {
             Some(name) if !name.eq_ignore_ascii_case(lru) => format!("{name} ({lru})"),
             None if from_stored(lru).is_none() => words.common.no_part.to_owned(),

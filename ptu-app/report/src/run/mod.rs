@@ -19,6 +19,7 @@ mod plots;
 mod settled;
 mod sources;
 mod steps;
+mod the_run;
 
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@
 
 use fault_db::{MeasurementRecord, StepRecord, Verdict};
 
-use ptu_runs::run::uncertainty_of;
+use ptu_runs::stored::uncertainty_of;
 
 use super::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 use super::sources::Sources;

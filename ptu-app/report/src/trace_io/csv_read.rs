@@ -16,8 +16,8 @@ use super::known::{Known, KnownSignals};
 use super::series::{Import, Table, check_size, in_order, plain, wrong};
 use super::times::{Columns, TimeUnit};
 use super::utf16::text;
-use ptu_runs::data::LONGEST_FILE;
 use ptu_runs::failure::{Failure, FileTrouble};
+use ptu_runs::whole_file::LONGEST_FILE;
 
 /// Longest line of a table, bytes. A line may be longer by what the CSV library reads at once.
 const MAX_LINE: u64 = 1 << 20;

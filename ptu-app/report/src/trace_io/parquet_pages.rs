@@ -93,7 +93,8 @@ struct Header {
 }
 
 impl Header {
-    /// A whole number in it, by the number of its field, in the structure of that number.
+    /// A whole number in it, by the number of its field, in the structure of that number: 5 is the header of a data
+    /// page, 7 of a dictionary, 8 of a data page of the second version.
     fn take(&mut self, within: Option<i64>, field: i64, number: i64) {
         match (within, field) {
             (None, 1) => self.kind = number,

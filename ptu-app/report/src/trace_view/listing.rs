@@ -63,10 +63,7 @@ impl ListedFault {
     }
 
     pub fn said(&self, language: Language) -> &str {
-        match language {
-            Language::English => &self.said[0],
-            Language::Korean => &self.said[1],
-        }
+        language.choose([&self.said[0], &self.said[1]])
     }
 }
 

@@ -6,7 +6,7 @@ use super::wordings;
 
 wordings! {
     /// The care of the history: exchange with a server, import, backup, check.
-    Care {
+    HistoryMaintenance {
         title: "History", "이력 관리";
         file: "history file", "이력 파일";
         server: "server", "서버";
@@ -67,7 +67,7 @@ wordings! {
     }
 }
 
-impl Care {
+impl HistoryMaintenance {
     pub fn phase(&self, phase: SyncPhase) -> &'static str {
         match phase {
             SyncPhase::Sending => self.sending,

@@ -22,18 +22,20 @@ impl Language {
     pub const ALL: [Self; 2] = [Self::English, Self::Korean];
 
     pub fn name(self) -> &'static str {
+        self.choose(["English", "한국어"])
+    }
+
+    /// The English or the Korean one.
+    pub fn choose<T>(self, [english, korean]: [T; 2]) -> T {
         match self {
-            Self::English => "English",
-            Self::Korean => "한국어",
+            Self::English => english,
+            Self::Korean => korean,
         }
     }
 
     /// Code of the language on web pages (BCP 47).
     pub fn code(self) -> &'static str {
-        match self {
-            Self::English => "en",
-            Self::Korean => "ko",
-        }
+        self.choose(["en", "ko"])
     }
 
     /// The language of this process: that of `--lang` on its command line, or else the one that its user prefers, or else

@@ -29,7 +29,7 @@ mod traces;
 mod verify;
 
 pub use bench::Bench;
-pub use care::Care;
+pub use care::HistoryMaintenance;
 pub use case::Case;
 pub use common::Common;
 pub use content::take_own;
@@ -100,7 +100,7 @@ pub struct Words {
     /// Statistics of the fault history.
     pub statistics: Statistics,
     /// The care of the history.
-    pub care: Care,
+    pub care: HistoryMaintenance,
     /// Life by serial number.
     pub life: Life,
     /// Stored memory of a unit.
@@ -124,7 +124,7 @@ pub struct Words {
 impl Words {
     /// The text in this language, of the English and the Korean one.
     pub(crate) fn choose<T>(&self, both: [T; 2]) -> T {
-        self.manner(false).choose(both)
+        self.style(false).choose(both)
     }
 
     /// A text of scripts, catalogues or the runner, which is made and stored in English: a step's name, a fault mode, a
@@ -203,7 +203,7 @@ static ENGLISH: Words = Words {
     traces: Traces::ENGLISH,
     faults: Faults::ENGLISH,
     statistics: Statistics::ENGLISH,
-    care: Care::ENGLISH,
+    care: HistoryMaintenance::ENGLISH,
     life: Life::ENGLISH,
     memory: Memory::ENGLISH,
     diagnosis: Diagnosis::ENGLISH,
@@ -226,7 +226,7 @@ static KOREAN: Words = Words {
     traces: Traces::KOREAN,
     faults: Faults::KOREAN,
     statistics: Statistics::KOREAN,
-    care: Care::KOREAN,
+    care: HistoryMaintenance::KOREAN,
     life: Life::KOREAN,
     memory: Memory::KOREAN,
     diagnosis: Diagnosis::KOREAN,
@@ -253,7 +253,7 @@ mod tests {
             Traces::all(),
             Faults::all(),
             Statistics::all(),
-            Care::all(),
+            HistoryMaintenance::all(),
             Life::all(),
             Memory::all(),
             Diagnosis::all(),

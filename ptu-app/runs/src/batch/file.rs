@@ -12,10 +12,10 @@ use serde::de::{DeserializeOwned, IgnoredAny};
 
 use super::Head;
 use super::record::{Found, head_record, in_order};
-use crate::data;
 use crate::failure::{Failure, KeepTrouble, Why};
 use crate::new_file::kind;
 use crate::stdio;
+use crate::whole_file;
 
 /// A file has at most this many bytes: some twenty thousand runs of the suite.
 pub(super) const MOST_BYTES: u64 = 1 << 30;
@@ -171,7 +171,7 @@ impl RunsFile {
         let runs = found.runs.iter();
         let ordered = in_order(head, runs.map(|(name, (_, at))| (name, &bytes[at.clone()])));
         if ordered != bytes {
-            data::write(&self.path, kind::RUNS, ordered)?;
+            whole_file::write(&self.path, kind::RUNS, ordered)?;
         }
         Ok(())
     }

@@ -9,7 +9,8 @@ use protocol::config::{ControllerKind, checksum};
 use protocol::line::Line;
 
 use super::{DriveBench, Fixed, SectionChoice, Setting, drive, train, unit_config};
-use crate::data::{DataFile, ScriptsDirectory, sha256};
+use crate::data::sha256;
+use crate::data::{DataFile, ScriptsDirectory};
 use crate::failure::{DriveTrouble, Failure};
 use crate::pool;
 use crate::stdio;

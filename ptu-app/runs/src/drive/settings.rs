@@ -7,7 +7,8 @@ use protocol::config::{UnitConfig, checksum};
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use crate::data::{DataFile, ScriptsDirectory, sha256};
+use crate::data::sha256;
+use crate::data::{DataFile, ScriptsDirectory};
 use crate::failure::{Failure, RunTrouble, did_you_mean};
 
 /// One key and its new value.

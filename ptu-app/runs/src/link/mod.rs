@@ -7,9 +7,10 @@ pub mod ports;
 mod sim;
 mod wire;
 
+pub use crate::endpoint::Endpoint;
 pub use ato_under_test::serve::keep_time;
 pub use delayed::Delayed;
 pub use pace::Pace;
 pub(crate) use port_lock::open_port;
 pub use sim::{SIM_SERIAL, SimLink};
-pub use wire::{Endpoint, WireLink};
+pub use wire::WireLink;

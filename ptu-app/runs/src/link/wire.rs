@@ -12,6 +12,7 @@ use protocol::{Backlog, Duration as BenchDuration, Instant, SCAN};
 use serialport::SerialPort;
 
 use super::{Pace, open_port};
+use crate::endpoint::Endpoint;
 use crate::failure::{EndpointError, Failure, NoUnit, RunTrouble};
 use crate::places::Placed;
 
@@ -21,23 +22,6 @@ const BAUD: u32 = 115_200;
 const STEP: Duration = Duration::from_secs(10);
 /// Patience with a TCP connection.
 const CONNECT: Duration = Duration::from_secs(3);
-
-/// Where a unit is.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Endpoint {
-    /// The embedded unit.
-    Sim,
-    /// A serial port.
-    Serial {
-        path: String,
-        /// Baud rate.
-        baud: u32,
-    },
-    /// A TCP socket, `HOST:PORT`.
-    Tcp(String),
-    /// A pseudo-terminal whose unit scans once for each scan of the bench, however fast that is.
-    LockStep(String),
-}
 
 impl Endpoint {
     /// Pace of a bench with this unit, `slower` times slower than the clock where the bench follows the
@@ -89,17 +73,6 @@ impl std::str::FromStr for Endpoint {
             path: path.to_owned(),
             baud,
         })
-    }
-}
-
-impl std::fmt::Display for Endpoint {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Sim => f.write_str("sim"),
-            Self::Serial { path, baud } => write!(f, "serial:{path}@{baud}"),
-            Self::Tcp(address) => write!(f, "tcp:{address}"),
-            Self::LockStep(path) => write!(f, "lockstep:{path}"),
-        }
     }
 }
 

@@ -16,7 +16,7 @@ use crate::link::Endpoint;
 use crate::platform;
 use crate::run::{BenchContents, BenchSetup, Connected};
 use crate::stop::Stop;
-use crate::words::{Manner, Say};
+use crate::words::{Say, TextStyle};
 
 /// Settings of a replay.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ pub enum ReplayMatch {
 }
 
 impl Say for ReplayMatch {
-    fn say(&self, how: Manner) -> String {
+    fn say(&self, how: TextStyle) -> String {
         let both = match self {
             Self::Sound => [
                 "reproduced, and as the good twin: the trace shows no fault",
@@ -282,7 +282,7 @@ fn write(
         verdict,
         started_bench_us: began_us,
         bench_time_us: (trace.t0_bench_us + bench_time_us(&trace) - began_us).max(0),
-        message: likeness.say(Manner::COMMAND_LINE),
+        message: likeness.say(TextStyle::COMMAND_LINE),
         ..StepRecord::passed(0, &original.procedure, name)
     })?;
     let id = writer.trace(&[], &trace)?;

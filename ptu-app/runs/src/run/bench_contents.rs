@@ -15,7 +15,8 @@ use serde::{Deserialize, Serialize};
 
 use super::bench_setup::BenchSetup;
 use super::event::RecordedStimuli;
-use crate::data::{ScriptsDirectory, sha256};
+use crate::data::ScriptsDirectory;
+use crate::data::sha256;
 use crate::drive::{Setting, unit_config};
 use crate::failure::{Exit, Failure, RecordTrouble};
 use crate::fleet;

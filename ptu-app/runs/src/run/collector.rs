@@ -4,7 +4,7 @@
 use btu_rig::procedure::{Finding, Outside, OutsideStep, Procedure, RunEvent, StepResult, Verdict};
 use btu_rig::recorder::RecordedWindow;
 use btu_rig::rig::LinkTrouble;
-use fault_db::{Id, MeasurementRecord, RecordingRecord, StepCounter, StepCounts, StepRecord};
+use fault_db::{Id, RecordingRecord, StepCounter, StepCounts, StepRecord};
 use protocol::{Duration, Instant};
 
 use super::bench_contents::BenchContents;
@@ -14,7 +14,7 @@ use super::run_start::RunStart;
 use super::store_thread::{LinePrinter, RunStore};
 use super::trace_data::trace_data;
 use crate::failure::{Exit, Failure, Trouble, prevented_by};
-use crate::stored::{WHOLE_RUN, fault_record, kind, outside_record, stored, whole_run};
+use crate::stored::{WHOLE_RUN, fault_record, outside_record, step_record, stored, whole_run};
 
 /// Receives the events of a run while it goes on.
 pub trait Listener {
@@ -288,24 +288,9 @@ impl<'a> Collector<'a> {
         let index = self.next_index(result.verdict);
         let step = (procedure.id.clone(), result.index);
         self.counter.note(step, stored(result.verdict));
-        self.store.step(StepRecord {
-            index,
-            procedure: procedure.id.clone(),
-            kind: kind(result.kind),
-            place: Some(result.index as u32),
-            name: result.name,
-            turn: result.turn,
-            turns: result.turns,
-            verdict: stored(result.verdict),
-            started_bench_us: (self.before + Duration::from_us(result.started.as_us())).as_us()
-                as i64,
-            bench_time_us: result.bench_time.as_us() as i64,
-            message: result.findings.to_string(),
-            findings: result.findings.to_json(),
-            script_line: Some(result.line),
-            limit_source: result.limit_source,
-            measurements: result.measurements.into_iter().flat_map(records).collect(),
-        });
+        let started = self.before + Duration::from_us(result.started.as_us());
+        let record = step_record(&procedure.id, result, started.as_us() as i64);
+        self.store.step(StepRecord { index, ..record });
     }
 
     fn fault(&mut self, fault: FaultSeen) {
@@ -405,34 +390,4 @@ impl<'a> Collector<'a> {
 
 fn is_passed(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::Passed | Verdict::Skipped)
-}
-
-/// A measurement as it is stored: its uncertainty, if it has one, is a measurement of its own.
-fn records(measured: btu_rig::procedure::Measurement) -> impl Iterator<Item = MeasurementRecord> {
-    let verdict = stored(measured.verdict);
-    let unit = String::from(measured.unit);
-    let uncertainty = measured.uncertainty.map(|uncertainty| MeasurementRecord {
-        name: uncertainty_of(&measured.name),
-        value: Some(uncertainty),
-        unit: unit.clone(),
-        low: None,
-        high: None,
-        limit_source: None,
-        verdict: stored(Verdict::Passed),
-    });
-    let value = MeasurementRecord {
-        name: measured.name,
-        value: measured.value,
-        unit,
-        low: measured.low,
-        high: measured.high,
-        limit_source: measured.limit_source,
-        verdict,
-    };
-    std::iter::once(value).chain(uncertainty)
-}
-
-/// Name under which the uncertainty of a measurement is stored.
-pub fn uncertainty_of(name: &str) -> String {
-    format!("{name}, uncertainty")
 }

@@ -51,7 +51,7 @@ pub(crate) use adaptive::isolate;
 pub use bench_contents::{BenchContents, BenchFile, Stimuli};
 pub use bench_setup::{BenchSetup, Connected};
 pub use choice::{BenchChoice, check_bench_faults, check_serial, software_version};
-pub use collector::{Collector, Listener, Outcome, uncertainty_of};
+pub use collector::{Collector, Listener, Outcome};
 pub use event::{RecordedStimuli, SessionEvent};
 pub use evidence::{ClockEvidence, Evidence, InstrumentEvidence};
 pub use fault_watch::{CHECK_FAILED, EB_UNREQUESTED, FaultSeen};

@@ -12,8 +12,9 @@ use script_files::Layer;
 
 use protocol::Random;
 
-use crate::data::{self, ScriptsDirectory};
+use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, RunTrouble, Unknown, did_you_mean};
+use crate::whole_file;
 
 /// Sets the order apart from what else the same seed gives.
 const ORDER_SEQUENCE: u64 = 0x0D1C_E0F5_7E95_A3C1;
@@ -105,7 +106,7 @@ fn under(directory: &ScriptsDirectory, name: &str) -> String {
 fn outside(name: &str, all: &BTreeMap<String, String>) -> Result<(String, String), Failure> {
     let path = Path::new(name);
     if path.exists() {
-        return Ok((name.to_owned(), data::read(path)?));
+        return Ok((name.to_owned(), whole_file::read(path)?));
     }
     let known: Vec<_> = all
         .keys()

@@ -193,7 +193,7 @@ fn write(
         return Ok(None);
     };
     stop.press_because(prevented_by(&error));
-    if !matches!(error, StoreError::Locked { .. }) {
+    if !matches!(error, StoreError::Locked(_)) {
         kept.hold_all(at_hand.map(|entry| *entry).into_iter().chain(entries));
         return keep_beside((store, &writer), record, kept, Arc::new(error)).map(Some);
     }
@@ -322,7 +322,7 @@ fn retry_while_locked(
     let mut again = false;
     loop {
         match work(again) {
-            Err(error @ StoreError::Locked { .. }) if begun.elapsed() < busy_timeout.gives_up => {
+            Err(error @ StoreError::Locked(_)) if begun.elapsed() < busy_timeout.gives_up => {
                 stop.press_because(prevented_by(&error));
                 again = true;
             }

@@ -10,7 +10,8 @@ use protocol::injection::FaultCatalogue;
 use super::bench_contents::train_sha256;
 use super::bench_setup::BenchSetup;
 use super::{loading, select};
-use crate::data::{ScriptsDirectory, sha256};
+use crate::data::ScriptsDirectory;
+use crate::data::sha256;
 use crate::failure::{Failure, did_you_mean};
 
 /// Evaluated procedures, and the files they were evaluated from.

@@ -4,8 +4,7 @@ use ato_under_test::receivers::{CodeReceiver, Heard, Reception};
 use protocol::config::{SpeedCode, UnitConfig};
 
 use super::fit::Envelope;
-use super::read::Source;
-use super::receive::{ASKED_EVERY_S, Clock, MOST};
+use super::reading::{ASKED_EVERY_S, Clock, MOST, Source};
 
 /// A code that is not heard for so long has ended, s.
 const ENDS_AFTER_S: f64 = 0.3;

@@ -3,8 +3,7 @@
 use ato_under_test::receivers::{MarkerReceiver, Passed};
 use protocol::config::UnitConfig;
 
-use super::read::Source;
-use super::receive::{Clock, MOST};
+use super::reading::{Clock, MOST, Source};
 
 /// The receiver of markers.
 pub(super) struct Markers {

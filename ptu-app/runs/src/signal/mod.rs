@@ -10,6 +10,7 @@ mod markers;
 mod meter;
 mod picture;
 mod read;
+mod reading;
 #[cfg(test)]
 mod reading_tests;
 mod receive;
@@ -28,9 +29,10 @@ pub use make::{
     Made, Samples, Strength, Wave, bytes_of, make, make_tacho, reference_hz, rest_hz, samples,
 };
 pub use picture::{Columns, Picture, Span};
-pub use read::{Level, NotUnderstood, Reading, Source, Why, read, read_and_picture};
+pub use read::{read, read_and_picture};
+pub use reading::{Level, NotUnderstood, Reading, Source, Tacho, Why};
 pub use receive::Receivers;
-pub use tacho::{Tacho, read_tacho};
+pub use tacho::read_tacho;
 pub use wav::{End, Wav};
 
 /// Samples a second of what is made.

@@ -8,11 +8,11 @@ use super::codes::{Carrier, Codes};
 use super::markers::Markers;
 use super::meter::{Decimator, Meter};
 use super::picture::Picture;
-use super::read::{Level, NotUnderstood, Reading, Why};
+use super::reading::{
+    ASKED_EVERY_S, Clock, Level, MOST, MOST_CHANNELS, NotUnderstood, Reading, Why,
+};
 use super::twc::Twc;
 
-/// How often the receivers of codes are asked, s: it is most of their work.
-pub(super) const ASKED_EVERY_S: f64 = 0.1;
 /// Askings in a block.
 const ASKED_IN_BLOCK: usize = 10;
 /// What is louder than the weakest level that is decoded, and understood by no receiver, is told from this length on, s.
@@ -24,9 +24,6 @@ const MOST_UNKNOWN: usize = 32;
 const MOST_HZ: f64 = 96_000.0;
 /// Least sample rate, times the highest frequency of a signal.
 const LEAST_RATE: f64 = 2.2;
-/// Most entries of each kind in an answer.
-pub(super) const MOST: usize = 100_000;
-
 /// The receivers of all channels of a recording.
 pub struct Receivers<'a> {
     channels: Vec<Channel<'a>>,
@@ -44,7 +41,7 @@ pub struct Receivers<'a> {
 
 impl<'a> Receivers<'a> {
     /// Channels that are read at most.
-    pub const MOST_CHANNELS: usize = 8;
+    pub const MOST_CHANNELS: usize = MOST_CHANNELS;
 
     /// For so many channels with samples of this rate; with pictures of them, if somebody looks.
     pub fn new(channels: usize, sample_hz: f64, unit: &'a UnitConfig, pictures: bool) -> Self {
@@ -186,22 +183,6 @@ impl Reading {
         let by_time = |a: f64, b: f64| a.total_cmp(&b);
         (self.sources).sort_by(|a, b| by_time(a.from_s, b.from_s).then(a.channel.cmp(&b.channel)));
         (self.not_understood).sort_by(|a, b| by_time(a.from_s, b.from_s));
-    }
-}
-
-/// When the samples of a block are.
-#[derive(Clone, Copy)]
-pub(super) struct Clock {
-    /// Samples before the block.
-    before: u64,
-    sample_hz: f64,
-    pub(super) asked_every: usize,
-}
-
-impl Clock {
-    /// When the sample of this place is over, s.
-    pub(super) fn at_s(self, place: usize) -> f64 {
-        (self.before + place as u64 + 1) as f64 / self.sample_hz
     }
 }
 

@@ -5,11 +5,10 @@ use std::path::Path;
 
 use ato_under_test::receivers::SensorInput;
 use protocol::config::UnitConfig;
-use serde::Serialize;
 
 use super::meter::Meter;
-use super::read::{Level, Reading, Source, Why};
-use super::receive::{ASKED_EVERY_S, Receivers};
+use super::reading::{ASKED_EVERY_S, Level, Reading, Source, Tacho, Why};
+use super::receive::Receivers;
 use super::wav::{End, Wav};
 use crate::failure::Failure;
 
@@ -19,25 +18,6 @@ const GAP: std::ops::RangeInclusive<f64> = 1.6..=2.4;
 /// more of them the lines are noise.
 const EVEN: std::ops::RangeInclusive<f64> = 0.6..=1.6;
 const MOST_UNEVEN: f64 = 0.2;
-
-/// What the two lines of a speed sensor tell.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Tacho {
-    /// Pulses, forward and backward.
-    pub forward: u64,
-    /// Backward.
-    pub backward: u64,
-    /// Mean speed between the first pulse and the last, km/h.
-    pub mean_kmh: f64,
-    /// Slowest and fastest of all periods, without the gaps, km/h.
-    pub kmh: [f64; 2],
-    /// Line B behind line A, degrees of a period.
-    pub phase_deg: f64,
-    /// Share of the time for which line A and line B are high, %.
-    pub duty_percent: [f64; 2],
-    /// Teeth that the wheel lacks, each counted once, in however many turns.
-    pub missing_teeth: u64,
-}
 
 /// One sensor, sample by sample.
 #[derive(Default)]

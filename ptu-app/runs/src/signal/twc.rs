@@ -3,8 +3,7 @@
 use ato_under_test::receivers::{FskReceiver, Received, Tones};
 use protocol::config::UnitConfig;
 
-use super::read::Source;
-use super::receive::{Clock, MOST};
+use super::reading::{Clock, MOST, Source};
 
 /// Bytes of TWC that are farther apart are two messages, s.
 const APART_S: f64 = 0.2;

@@ -6,9 +6,9 @@ use fault_db::read_regular_file;
 use serde::{Deserialize, Serialize};
 
 use super::{CHANNELS, Side};
-use crate::data;
 use crate::failure::{Failure, SoundTrouble, Why};
 use crate::signal::FULL_SCALE_MV;
+use crate::whole_file;
 
 /// Longest file, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
@@ -78,7 +78,7 @@ impl Calibrations {
         };
         self.calibrations.retain(|of| !is_same(of));
         self.calibrations.push(new);
-        data::keep(file, self)
+        whole_file::keep(file, self)
     }
 
     pub fn of(&self, device: &str, direction: Direction, channel: Side) -> Option<&Calibration> {

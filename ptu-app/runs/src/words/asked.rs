@@ -3,8 +3,7 @@
 use btu_rig::rig::LinkTrouble;
 use fault_db::Id;
 
-use super::{EndpointError, OfUnit, Why, sentences};
-use crate::failure::Near;
+use super::{EndpointError, Near, OfUnit, Why, sentences};
 
 sentences! {
     /// Request of a person at a command line or in a window that cannot be met.

@@ -3,11 +3,11 @@
 use fault_db::{Damage, Derived, Samples, SchemaObject, SealPlace, SignatureError, WrongSignature};
 
 use super::store::in_window;
-use super::{Manner, Say, noun};
+use super::{Say, TextStyle, noun};
 use crate::clock;
 
 impl Say for Damage {
-    fn say(&self, how: Manner) -> String {
+    fn say(&self, how: TextStyle) -> String {
         how.choose([self.to_string(), korean(self)])
     }
 }

@@ -63,7 +63,7 @@ pub fn korean(trouble: &LinkTrouble) -> String {
 
 #[rustfmt::skip]
 impl super::Say for InstrumentFault {
-    fn say(&self, how: super::Manner) -> String {
+    fn say(&self, how: super::TextStyle) -> String {
         match how.korean {
             true => of_instrument(self),
             false => self.to_string(),

@@ -6,6 +6,7 @@
 mod asked;
 mod damage;
 mod link;
+mod near;
 mod nouns;
 mod refused;
 mod store;
@@ -13,28 +14,28 @@ mod warned;
 
 pub use asked::{Asked, DriveTrouble, KeepTrouble, SoundTrouble};
 pub use link::korean as link_korean;
+pub use near::{Near, did_you_mean, did_you_mean_number};
 pub use nouns::{event_kind, fault_state, noun};
 pub use refused::{
     BrokenOff, DiagnosisTrouble, EndpointError, FieldTrouble, FileTrouble, KeyTrouble, NoUnit,
     RecordTrouble, RunTrouble, Sought, Unheard, Unknown, Why, WrongCell,
 };
+pub use store::{in_place_of, store_message};
 pub use warned::{BenchNote, Differs, Warning};
 
 use fault_db::Id;
 
-use crate::failure::{Near, Trouble};
-
 /// Language and extent of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Manner {
+pub struct TextStyle {
     /// Korean instead of English.
     pub korean: bool,
     /// The text names commands and options that help.
     pub commands: bool,
 }
 
-impl Manner {
-    /// Manner of a text that no window shows.
+impl TextStyle {
+    /// Style of a text that no window shows.
     pub const COMMAND_LINE: Self = Self {
         korean: false,
         commands: true,
@@ -52,13 +53,13 @@ impl Manner {
 /// A value that stands in a sentence: a name, a number, or a sentence of its own.
 pub trait Say {
     /// Text of the value in this language, with or without commands.
-    fn say(&self, how: Manner) -> String;
+    fn say(&self, how: TextStyle) -> String;
 }
 
 macro_rules! as_it_is {
     ($($kind:ty),*) => { $(
         impl Say for $kind {
-            fn say(&self, _: Manner) -> String {
+            fn say(&self, _: TextStyle) -> String {
                 self.to_string()
             }
         }
@@ -73,24 +74,24 @@ as_it_is!(
     i64,
     f64,
     protocol::Duration,
-    crate::link::Endpoint
+    crate::endpoint::Endpoint
 );
 
 /// A word of this program, which has a translation; a `String` comes from elsewhere.
 impl Say for &'static str {
-    fn say(&self, how: Manner) -> String {
+    fn say(&self, how: TextStyle) -> String {
         how.choose([self, noun(self)]).to_owned()
     }
 }
 
 impl Say for Id {
-    fn say(&self, _: Manner) -> String {
+    fn say(&self, _: TextStyle) -> String {
         self.short().to_string()
     }
 }
 
 impl Say for Near {
-    fn say(&self, how: Manner) -> String {
+    fn say(&self, how: TextStyle) -> String {
         how.choose([format!("{self}"), format!("{self:#}")])
     }
 }
@@ -100,7 +101,7 @@ impl Say for Near {
 pub struct OfUnit(pub Option<String>);
 
 impl Say for OfUnit {
-    fn say(&self, how: Manner) -> String {
+    fn say(&self, how: TextStyle) -> String {
         self.0.as_ref().map_or_else(String::new, |unit| {
             how.choose([format!(" of unit {unit}"), format!(" (장치 {unit})")])
         })
@@ -108,7 +109,7 @@ impl Say for OfUnit {
 }
 
 impl Say for btu_rig::rig::LinkTrouble {
-    fn say(&self, how: Manner) -> String {
+    fn say(&self, how: TextStyle) -> String {
         how.choose([self.to_string(), link_korean(self)])
     }
 }
@@ -127,7 +128,7 @@ macro_rules! sentences {
             pub enum $area { $(#[doc = concat!($english $(, $tail)?)] $name $(($($kind),*))?,)* }
 
             impl $crate::words::Say for $area {
-                fn say(&self, how: $crate::words::Manner) -> String {
+                fn say(&self, how: $crate::words::TextStyle) -> String {
                     match self { $(
                         Self::$name $(($($part),*))? => {
                             $($(let $part = $crate::words::Say::say($part, how);)*)?
@@ -145,7 +146,7 @@ macro_rules! sentences {
 
             impl std::fmt::Display for $area {
                 fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                    f.write_str(&$crate::words::Say::say(self, $crate::words::Manner::COMMAND_LINE))
+                    f.write_str(&$crate::words::Say::say(self, $crate::words::TextStyle::COMMAND_LINE))
                 }
             }
 
@@ -170,16 +171,10 @@ macro_rules! areas {
         pub enum Refusal { $(#[doc = stringify!($area)] $area($area),)* }
 
         impl Say for Refusal {
-            fn say(&self, how: Manner) -> String {
+            fn say(&self, how: TextStyle) -> String {
                 match self { $(Self::$area(of) => of.say(how),)* }
             }
         }
-
-        $(impl From<$area> for Trouble {
-            fn from(of: $area) -> Self {
-                Self::Refused(Box::new(Refusal::$area(of)))
-            }
-        })*
     };
 }
 areas!(

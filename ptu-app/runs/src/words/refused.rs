@@ -7,10 +7,9 @@ use btu_rig::rig::LinkTrouble;
 use fault_db::Id;
 use protocol::Duration;
 
-use super::{Manner, Say, sentences};
-use crate::failure::{Failure, Near};
+use super::{Near, Say, TextStyle, sentences};
+use crate::endpoint::Endpoint;
 use crate::keys::Standing;
-use crate::link::Endpoint;
 
 sentences! {
     /// A name that is none.
@@ -233,12 +232,6 @@ impl From<LinkTrouble> for BrokenOff {
     }
 }
 
-impl From<NoUnit> for Failure {
-    fn from(why: NoUnit) -> Self {
-        Self::bench(why)
-    }
-}
-
 impl Why {
     /// Message of the system or of a reader.
     pub fn of(said: impl Display) -> Self {
@@ -268,7 +261,7 @@ pub struct Sought {
 }
 
 impl Say for Sought {
-    fn say(&self, how: Manner) -> String {
+    fn say(&self, how: TextStyle) -> String {
         let Self { file, folder } = self;
         folder.as_ref().map_or_else(
             || file.clone(),
@@ -284,7 +277,7 @@ impl Say for Sought {
 
 impl Say for Standing {
     #[rustfmt::skip]
-    fn say(&self, how: Manner) -> String {
+    fn say(&self, how: TextStyle) -> String {
         how.choose([self.text(), match self {
             Self::Held => "목록에 있고 당시 유효함".to_owned(),
             Self::Unknown => "키 목록에 없음".to_owned(),

@@ -1,16 +1,17 @@
 //! Messages of the history about its troubles, in both languages: at a command line with what helps there.
 
+use std::path::Path;
+
 use fault_db::{
-    FaultAction, Misplaced, QueryLimit, ServerReason, StoreError, TraceError, TransitionError,
+    FaultAction, FileChange, QueryLimit, ServerReason, StoreError, TraceError, TransitionError,
     WithdrawalError,
 };
 
 use super::nouns::{event_kind, fault_state, noun};
-use super::{Manner, Say, damage};
-use crate::failure::{in_place_of, store_message};
+use super::{Say, TextStyle, damage};
 
 impl Say for StoreError {
-    fn say(&self, how: Manner) -> String {
+    fn say(&self, how: TextStyle) -> String {
         match how.commands {
             true => how.choose([
                 store_message(self),
@@ -18,6 +19,30 @@ impl Say for StoreError {
             ]),
             false => how.choose(in_window(self)),
         }
+    }
+}
+
+/// The message of a database error. Where its next move is another database, the flag that names one is added.
+pub fn store_message(error: &StoreError) -> String {
+    match in_place_of(error) {
+        Some(_) => format!("{error} with --db"),
+        None => error.to_string(),
+    }
+}
+
+/// The file in whose place an error says to choose another.
+pub fn in_place_of(error: &StoreError) -> Option<&Path> {
+    match error {
+        StoreError::Locked(path)
+        | StoreError::Full(path)
+        | StoreError::ReadOnly(path)
+        | StoreError::NotADatabase(path)
+        | StoreError::ForeignDatabase { path, .. }
+        | StoreError::NewerSchema { path, .. }
+        | StoreError::Missing(path)
+        | StoreError::CannotOpen { path, .. }
+        | StoreError::NotAFile(path) => Some(path),
+        _ => None,
     }
 }
 
@@ -36,9 +61,9 @@ fn helps(error: &StoreError) -> &'static str {
         S::Altered { .. } => "`ptu db check`, `ptu db query`",
         S::EarlierCopy { .. } => "`ptu db sync --as-copy`",
         S::ForkedCopy { .. } => "`ptu db import`, `ptu db sync --as-copy`",
-        S::Io { .. } | S::Malformed { .. } | S::Corrupt { .. } => "`ptu db check`",
-        S::NotAFile { .. } => "`ptu db sync`",
-        S::ServerEmpty { .. } | S::ServerOlderSchema { .. } => "`ptu db server init ADDRESS`",
+        S::Io { .. } | S::Malformed(_) | S::Corrupt { .. } => "`ptu db check`",
+        S::NotAFile(_) => "`ptu db sync`",
+        S::ServerEmpty(_) | S::ServerOlderSchema { .. } => "`ptu db server init ADDRESS`",
         other if in_place_of(other).is_some() => "--db",
         _ => "",
     }
@@ -50,11 +75,11 @@ pub(super) fn in_window(error: &StoreError) -> [String; 2] {
     use StoreError as S;
     let same = |korean: String| [error.to_string(), korean];
     match error {
-        S::Locked { path } => same(format!("다른 프로그램이 데이터베이스를 사용 중입니다: {}. 그 프로그램을 닫거나 다른 파일을 선택하십시오", path.display())),
+        S::Locked(path) => same(format!("다른 프로그램이 데이터베이스를 사용 중입니다: {}. 그 프로그램을 닫거나 다른 파일을 선택하십시오", path.display())),
         S::Stopped => same("끝나기 전에 중지됨".to_owned()),
-        S::Full { path } => same(format!("저장 공간이 부족하여 쓸 수 없습니다: {} (이미 기록된 내용은 그대로 있습니다). 공간을 확보하거나 다른 디스크를 선택하십시오", path.display())),
-        S::ReadOnly { path } => same(format!("읽기 전용이라 쓸 수 없습니다: {}. 파일과 폴더에 쓰기 권한을 주거나 다른 파일을 선택하십시오", path.display())),
-        S::NotADatabase { path } => same(format!("데이터베이스가 아닙니다: {}. 다른 파일을 선택하십시오", path.display())),
+        S::Full(path) => same(format!("저장 공간이 부족하여 쓸 수 없습니다: {} (이미 기록된 내용은 그대로 있습니다). 공간을 확보하거나 다른 디스크를 선택하십시오", path.display())),
+        S::ReadOnly(path) => same(format!("읽기 전용이라 쓸 수 없습니다: {}. 파일과 폴더에 쓰기 권한을 주거나 다른 파일을 선택하십시오", path.display())),
+        S::NotADatabase(path) => same(format!("데이터베이스가 아닙니다: {}. 다른 파일을 선택하십시오", path.display())),
         S::ForeignDatabase { path, application_id } => same(format!("다른 프로그램의 데이터베이스입니다: {} (프로그램 번호 {application_id:#010x}). 다른 파일을 선택하십시오", path.display())),
         S::NewerSchema { path, found, known } => same(format!("더 새로운 버전에서 만든 파일입니다: {} (형식 {found}, 이 버전은 {known}까지). 프로그램을 업데이트하거나 다른 파일을 선택하십시오", path.display())),
         S::Altered { path, what, more } => {
@@ -68,13 +93,13 @@ pub(super) fn in_window(error: &StoreError) -> [String; 2] {
                 format!("파일이 임의로 변경되어 기록하지 않습니다: {path} ({}{more_ko}). 이 파일의 사본을 그대로 보관하고 백업으로 계속하거나, 이 프로그램의 것이 아닌 내용을 제거한 후 다시 검사하십시오", damage::korean(what)),
             ]
         }
-        S::Misplaced { path, what } => same(match what {
-            Misplaced::Removed => format!("데이터베이스 파일이 삭제되었습니다: {}", path.display()),
-            Misplaced::Replaced => format!("데이터베이스가 다른 파일로 바뀌었습니다: {}", path.display()),
-            Misplaced::SecondName => format!("데이터베이스에 다른 이름(하드 링크)이 있습니다: {}. 그 이름을 지우십시오", path.display()),
-            Misplaced::NoLog => format!("데이터베이스 옆의 기록 파일(-wal)이 삭제되거나 바뀌었습니다: {}", path.display()),
-            Misplaced::WrittenOver => format!("데이터베이스에 다른 내용이 덮어써져 시험이 기록된 그대로 남아 있지 않습니다: {}", path.display()),
-            Misplaced::Gone => format!("데이터베이스가 없어졌습니다: {}", path.display()),
+        S::FileChanged { path, what } => same(match what {
+            FileChange::Removed => format!("데이터베이스 파일이 삭제되었습니다: {}", path.display()),
+            FileChange::Replaced => format!("데이터베이스가 다른 파일로 바뀌었습니다: {}", path.display()),
+            FileChange::SecondName => format!("데이터베이스에 다른 이름(하드 링크)이 있습니다: {}. 그 이름을 지우십시오", path.display()),
+            FileChange::NoLog => format!("데이터베이스 옆의 기록 파일(-wal)이 삭제되거나 바뀌었습니다: {}", path.display()),
+            FileChange::WrittenOver => format!("데이터베이스에 다른 내용이 덮어써져 시험이 기록된 그대로 남아 있지 않습니다: {}", path.display()),
+            FileChange::Gone => format!("데이터베이스가 없어졌습니다: {}", path.display()),
         }),
         S::EarlierCopy { path, here, there } => [
             format!("{} is a copy from before: it ends with entry {here} of its chain of seals, and {there} are known there; go on with the file itself", path.display()),
@@ -86,13 +111,13 @@ pub(super) fn in_window(error: &StoreError) -> [String; 2] {
         ],
         S::Rewritten { path, after, what, id } => same(format!("봉인 사슬의 {after}번째 기록 이후 이력이 변경되었습니다: {} ({} {id}의 내용이 봉인과 다름). 아무것도 받지 않았습니다. 파일을 그대로 보관하고 백업이나 새 파일로 계속하십시오", path.display(), noun(what))),
         S::OlderSchema { path, found, known } => same(format!("이전 형식의 파일입니다: {} (형식 {found}, 이 버전은 {known}). 쓰기용으로 한 번 열어 형식을 올리십시오", path.display())),
-        S::Missing { path } => same(format!("데이터베이스가 없습니다: {}. 첫 시험 때 만들어집니다. 또는 다른 파일을 선택하십시오", path.display())),
+        S::Missing(path) => same(format!("데이터베이스가 없습니다: {}. 첫 시험 때 만들어집니다. 또는 다른 파일을 선택하십시오", path.display())),
         S::CannotOpen { path, reason } => same(format!("열 수 없습니다: {} ({reason}). 경로와 폴더를 확인하거나 다른 파일을 선택하십시오", path.display())),
         S::Io { path, reason } => [
             format!("reading or writing {} failed ({reason}); check the disk, then the history", path.display()),
             format!("읽기 또는 쓰기에 실패했습니다: {} ({reason}). 디스크를 점검한 후 이력을 검사하십시오", path.display()),
         ],
-        S::Malformed { path } => [
+        S::Malformed(path) => [
             format!("{} is damaged; check the history, then go on with a backup", path.display()),
             format!("파일이 손상되었습니다: {}. 이력을 검사한 후 백업으로 계속하십시오", path.display()),
         ],
@@ -106,7 +131,7 @@ pub(super) fn in_window(error: &StoreError) -> [String; 2] {
             let matches: Vec<_> = matches.iter().map(ToString::to_string).collect();
             same(format!("{asked:?}에 해당하는 {}이(가) 둘 이상입니다: {}. 더 길게 입력하십시오", noun(what), matches.join(", ")))
         }
-        S::NoWords { asked } => same(format!("{asked:?}: 검색할 단어가 없습니다. 글자나 숫자를 입력하십시오")),
+        S::NoWords(asked) => same(format!("{asked:?}: 검색할 단어가 없습니다. 글자나 숫자를 입력하십시오")),
         S::BadId { what, asked } => [
             format!("{asked:?} is no {what} id: give a full id, or at least four hex digits of its beginning or end"),
             format!("{asked:?}은(는) {} 번호가 아닙니다. 전체 번호 또는 앞이나 뒤의 16진수 네 자리 이상을 입력하십시오", noun(what)),
@@ -123,35 +148,35 @@ pub(super) fn in_window(error: &StoreError) -> [String; 2] {
             WithdrawalError::SeenSince => format!("고장 {fault}: 종결 후 다시 발생하여 별도의 고장이 되었습니다"),
         }),
         S::StepOrder { index, last } => same(format!("단계 {last} 다음에 단계 {index}이(가) 기록됨: 단계 번호는 증가해야 합니다")),
-        S::RunFinished { run } => same(format!("시험 {run}은(는) 끝났습니다. 더 기록하려면 새 시험을 시작하십시오")),
+        S::RunFinished(run) => same(format!("시험 {run}은(는) 끝났습니다. 더 기록하려면 새 시험을 시작하십시오")),
         S::StepsWaiting { path, waiting } => same(format!("{}에 쓸 수 없어 단계 {waiting}개가 메모리에서 대기 중입니다. 시험을 정지하십시오", path.display())),
         S::Trace { trace, source } => same(format!("신호 기록 {trace}: {}", samples(source))),
-        S::TargetExists { path } => same(format!("파일이 이미 있습니다: {}. 다른 이름을 적으십시오", path.display())),
+        S::TargetExists(path) => same(format!("파일이 이미 있습니다: {}. 다른 이름을 적으십시오", path.display())),
         S::CannotWrite { path, reason } => same(format!("쓸 수 없습니다: {} ({reason}). 다른 대상을 적으십시오", path.display())),
-        S::SameFile { path } => same(format!("자기 자신은 가져올 수 없습니다: {}. 다른 파일을 적으십시오", path.display())),
-        S::QueryRefused { reason } => same(format!("읽기 문장 하나만 허용됩니다 ({reason}). SELECT 하나만 적으십시오")),
-        S::QueryFailed { reason } => same(format!("조회 실패: {reason}")),
-        S::QueryExceeds { limit } => same(format!("조회를 중단했습니다: {}", match limit {
+        S::SameFile(path) => same(format!("자기 자신은 가져올 수 없습니다: {}. 다른 파일을 적으십시오", path.display())),
+        S::QueryRefused(reason) => same(format!("읽기 문장 하나만 허용됩니다 ({reason}). SELECT 하나만 적으십시오")),
+        S::QueryFailed(reason) => same(format!("조회 실패: {reason}")),
+        S::QueryExceeds(limit) => same(format!("조회를 중단했습니다: {}", match limit {
             QueryLimit::Stopped => "시간이 너무 오래 걸림",
             QueryLimit::Memory => "메모리가 너무 많이 필요함",
             QueryLimit::Row => "한 행이 너무 김",
         })),
-        S::NotAFile { path } => [
+        S::NotAFile(path) => [
             format!("{} is a server, and this needs a history file", path.display()),
             format!("서버입니다: {}. 이 작업에는 이력 파일이 필요합니다", path.display()),
         ],
-        S::NotAServer { path } => same(format!("파일입니다: {}. 이 작업에는 서버가 필요합니다. postgres://USER@HOST/DATABASE 형식으로 적으십시오", path.display())),
-        S::BadAddress { reason } => same(format!("잘못된 서버 주소: {reason}. postgres://USER@HOST/DATABASE 형식으로 적으십시오")),
+        S::NotAServer(path) => same(format!("파일입니다: {}. 이 작업에는 서버가 필요합니다. postgres://USER@HOST/DATABASE 형식으로 적으십시오", path.display())),
+        S::BadAddress(reason) => same(format!("잘못된 서버 주소: {reason}. postgres://USER@HOST/DATABASE 형식으로 적으십시오")),
         S::ServerUnreachable { path, reason, .. } => same(format!("서버에 연결할 수 없습니다: {} ({}). 네트워크와 서버를 확인한 후 다시 시도하십시오 (기록은 모두 노트북 파일에 있습니다)", path.display(), server(reason))),
         S::ServerRefuses { path, reason } => same(format!("서버가 거부했습니다: {} ({}). 서버 담당자에게 문의하십시오", path.display(), server(reason))),
         S::ServerNotTrusted { path, reason } => same(format!("서버를 신뢰할 수 없습니다: {} ({})", path.display(), server(reason))),
         S::ServerBusy { path, reason, .. } => same(format!("서버가 사용 중입니다: {} ({reason}). 나중에 다시 시도하십시오", path.display())),
-        S::ServerEmpty { path } => [
+        S::ServerEmpty(path) => [
             format!("there is no history on {} yet; who looks after the server makes its tables once", path.display()),
             format!("서버에 아직 이력이 없습니다: {}. 서버 담당자가 먼저 테이블을 만들어야 합니다", path.display()),
         ],
         S::ServerSetup { path, reason } => same(format!("서버를 준비하지 못했습니다: {} ({reason})", path.display())),
-        S::ServerForeign { path } => [
+        S::ServerForeign(path) => [
             format!("the database of {} holds tables of another program; it needs one of its own", path.display()),
             format!("서버의 데이터베이스에 다른 프로그램의 테이블이 있습니다: {}. 전용 데이터베이스가 필요합니다", path.display()),
         ],

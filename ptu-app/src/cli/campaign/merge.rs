@@ -6,10 +6,10 @@ use clap::Args;
 
 use super::super::print_out;
 use ptu_runs::batch::merge;
-use ptu_runs::data::write;
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::new_file::kind;
 use ptu_runs::stdio;
+use ptu_runs::whole_file::write;
 
 /// Put the runs of shards together, of a campaign or of `ptu drive --monte-carlo`
 ///

@@ -114,7 +114,7 @@ pub(super) fn rebuild(database: &Database) -> Result<Exit, Failure> {
 /// An error of a file that was not named with --db has no advice to name another one so.
 fn of_named_file(file: &Path, error: StoreError) -> Failure {
     match &error {
-        StoreError::Missing { path } if path == file => {
+        StoreError::Missing(path) if path == file => {
             Failure::bench(FileTrouble::NoDatabase(file.display().to_string()))
         }
         of_it if in_place_of(of_it) == Some(file) => {

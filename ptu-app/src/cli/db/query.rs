@@ -58,7 +58,7 @@ impl QueryArguments {
         };
         let answer = watch.over(|goes_on| store.query_within(&self.sql, bounds, goes_on));
         let answer = answer.map_err(|error| match error {
-            StoreError::QueryExceeds { limit } => self.exceeded(limit, watch.stopped_by_disk()),
+            StoreError::QueryExceeds(limit) => self.exceeded(limit, watch.stopped_by_disk()),
             other => other.into(),
         })?;
         self.output.save()?;

@@ -43,7 +43,7 @@ impl SyncArguments {
         // A name that was mistyped would be synced as a new, empty history.
         let path = database.file()?;
         if !path.exists() {
-            return Err(StoreError::Missing { path }.into());
+            return Err(StoreError::Missing(path).into());
         }
         let file = database.open_file()?;
         let server = Store::connect(&address, clock::ids())?;

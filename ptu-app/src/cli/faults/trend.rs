@@ -13,9 +13,9 @@ use crate::cli::{ScriptsOption, at_least_one, check_unit};
 use ptu_report::trend::{TimeSeries, Trend};
 use ptu_report::words::Words;
 use ptu_runs::clock::{Span, rfc3339, utc_day};
-use ptu_runs::data;
 use ptu_runs::failure::{Asked, Exit, Failure, Near, OfUnit, did_you_mean};
 use ptu_runs::new_file::kind;
+use ptu_runs::whole_file;
 
 /// Show a measurement over time: of one unit value by value, of all units month by month
 ///
@@ -76,7 +76,7 @@ impl TrendArguments {
         let trend = self.read(store)?;
         self.output.save()?;
         if let Some(file) = &self.plot {
-            data::write(file, kind::HTML, trend_plot::page(&trend))?;
+            whole_file::write(file, kind::HTML, trend_plot::page(&trend))?;
         }
         if self.output.is_json() {
             return crate::cli::print_json(&json(&trend));

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use ptu_runs::data::write_text;
 use ptu_runs::failure::{Failure, FileTrouble};
+use ptu_runs::whole_file::write_text;
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
 
 /// Where a reader begins, in the folder of the sources.

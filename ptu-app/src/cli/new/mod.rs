@@ -7,9 +7,10 @@ use clap::{Args, ValueEnum};
 use script_files::{Layer, own_folder};
 
 use super::{ScriptsOption, print_out};
-use ptu_runs::data::{ScriptsDirectory, write_text};
+use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Asked, Exit, Failure, FileTrouble, Unknown};
 use ptu_runs::run::select;
+use ptu_runs::whole_file::write_text;
 
 /// Begin a procedure, unit configuration, line, train or fault mode of your own
 ///

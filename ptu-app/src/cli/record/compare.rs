@@ -8,10 +8,10 @@ use fault_db::Store;
 
 use crate::cli::{Json, ScriptsOption};
 use ptu_report::{json_text, record};
-use ptu_runs::data::{check_writable, write_text};
 use ptu_runs::failure::{Asked, Exit, Failure};
 use ptu_runs::new_file::kind;
 use ptu_runs::record::CompareRequest;
+use ptu_runs::whole_file::{check_writable, write_text};
 
 /// Compare a run of a unit's own record with its target, and with a sound unit's run through the same section
 ///

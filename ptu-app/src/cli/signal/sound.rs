@@ -9,7 +9,6 @@ use super::{Noisy, Scale, hex, positive};
 use crate::cli::print_out;
 use ptu_options::sound_file;
 use ptu_runs::clock;
-use ptu_runs::data::check_writable;
 use ptu_runs::failure::{Exit, Failure, SoundTrouble};
 use ptu_runs::new_file::kind;
 use ptu_runs::signal::{self, End, Samples, Wav, Wave};
@@ -19,6 +18,7 @@ use ptu_runs::sound::{
 use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
 use ptu_runs::table::Table;
+use ptu_runs::whole_file::check_writable;
 
 /// Play a WAV file, a speed code or TWC on a sound card
 ///

@@ -10,7 +10,7 @@ use ptu_report::words::{Language, Words, fill};
 use ptu_runs::clock::{self, rfc3339};
 use ptu_runs::keys::{KeyList, Standing};
 use ptu_runs::stored::from_stored;
-use ptu_runs::words::{Manner, Say as _};
+use ptu_runs::words::{Say as _, TextStyle};
 
 /// Findings, in the words of their readers.
 pub(super) struct Findings {
@@ -63,7 +63,7 @@ impl Findings {
     }
 
     pub(super) fn standing(&self, standing: &Standing) -> String {
-        standing.say(Manner {
+        standing.say(TextStyle {
             korean: self.words.language == Language::Korean,
             commands: true,
         })

@@ -67,9 +67,11 @@ pub fn console(table: &str, language: Language) -> Told {
     let all = all.map(str::to_uppercase);
     let [procedure, verdicts, repeated, _, faults_of] = all.each_ref();
     // In English a verdict is told by its name.
-    let label = |said: &str| match language {
-        Language::English => said.to_owned(),
-        Language::Korean => verdict(said, language).unwrap_or(said).to_owned(),
+    let label = |said: &str| {
+        language.choose([
+            said.to_owned(),
+            verdict(said, language).unwrap_or(said).to_owned(),
+        ])
     };
     let of_run = format!("{} ", common.run);
     let mut recorded = 0;
@@ -92,9 +94,8 @@ pub fn console(table: &str, language: Language) -> Told {
             turns.extend(turned(&marks(name, 's'), &turn_in(name)));
             bad.extend(marks(name, 's'));
             let mut places = Outside::ALL.iter();
-            outside += usize::from(places.any(|place| match language {
-                Language::English => place.name() == name,
-                Language::Korean => common.outside(*place) == name,
+            outside += usize::from(places.any(|place| {
+                language.choose([place.name() == name, common.outside(*place) == name])
             }));
             let why = cells.get(2).filter(|why| why.starts_with(LOST));
             lost = why.cloned().unwrap_or(lost);

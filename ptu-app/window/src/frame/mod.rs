@@ -25,7 +25,7 @@ use super::{Page, PageContext, Palette, Sizes};
 use crate::pages::case_steps;
 use crate::parts::{FORM, dialog_is_open};
 use about::About;
-use care::Care;
+use care::HistoryMaintenance;
 use find::Find;
 pub use lock::only_look;
 use ptu_report::words::Words;
@@ -39,7 +39,7 @@ const AROUND: f32 = 12.0;
 pub struct Frame {
     setup: Setup,
     about: About,
-    care: Care,
+    care: HistoryMaintenance,
     undo: messages::Undo,
     find: Find,
     is_wide: bool,

@@ -11,15 +11,15 @@ mod signals;
 mod statistics;
 mod traces;
 
-pub use case::case_steps;
 use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
 use eframe::egui::Ui;
 
 use super::Page;
-use super::page_context::Destination;
-use super::page_context::PageContext;
+use super::page_context::{Destination, PageContext};
+
+pub use case::case_steps;
 
 /// State of the pages while the window is open.
 #[derive(Default)]

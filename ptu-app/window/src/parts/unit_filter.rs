@@ -38,7 +38,7 @@ impl UnitFilter {
     }
 
     /// Chooses a unit; none = all.
-    pub fn take(&mut self, unit: Option<String>) {
+    pub fn choose(&mut self, unit: Option<String>) {
         self.taken = unit;
     }
 

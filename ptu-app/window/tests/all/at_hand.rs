@@ -3,7 +3,7 @@
 use eframe::egui::{Color32, Shape};
 
 use crate::common::window::{Window, settings};
-use crate::common::{Place, record_bad_unit, scripts};
+use crate::common::{Place, scripts};
 use ptu_options::Page;
 
 #[test]
@@ -24,8 +24,7 @@ fn an_injected_fault_is_taken_out_where_it_is_listed() {
 
 #[test]
 fn a_sheet_is_white_in_a_dark_window_and_can_be_opened_once_written() {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     let mut window = Window::with(place, scripts(), settings(Page::Report));
     window.wait_for_part("Unit BAD-1, run");
     let shapes = &window.harness().output().shapes;
@@ -37,8 +36,7 @@ fn a_sheet_is_white_in_a_dark_window_and_can_be_opened_once_written() {
     assert!(!window.shows("Open, print"));
     let file = window.place.text_path("mine.pdf");
     window.name_file("file", &file);
-    window.click("PDF");
-    window.wait_for("Open, print");
+    window.click_for("PDF", "Open, print");
     window.wait_for(&file);
 }
 
@@ -46,8 +44,7 @@ fn a_sheet_is_white_in_a_dark_window_and_can_be_opened_once_written() {
 /// and another that is connected.
 #[test]
 fn faults_and_traces_are_those_of_the_connected_unit_until_all_are_asked_for() {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     let mut window = Window::with(place, scripts(), settings(Page::Faults));
     window.wait_for_part(" · BAD-1 · ");
     window.connect();

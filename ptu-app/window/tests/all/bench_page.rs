@@ -4,7 +4,10 @@ use btu_rig::rig::Harness;
 use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 
-use crate::common::{Place, scripts, window::Window};
+use crate::common::{
+    Place, scripts,
+    window::{Window, settings},
+};
 use ptu_options::Page;
 use ptu_report::words::Language;
 use ptu_runs::run::BenchChoice;
@@ -27,10 +30,7 @@ fn fold(window: &mut Window, groups: &[&str]) {
 }
 
 fn on_bench() -> Settings {
-    Settings {
-        page: Page::Bench,
-        ..Settings::default()
-    }
+    settings(Page::Bench)
 }
 
 /// A speed above the limit of the code given makes the emergency brake lamp say so.
@@ -41,15 +41,12 @@ fn on_bench() -> Settings {
 fn a_speed_above_the_limit_applies_the_emergency_brake_and_stop_all_takes_it_away() {
     let mut window = connected(on_bench());
     window.wait_for("EB: released");
-    window.click("Speed code: 25");
-    window.wait_for("limit: 25.0 km/h");
-    window.click("Go to speed");
-    window.wait_for("Overspeed alarm: on");
+    window.click_for("Speed code: 25", "limit: 25.0 km/h");
+    window.click_for("Go to speed", "Overspeed alarm: on");
     window.wait_for("EB: applied");
     window.wait_for("EB cause: overspeed");
     window.wait_for_part("212 Overspeed: emergency brake");
-    window.click("Stop all");
-    window.wait_for("measured: 0.0 km/h");
+    window.click_for("Stop all", "measured: 0.0 km/h");
     window.wait_for("Speed code: no code");
 }
 
@@ -58,8 +55,7 @@ fn a_speed_above_the_limit_applies_the_emergency_brake_and_stop_all_takes_it_awa
 #[test]
 fn stopping_everything_without_a_run_is_said_at_once() {
     let mut window = connected(on_bench());
-    window.click("Go to speed");
-    window.wait_for("measured: 40.0 km/h");
+    window.click_for("Go to speed", "measured: 40.0 km/h");
     window.page(Page::Report);
     window.key(Key::F12);
     window.step();
@@ -77,13 +73,10 @@ fn an_order_of_the_wayside_is_given_and_its_state_is_seen() {
     let mut window = connected(on_bench());
     fold(&mut window, &["ATP signal", "Speed", "Train lines"]);
     window.click("TWC");
-    window.click("Wayside: good");
-    window.wait_for("Order state: —");
-    window.click("Order: turn back");
-    window.wait_for_part("413 Order refused");
+    window.click_for("Wayside: good", "Order state: —");
+    window.click_for_part("Order: turn back", "413 Order refused");
     window.wait_for("Order state: none");
-    window.click("not sent");
-    window.wait_for("Order state: —");
+    window.click_for("not sent", "Order state: —");
 }
 
 /// Goal: signals of the TEST board reach an armed unit only, and go away with "Stop all".
@@ -91,18 +84,15 @@ fn an_order_of_the_wayside_is_given_and_its_state_is_seen() {
 fn the_test_board_is_for_an_armed_unit_only() {
     let mut window = connected(on_bench());
     fold(&mut window, &["ATP signal", "Speed", "Train lines"]);
-    window.click("TEST board");
-    window.wait_for("Test code: 55");
+    window.click_for("TEST board", "Test code: 55");
     assert!(!window.enabled("Test code: 55"));
     assert!(!window.enabled("Test marker: PSM1"));
     assert!(!window.enabled("Clear event log"));
     window.hold("Arm", 1.3);
     window.wait_for("ARMED");
-    window.click("Test code: 55");
-    window.wait_for("limit: 55.0 km/h");
+    window.click_for("Test code: 55", "limit: 55.0 km/h");
     window.wait_for("Speed code: 55");
-    window.click("Stop all");
-    window.wait_for("Arm");
+    window.click_for("Stop all", "Arm");
     window.until("the TEST board out of reach", |window| {
         !window.enabled("Test code: 55")
     });
@@ -149,8 +139,7 @@ fn a_laptop_has_no_harness() {
     window.wait_for("Goes through the bench harness; only the maintenance port is connected");
     fold(&mut window, &["TEST board"]);
     window.hold("Arm", 1.3);
-    window.click("Test code: 45");
-    window.wait_for("limit: 45.0 km/h");
+    window.click_for("Test code: 45", "limit: 45.0 km/h");
 }
 
 /// Goal: the page in Korean, technical words as the field writes them.
@@ -162,23 +151,18 @@ fn the_page_speaks_korean() {
     });
     window.wait_for("EB: 완해");
     window.wait_for("출입문: 닫힘");
-    window.click("속도 코드: 55");
-    window.wait_for("제한: 55.0 km/h");
+    window.click_for("속도 코드: 55", "제한: 55.0 km/h");
     fold(&mut window, &["ATP 신호", "속도"]);
-    window.click("출입문: 열림");
-    window.wait_for_part("역행 차단 원인: 출입문");
+    window.click_for_part("출입문: 열림", "역행 차단 원인: 출입문");
     // What is given is told with a button that takes it away.
-    window.click("제거 출입문");
-    window.wait_for("출입문: 닫힘");
-    window.click("제거 속도 코드");
-    window.wait_for("속도 코드: 무코드");
+    window.click_for("제거 출입문", "출입문: 닫힘");
+    window.click_for("제거 속도 코드", "속도 코드: 무코드");
     fold(&mut window, &["인통선"]);
     window.write("입력 찾기", "시험 코드");
     window.wait_for("시험 코드: 55");
     assert!(!window.shows("속도 코드: 55"));
     window.write_over("입력 찾기", " ");
-    window.click("TEST 보드");
-    window.wait_for("시험 코드: 55");
+    window.click_for("TEST 보드", "시험 코드: 55");
 }
 
 /// Goal: a unit is armed on purpose, and disarmed by a nervous hand, too. Method: clicks on Arm, which is held; a double

@@ -1,12 +1,11 @@
 //! The care of the history in the window: import of another file, backup, check.
 
 use crate::common::is_english;
-use crate::common::window::{Window, settings};
+use crate::common::window::{Window, settings_in};
 use crate::common::{Place, list, record_bad_unit, scripts};
 use fault_db::ProblemKind;
 use ptu_options::Page;
 use ptu_report::words::{Language, fill};
-use ptu_window::Settings;
 
 /// Goal: a depot without a terminal brings in another laptop's history, copies its own and checks it, and is told in its
 /// language what came of each. Method: two laptops that saw one unit each; what the dialog says is what the files hold.
@@ -18,20 +17,15 @@ fn another_history_is_imported_and_the_file_is_backed_up_and_checked() {
         record_bad_unit(&other);
         let place = Place::new();
         place.recorded_run();
-        let settings = Settings {
-            language,
-            ..settings(Page::Statistics)
-        };
+        let settings = settings_in(language, Page::Statistics);
         let mut window = Window::with(place, scripts(), settings);
-        window.click(words.title);
-        window.wait_for(words.never_synced);
+        window.click_for(words.title, words.never_synced);
         // Nothing is named yet: nothing can be imported.
         assert!(!window.enabled(words.import) && !window.enabled(words.sync));
 
         let missing = other.text_path("nothing.db");
         window.write(words.other_file, &missing);
-        window.click(words.import);
-        window.wait_for_part(words.failed);
+        window.click_for_part(words.import, words.failed);
         window.write_over(words.other_file, &other.text_path("history.db"));
         window.click(words.import);
         let added = words.imported.split("{runs}").next().unwrap_or_default();
@@ -41,8 +35,7 @@ fn another_history_is_imported_and_the_file_is_backed_up_and_checked() {
 
         let copy = window.place.text_path("copy.db");
         window.write_over(words.other_file, &copy);
-        window.click(words.backup);
-        window.wait_for(&fill(words.backed_up, &[("file", &copy)]));
+        window.click_for(words.backup, &fill(words.backed_up, &[("file", &copy)]));
         let copied = other.json(&["runs", "list", "--json", "--db", &copy]);
         assert_eq!(list(&copied).len(), 2, "{copied}");
         // A copy is never written over.
@@ -69,14 +62,10 @@ fn an_import_ends_when_it_is_stopped() {
     record_bad_unit(&other);
     let place = Place::new();
     place.recorded_run();
-    let settings = Settings {
-        language,
-        ..settings(Page::Statistics)
-    };
+    let settings = settings_in(language, Page::Statistics);
     let holder = rusqlite::Connection::open(place.path("history.db")).expect("the file");
     let mut window = Window::with(place, scripts(), settings);
-    window.click(words.care.title);
-    window.wait_for(words.care.never_synced);
+    window.click_for(words.care.title, words.care.never_synced);
     window.write(words.care.other_file, &other.text_path("history.db"));
     holder.execute_batch("BEGIN IMMEDIATE").expect("held");
     window.click(words.care.import);
@@ -93,8 +82,7 @@ fn an_import_ends_when_it_is_stopped() {
 fn what_is_wrong_with_a_file_is_told_without_commands_in_both_languages() {
     for language in Language::ALL {
         let words = language.words();
-        let place = Place::new();
-        record_bad_unit(&place);
+        let place = Place::with_bad_unit();
         let damage = rusqlite::Connection::open(place.path("history.db")).expect("the file");
         let done = damage.execute_batch(
             "PRAGMA foreign_keys = OFF;
@@ -103,21 +91,18 @@ fn what_is_wrong_with_a_file_is_told_without_commands_in_both_languages() {
         done.expect("damaged");
         drop(damage);
         let no_history = place.write("list.txt", "no history at all, but a text of some length");
-        let settings = Settings {
-            language,
-            ..settings(Page::Statistics)
-        };
+        let settings = settings_in(language, Page::Statistics);
         let mut window = Window::with(place, scripts(), settings);
-        window.click(words.care.title);
-        window.wait_for(words.care.never_synced);
+        window.click_for(words.care.title, words.care.never_synced);
         window.write(words.care.other_file, &no_history);
-        window.click(words.care.import);
-        window.wait_for_part(words.care.failed);
+        window.click_for_part(words.care.import, words.care.failed);
         if language == Language::Korean {
             window.wait_for_part("이 프로그램의 것이 아님: 테이블");
         }
-        window.click(words.care.check);
-        window.wait_for_part(words.care.damaged.split('{').next().unwrap_or_default());
+        window.click_for_part(
+            words.care.check,
+            words.care.damaged.split('{').next().unwrap_or_default(),
+        );
         let told = window.shown();
         let commands = told
             .iter()

@@ -158,8 +158,7 @@ fn a_signature_that_was_begun_goes_with_its_page() {
     window.wait_for(case.sign_hint);
     window.page(Page::Procedures);
     window.click(words.frame.menu);
-    window.click(words.frame.lock);
-    window.wait_for(words.frame.locked);
+    window.click_for(words.frame.lock, words.frame.locked);
     window.page(Page::Case);
     window.wait_for(case.sign);
     window.step();
@@ -179,10 +178,7 @@ fn signed_sheet(mut counted: Counted) {
     let size = counted.window.harness().ctx.content_rect().right();
     let words: &Words = language.words();
     let case = &words.case;
-    let relay = match language {
-        Language::English => "EB relay",
-        Language::Korean => "비상제동 계전기",
-    };
+    let relay = language.choose(["EB relay", "비상제동 계전기"]);
     counted.look("start");
     counted.click(words.frame.connect);
     counted.window.wait_for("SIM-0001");
@@ -213,10 +209,7 @@ fn signed_sheet(mut counted: Counted) {
     counted.look("result");
     let found = latest(&counted.window);
     assert_eq!(found["run"]["symptom"], "brakes_late");
-    let part = match language {
-        Language::English => "the EB relay",
-        Language::Korean => relay,
-    };
+    let part = language.choose(["the EB relay", relay]);
     assert!(
         counted
             .window
@@ -474,14 +467,15 @@ fn a_wrong_pin_signs_nothing_and_keeps_what_was_chosen() {
     window.click("mine");
     let sign = fill(case.sign_as, &[("who", &"Kim-Signer")]);
     window.write(case.pin, "135791");
-    window.click(&sign);
-    window.wait_for_part(case.not_signed);
+    window.click_for_part(&sign, case.not_signed);
     assert!(!window.shown().iter().any(|said| said.contains("135791")));
     assert!(list(&latest(window)["notes"]).is_empty());
     window.wait_for(case.pin_first);
     window.write(case.pin, "246810");
-    window.click(&sign);
-    window.wait_for(&fill(case.signed_with_key, &[("who", &"Kim-Signer")]));
+    window.click_for(
+        &sign,
+        &fill(case.signed_with_key, &[("who", &"Kim-Signer")]),
+    );
     assert!(!window.shows(case.sign_hint));
     let notes = latest(window)["notes"].clone();
     assert_eq!(list(&notes)[0]["who"], "Kim-Signer", "{notes}");

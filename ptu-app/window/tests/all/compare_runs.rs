@@ -3,17 +3,15 @@
 use fault_db::Verdict;
 use ptu_options::Page;
 use ptu_report::words::Language;
-use ptu_window::Settings;
 
 use crate::common::is_english;
-use crate::common::window::Window;
-use crate::common::{Place, list, number, record_bad_unit, scripts, text};
+use crate::common::window::{Window, settings_in};
+use crate::common::{Place, list, number, scripts, text};
 use crate::layout::complaints;
 
 /// A unit with a slow relay, and the same one after the repair.
 fn before_and_after() -> (Place, [String; 2]) {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     let run = ["run", "atp/overspeed", "--serial-no", "BAD-1"];
     place.ptu(&run).exits(0);
     let [after, before] = <[String; 2]>::try_from(place.run_ids()).expect("two runs");
@@ -131,11 +129,7 @@ fn a_second_run_of_the_unit_is_chosen_beside_the_sheet() {
         let (place, [_, after]) = before_and_after();
         // A run of another unit is not offered.
         place.ptu("run tcms/link").exits(0);
-        let settings = Settings {
-            page: Page::Report,
-            language,
-            ..Settings::default()
-        };
+        let settings = settings_in(language, Page::Report);
         let mut window = Window::with(place, scripts(), settings);
         window.wait_for_part("SIM-0001");
         window.click_part(" · BAD-1");
@@ -155,8 +149,7 @@ fn a_second_run_of_the_unit_is_chosen_beside_the_sheet() {
         window.click(report.all_steps);
         let file = window.place.text_path("compared.html");
         window.name_file(report.file, &file);
-        window.click(report.write_html);
-        window.wait_for(report.open_file);
+        window.click_for(report.write_html, report.open_file);
         let page = window.place.read("compared.html");
         assert!(page.contains("640 ms") && page.contains(report.comparison));
         // With all steps nothing is left to count.
@@ -164,7 +157,6 @@ fn a_second_run_of_the_unit_is_chosen_beside_the_sheet() {
         assert!(!page.contains(rest), "{rest}");
         // Back to the sheet alone.
         window.click_last(report.compare_with);
-        window.click(report.no_comparison);
-        window.wait_for(report.sheet);
+        window.click_for(report.no_comparison, report.sheet);
     }
 }

@@ -1,10 +1,9 @@
 //! The page of automatic runs.
 
-use crate::common::window::{Window, settings};
+use crate::common::window::{Window, settings, settings_in};
 use crate::common::{Place, number, scripts};
 use ptu_options::Page;
 use ptu_report::words::Language;
-use ptu_window::Settings;
 
 /// Goal: who has no terminal drives the same run as the command line. Method: a full train is driven from the window in both
 /// languages; figures, place of the stop and events are those of the command.
@@ -16,10 +15,7 @@ fn a_run_from_the_window_is_that_of_the_command_line() {
         let command = ["drive", "--load", "full", "--controller", "pss", "--json"];
         let said = place.ptu(&command);
         let run: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
-        let settings = Settings {
-            language,
-            ..settings(Page::Drive)
-        };
+        let settings = settings_in(language, Page::Drive);
         let mut window = Window::with(place, scripts(), settings);
         for (list, value) in [
             (words.drive.load, words.drive.full),
@@ -29,8 +25,7 @@ fn a_run_from_the_window_is_that_of_the_command_line() {
             window.click_last(list);
             window.click(value);
         }
-        window.click(words.drive.drive);
-        window.wait_for(words.drive.figures);
+        window.click_for(words.drive.drive, words.drive.figures);
         let error_cm = format!("{:.1} cm", number(&run["stop_error_m"]) * 100.0);
         let error_cm = error_cm.trim_start_matches('-');
         assert!(window.shows_part(error_cm), "{error_cm}");
@@ -60,7 +55,6 @@ fn a_long_order_is_stopped_and_how_far_it_came_is_told() {
         window.click(value);
     }
     window.click(words.drive.drive);
-    window.click(words.memory.stop);
-    window.wait_for_part("Stopped: ");
+    window.click_for_part(words.memory.stop, "Stopped: ");
     assert!(window.enabled(words.drive.drive));
 }

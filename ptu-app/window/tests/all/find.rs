@@ -82,8 +82,7 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
     ] {
         let words = language.words();
         let mut window = on_bad_unit(language);
-        window.connect();
-        window.wait_for("SIM-0001");
+        window.connect_simulated();
         look_for(&mut window, fault);
         window.wait_for(words.frame.faults);
         assert!(complaints(&mut window).is_empty());
@@ -124,8 +123,7 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
         assert!(unit.run.is_none() && !unit.is_armed());
 
         window.click(words.frame.menu);
-        window.click(words.frame.lock);
-        window.wait_for(words.frame.locked);
+        window.click_for(words.frame.lock, words.frame.locked);
         window
             .harness()
             .key_press_modifiers(Modifiers::COMMAND, Key::K);

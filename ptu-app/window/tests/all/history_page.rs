@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::window::Window;
+use crate::common::window::{Window, settings_in};
 use crate::common::{Place, scripts};
 use eframe::egui::Key;
 use ptu_options::Page;
@@ -43,8 +43,7 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
     window.wait_for("what was done");
     window.wait_for("eb_loop");
     window.write("note", "relay ordered");
-    window.click("Acknowledge");
-    window.wait_for("acknowledged");
+    window.click_for("Acknowledge", "acknowledged");
     window.wait_for("relay ordered");
     window.click("Repaired …");
     assert!(
@@ -52,8 +51,7 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
         "nothing says what was done"
     );
     window.write("serial number put in", "SN-77");
-    window.click("Record repair");
-    window.wait_for("repaired");
+    window.click_for("Record repair", "repaired");
     window.wait_for_part("SN-77");
     window.wait_for("Recorded: repaired");
     let id = fault["id"].as_str().expect("an id").to_owned();
@@ -94,8 +92,10 @@ fn faults_are_closed_by_a_reason_and_opened_again() {
     let mut window = on(place, Page::Faults, Language::English);
     let said = &Language::English.words().faults;
     window.click_part("EB relay · ");
-    window.click(said.close);
-    window.wait_for(&said.close_unrepaired.replace("{n}", &n.to_string()));
+    window.click_for(
+        said.close,
+        &said.close_unrepaired.replace("{n}", &n.to_string()),
+    );
     let close = said.close_n.replace("{n}", &n.to_string());
     assert!(!window.enabled(&close));
     window.click(said.close_not_found);
@@ -107,8 +107,7 @@ fn faults_are_closed_by_a_reason_and_opened_again() {
     // The page is read again once all of them are written.
     window.wait_for_part("no fault found in the part: contacts clean");
     assert_eq!(states(&window.place), BTreeSet::from(["\"closed\"".into()]));
-    window.click(said.reopen);
-    window.wait_for(said.close);
+    window.click_for(said.reopen, said.close);
     assert_eq!(states(&window.place), BTreeSet::from(["\"open\"".into()]));
 }
 
@@ -120,10 +119,7 @@ fn what_was_written_about_a_fault_can_be_undone_for_ten_seconds() {
         let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
         let mut window = on(place, Page::Faults, language);
         let words = language.words();
-        let relay = match language {
-            Language::English => "EB relay · ",
-            Language::Korean => "비상제동 계전기 · ",
-        };
+        let relay = language.choose(["EB relay · ", "비상제동 계전기 · "]);
         window.wait_for_part(relay);
         let of_relay = ["faults", "list", "--part", "eb_relay", "--json"];
         let id = window.place.json(&of_relay)[0]["id"].clone();
@@ -131,8 +127,10 @@ fn what_was_written_about_a_fault_can_be_undone_for_ten_seconds() {
         let before = window.place.json(&show);
         window.click_part(relay);
         window.write(words.common.note, "wrong unit");
-        window.click(words.faults.acknowledge);
-        window.wait_for(words.fault_state(fault_db::FaultState::Acknowledged));
+        window.click_for(
+            words.faults.acknowledge,
+            words.fault_state(fault_db::FaultState::Acknowledged),
+        );
         // The second click of two finds nothing to undo.
         window.double_click(words.frame.undo);
         let undone = words.frame.undone.replace("{what} ", "");
@@ -152,8 +150,7 @@ fn what_was_written_about_a_fault_can_be_undone_for_ten_seconds() {
         assert_eq!(after, before);
 
         window.write(words.common.note, "seen");
-        window.click(words.faults.add_note);
-        window.wait_for(words.frame.undo);
+        window.click_for(words.faults.add_note, words.frame.undo);
         window.pass(11.0);
         window.step();
         assert!(!window.shows(words.frame.undo), "it is over");
@@ -164,20 +161,17 @@ fn what_was_written_about_a_fault_can_be_undone_for_ten_seconds() {
 /// led by the window; then every page that tells of it.
 #[test]
 fn korean_pages_name_measurements_parts_and_severities_in_korean() {
-    let mut settings = Settings {
-        page: Page::Procedures,
-        language: Language::Korean,
-        ..Settings::default()
-    };
+    let mut settings = settings_in(Language::Korean, Page::Procedures);
     settings.unit.faults = vec!["eb_relay.slow".into()];
     let mut window = Window::with(Place::new(), scripts(), settings);
     let words = Language::Korean.words();
     window.click_in(words.procedures.choice, words.procedures.none);
     window.click("과속에 따른 ATP 제동 체결");
-    window.connect();
-    window.wait_for("SIM-0001");
-    window.click(words.procedures.run);
-    window.wait_for_part("교체 대상: 비상제동 계전기 (eb_relay, ");
+    window.connect_simulated();
+    window.click_for_part(
+        words.procedures.run,
+        "교체 대상: 비상제동 계전기 (eb_relay, ",
+    );
     window.wait_for_part("EB 반응 시간");
     let report = window.place.json("runs show latest --json");
     let steps = report["steps"].as_array().expect("steps").iter();
@@ -238,12 +232,10 @@ fn what_was_typed_for_one_fault_is_not_stored_on_another() {
     window.click("cancel");
     window.click_part("ATP CPU · ");
     window.until("an empty form", |window| !window.enabled("Add note"));
-    window.click("Acknowledge");
-    window.wait_for("acknowledged");
+    window.click_for("Acknowledge", "acknowledged");
     window.click("Repaired …");
     window.write("Note", "cleaned");
-    window.click("Record repair");
-    window.wait_for("repaired");
+    window.click_for("Record repair", "repaired");
     let stored = window.place.json(&["faults", "show", &id, "--json"]);
     assert_eq!(stored["state"], "repaired");
     let stored = stored.to_string();
@@ -406,7 +398,6 @@ fn a_double_click_changes_a_fault_once() {
     // Runs verify; a person says why.
     assert!(!window.enabled("Verified"));
     window.write("note", "seen on the train");
-    window.click("Verified");
-    window.wait_for("verified");
+    window.click_for("Verified", "verified");
     assert_eq!(states(&window), ["acknowledged", "repaired", "verified"]);
 }

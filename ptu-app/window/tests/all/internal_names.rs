@@ -115,8 +115,7 @@ fn the_way_of_a_case_has_no_internal_names() {
             let bad = shown.filter(|text| is_wrong(text, language));
             wrong.extend(bad.map(|text| format!("{fault}, {what}: {text}")));
         };
-        window.connect();
-        window.wait_for("SIM-0001");
+        window.connect_simulated();
         window.wait_for(words.case.unknown);
         look(&window, "symptom");
         window.click_last(words.case.unknown);
@@ -124,8 +123,7 @@ fn the_way_of_a_case_has_no_internal_names() {
         window.wait_for(words.case.record_repair);
         window.wait_for(words.case.why);
         look(&window, "why");
-        window.click(words.case.beside);
-        window.wait_for(words.case.beside_twin);
+        window.click_for(words.case.beside, words.case.beside_twin);
         look(&window, "beside a good unit");
         window.click(words.case.way);
         window.step();

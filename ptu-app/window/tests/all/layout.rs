@@ -69,23 +69,16 @@ fn laid_out(
     let readings = "train,date,km\n612,2020-01-01,0\n612,2099-01-01,9000000\n";
     settings.distances = place.write("odometers.csv", readings);
     let mut window = Window::sized(size, place, scripts(), settings);
-    let relay = match language {
-        Language::English => "EB relay · ",
-        Language::Korean => "비상제동 계전기 · ",
-    };
+    let relay = language.choose(["EB relay · ", "비상제동 계전기 · "]);
     window.wait_for_part(relay);
     look(&mut window, "faults");
     window.click_part(relay);
     window.wait_for(words.faults.what_was_done);
     look(&mut window, "fault");
-    window.click(words.faults.repair);
-    window.wait_for(words.faults.serial_new);
+    window.click_for(words.faults.repair, words.faults.serial_new);
     look(&mut window, "repair");
     window.key(Key::Escape);
-    let sheet = match language {
-        Language::English => "Unit BAD-1, run",
-        Language::Korean => "장치 BAD-1, 시험",
-    };
+    let sheet = language.choose(["Unit BAD-1, run", "장치 BAD-1, 시험"]);
     for (page, said) in [
         (Page::Traces, words.traces.events),
         (Page::Diagnosis, words.diagnosis.reasons),
@@ -102,8 +95,7 @@ fn laid_out(
             window.click_last(words.traces.signals);
             window.click(words.traces.cursor_a);
             window.write(words.traces.note_field, &"a note of many words ".repeat(12));
-            window.click(words.report.note_save);
-            window.wait_for_part(" s a note of many words");
+            window.click_for_part(words.report.note_save, " s a note of many words");
             // The bar of messages, which says that it is stored, takes some frames to open.
             window.harness().run_steps(30);
             look(&mut window, "note on a trace");
@@ -114,12 +106,10 @@ fn laid_out(
         }
     }
     window.page(Page::Drive);
-    window.click(words.drive.drive);
-    window.wait_for(words.drive.report);
+    window.click_for(words.drive.drive, words.drive.report);
     look(&mut window, "drive");
     window.page(Page::Signals);
-    window.click(words.signals.generator);
-    window.wait_for(words.signals.made);
+    window.click_for(words.signals.generator, words.signals.made);
     look(&mut window, "generator");
     window.click(words.signals.recording_of);
     for make in [
@@ -130,36 +120,31 @@ fn laid_out(
         made.exits(0);
         let file = window.place.text_path(make[2]);
         window.name_file(words.common.file, &file);
-        window.click(words.signals.open);
-        window.wait_for_part(make[1]);
+        window.click_for_part(words.signals.open, make[1]);
         look(&mut window, make[2]);
     }
     window.page(Page::Statistics);
     window.write(words.life.search, "BAD-1");
-    window.click(words.life.show);
-    window.wait_for(words.life.stored);
+    window.click_for(words.life.show, words.life.stored);
     look(&mut window, "life");
     // A low window has it in the menu.
     if !window.shows(words.care.title) {
         window.click(words.frame.menu);
     }
-    window.click(words.care.title);
-    window.wait_for(words.care.never_synced);
+    window.click_for(words.care.title, words.care.never_synced);
     look(&mut window, "care");
     window.key(Key::Escape);
     window.set_up();
     window.wait_for(words.frame.serial);
     look(&mut window, "setup");
-    window.click(words.frame.practice);
-    window.wait_for("eb_relay.slow");
+    window.click_for(words.frame.practice, "eb_relay.slow");
     look(&mut window, "practice");
     window.key(Key::Escape);
     window.click(words.frame.menu);
     window.step();
     look(&mut window, "menu");
     window.key(Key::Escape);
-    window.connect();
-    window.wait_for("SIM-0001");
+    window.connect_simulated();
     window.page(Page::Bench);
     window.wait_for(words.bench.group_atp);
     look(&mut window, "bench");
@@ -172,10 +157,10 @@ fn laid_out(
         window.step();
         window.click_last(words.procedures.title);
     }
-    window.wait_for(match words.language {
-        Language::English => "Overspeed: alarm, service brake, emergency brake",
-        Language::Korean => "과속에 따른 ATP 제동 체결",
-    });
+    window.wait_for(words.language.choose([
+        "Overspeed: alarm, service brake, emergency brake",
+        "과속에 따른 ATP 제동 체결",
+    ]));
     look(&mut window, "procedures");
     if is_drawer {
         window.key(Key::Escape);
@@ -359,8 +344,7 @@ fn the_bar_is_one_line_and_every_page_is_reached_at_every_size() {
             (settings.language, settings.density) = (language, density);
             settings.unit.faults = vec!["eb_relay.slow".into()];
             let mut window = Window::sized(size, Place::new(), scripts(), settings);
-            window.connect();
-            window.wait_for("SIM-0001");
+            window.connect_simulated();
             armed(&mut window, words);
             window.wait_for(words.statistics.nothing);
             let said = format!("{size:?} {density:?} {language:?}");

@@ -27,13 +27,11 @@ fn a_locked_window_shows_and_stops_and_begins_nothing() {
         };
         settings.unit.realtime = true;
         let mut window = Window::sized([900.0, 600.0], Place::new(), scripts(), settings);
-        window.connect();
-        window.wait_for("SIM-0001");
+        window.connect_simulated();
         window.click(words.procedures.run);
         window.until("the run", |window| phase(window) == Phase::Running);
         window.page(Page::Case);
-        window.click(frame.lock);
-        window.wait_for(frame.locked);
+        window.click_for(frame.lock, frame.locked);
         assert_eq!(complaints(&mut window), Vec::<String>::new());
         // The run goes on, and is still seen.
         window.page(Page::Bench);

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 
 use crate::common::window::{Window, latest, settings};
-use crate::common::{Place, list, record_bad_unit, relay_fault, scripts, text};
+use crate::common::{Place, list, relay_fault, text};
 use crate::layout::{SIZES, complaints};
 use eframe::egui::Key;
 use fuzzing::draw;
@@ -22,17 +22,13 @@ fn words() -> &'static Words {
 
 /// A window on the history of a bad unit, with a simulated unit that has the same fault.
 fn connected(page: Page) -> Window {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     let mut settings = Settings {
         operator: "Kim".into(),
         ..settings(page)
     };
     settings.unit.faults = vec!["eb_relay.slow".into()];
-    let mut window = Window::with(place, scripts(), settings);
-    window.connect();
-    window.wait_for("SIM-0001");
-    window
+    Window::connected(place, settings)
 }
 
 /// Rows that a person or a run writes: runs, notes, and the events of each fault by their kind.
@@ -165,9 +161,7 @@ fn each_page_is_resized_while_a_run_goes_on() {
     let mut window = connected(Page::Procedures);
     let mut realtime = window.app().settings().clone();
     realtime.unit.realtime = true;
-    window = Window::with(window.place, scripts(), realtime);
-    window.connect();
-    window.wait_for("SIM-0001");
+    window = Window::connected(window.place, realtime);
     window.click(words.procedures.run);
     let steps = |window: &Window| {
         let run = window.app().units().chosen().run.as_ref();
@@ -207,8 +201,7 @@ fn two_windows_on_one_file_lose_nothing() {
     let words = words();
     let mut one = connected(Page::Faults);
     let mut other = one.beside(one.app().settings().clone());
-    other.connect();
-    other.wait_for("SIM-0001");
+    other.connect_simulated();
     let mut both = [&mut one, &mut other];
     for window in &mut both {
         window.click_in(words.common.unit, words.statistics.all_units);

@@ -4,11 +4,10 @@ use ptu_options::Page;
 use ptu_report::naming::DOT;
 use ptu_report::words::Language;
 use ptu_runs::clock;
-use ptu_window::Settings;
 
 use crate::common::made_runs::Maker;
 use crate::common::told::{Monitor, Told, candidates, conclusion, count, fact, sheet, verdict};
-use crate::common::window::Window;
+use crate::common::window::{Window, settings_in};
 use crate::common::{Place, scripts};
 
 /// Goal: the window tells of a run what every other reader of it tells. Method: made runs of six kinds, one of which can be
@@ -23,11 +22,7 @@ fn the_window_tells_the_facts_of_every_run() {
     let mut monitor = Monitor::default();
     let mut place = Some(place);
     for language in Language::ALL {
-        let settings = Settings {
-            page: Page::Report,
-            language,
-            ..Settings::default()
-        };
+        let settings = settings_in(language, Page::Report);
         let size = [1280.0, 9_000.0];
         let mut window = Window::sized(size, place.take().expect("a place"), scripts(), settings);
         // Names have letters of which the font has no picture.
@@ -37,8 +32,7 @@ fn the_window_tells_the_facts_of_every_run() {
             let began = clock::local(store.run(run.id).expect("recorded").run.started_at_us);
             let name = [&*began, &*format!("M-{}", run.seed)].join(DOT);
             window.page(Page::Report);
-            window.click(&name);
-            window.wait_for(&run.id.to_string());
+            window.click_for(&name, &run.id.to_string());
             let shown = window.shown();
             let row = shown.iter().position(|text| *text == name).expect("listed");
             let state = verdict(&shown[row + 1], language).expect("a verdict");

@@ -45,8 +45,10 @@ fn the_latest_run_is_shown_and_written_to_files() {
         ("HTML", "mine.html", b"<!DOCTYPE html>"),
         ("CSV", "mine.csv", b"\xef\xbb\xbfrun,unit_serial,"),
     ] {
-        window.click(button);
-        window.wait_for(&format!("Written: {}", window.place.text_path(name)));
+        window.click_for(
+            button,
+            &format!("Written: {}", window.place.text_path(name)),
+        );
         assert!(begins(&window, name, begin), "{name}");
     }
     assert!(window.place.read("mine.html").contains("EB reaction"));
@@ -59,8 +61,7 @@ fn the_latest_run_is_shown_and_written_to_files() {
 /// What was done last is what the person wants to see, whether it passed or not.
 #[test]
 fn a_run_that_passed_after_one_that_failed_is_shown() {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     let good = place.recorded_run();
     let mut window = on(place, Language::English);
     let short = good.get(good.len() - 8..).expect("an id");
@@ -92,8 +93,7 @@ fn the_pages_follow_the_connected_unit_and_the_run_just_made() {
     assert!(!window.shows_part("unit SIM-0001,"));
     for _ in 0..2 {
         window.page(Page::Procedures);
-        window.click("Run");
-        window.wait_for_part("Run over: passed");
+        window.click_for_part("Run", "Run over: passed");
         let latest = window.place.run_ids().swap_remove(0);
         let short = latest.get(latest.len() - 8..).expect("an id").to_owned();
         window.page(Page::Report);
@@ -139,12 +139,10 @@ fn a_file_that_cannot_be_written_is_said() {
     let mut window = window(Language::English);
     let nowhere = window.place.text_path("no/such/folder/x.pdf");
     window.name_file("file", &nowhere);
-    window.click("PDF");
-    window.wait_for_part("The report was not written");
+    window.click_for_part("PDF", "The report was not written");
     window.wait_for_part("there is no folder");
     window.name_file("file", " ");
-    window.click("HTML");
-    window.wait_for("name a file");
+    window.click_for("HTML", "name a file");
 }
 
 #[test]
@@ -153,8 +151,7 @@ fn a_note_is_kept_and_stands_on_the_sheet() {
     window.wait_for("code 25: alarm, FSB, EB");
     assert!(!window.enabled("Save note"), "nothing to save");
     window.write("note on this run", "relay K3 clicks late");
-    window.click("Save note");
-    window.wait_for("Note saved");
+    window.click_for("Save note", "Note saved");
     window.wait_for("relay K3 clicks late");
     window.wait_for("Noted by");
     let bad = window.place.run_ids().swap_remove(0);
@@ -171,8 +168,7 @@ fn a_note_is_kept_and_stands_on_the_sheet() {
 /// The lines break as on the printed page; what is read and copied is the text.
 #[test]
 fn a_text_of_several_lines_is_read_as_one() {
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     let text = "relay K3 clicks late, seen from the wall side of the rack; ".repeat(5) + "\n\nend";
     place.ptu(&["runs", "note", "latest", &text]).exits(0);
     let mut window = on(place, Language::English);
@@ -188,14 +184,10 @@ fn a_note_is_written_as_soon_as_a_run_is_over() {
         ..Settings::default()
     };
     settings.unit.faults = vec!["tra.dead".into()];
-    let mut window = Window::with(Place::new(), scripts(), settings);
-    window.connect();
-    window.wait_for("SIM-0001");
-    window.click("Find the part");
-    window.wait_for_part("Run over: failed");
+    let mut window = Window::connected(Place::new(), settings);
+    window.click_for_part("Find the part", "Run over: failed");
     window.write("note on this run", "TRA warm to the touch");
-    window.click("Save note");
-    window.wait_for("Note saved");
+    window.click_for("Save note", "Note saved");
     let latest = ["runs", "show", "latest", "--json"];
     let run = window.place.json(&latest);
     assert_eq!(run["notes"][0]["text"], "TRA warm to the touch", "{run}");
@@ -208,12 +200,10 @@ fn the_sheet_is_korean_in_a_korean_window_and_english_if_wanted() {
     window.wait_for("시험 성적서");
     window.wait_for("불합격");
     window.wait_for("미합격 항목");
-    window.click("English");
-    window.wait_for("What did not pass");
+    window.click_for("English", "What did not pass");
     let file = window.place.text_path("english");
     window.name_file("파일", &file);
-    window.click("HTML");
-    window.wait_for_part("저장 완료");
+    window.click_for_part("HTML", "저장 완료");
     assert!(window.place.read("english.html").contains("lang=\"en\""));
 }
 

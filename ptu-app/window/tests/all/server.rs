@@ -83,8 +83,7 @@ fn the_window_syncs_and_names_conflicts_and_the_last_sync() {
 #[test]
 fn the_window_reads_a_server_and_says_why_it_writes_nothing() {
     let server = shared().database();
-    let place = Place::new();
-    record_bad_unit(&place);
+    let place = Place::with_bad_unit();
     let fault = text(&relay_fault(&place)["id"]).to_owned();
     let repair = format!("faults repair {fault} --part eb_relay --new SN-77 --who Kim");
     place.ptu(&repair).exits(0);
@@ -102,16 +101,12 @@ fn the_window_reads_a_server_and_says_why_it_writes_nothing() {
         };
         let here = Place::new();
         let mut window = Window::on_server(&server, here, settings);
-        let relay = match language {
-            Language::English => "EB relay · ",
-            Language::Korean => "비상제동 계전기 · ",
-        };
+        let relay = language.choose(["EB relay · ", "비상제동 계전기 · "]);
         window.click_part(relay);
         window.wait_for("SN-77");
         window.wait_for(words.care.is_server);
         assert!(!window.shows(words.faults.verify), "{:#?}", window.shown());
-        window.click(words.memory.title);
-        window.wait_for(words.memory.import);
+        window.click_for(words.memory.title, words.memory.import);
         assert!(!window.enabled(words.frame.connect) && !window.enabled(words.memory.import));
         window.key(eframe::egui::Key::Escape);
         assert_eq!(complaints(&mut window), Vec::<String>::new());
@@ -128,8 +123,7 @@ fn the_window_reads_a_server_and_says_why_it_writes_nothing() {
         window.page(Page::Traces);
         window.wait_for(words.traces.events);
         window.page(Page::Faults);
-        window.click("SN-77");
-        window.wait_for(words.life.units_of_part);
+        window.click_for("SN-77", words.life.units_of_part);
         window.click(words.care.title);
         window.click(words.care.check);
         let sound = words.care.sound.split('{').next().unwrap_or_default();

@@ -1,10 +1,9 @@
 //! The page of waveforms.
 
-use crate::common::window::{Window, settings};
+use crate::common::window::{Window, settings_in};
 use crate::common::{Place, scripts};
 use ptu_options::Page;
 use ptu_report::words::{Language, fill};
-use ptu_window::Settings;
 
 /// Goal: who has no terminal sees what is in a recording, and makes one. Method: the generator saves bytes with noise, and the
 /// page, in both languages, opens that file and shows the bytes and the drawings; a text is no recording, and that is said.
@@ -13,10 +12,7 @@ fn what_the_generator_saves_is_opened_and_heard() {
     for language in Language::ALL {
         let words = language.words();
         let said = &words.signals;
-        let settings = Settings {
-            language,
-            ..settings(Page::Signals)
-        };
+        let settings = settings_in(language, Page::Signals);
         let place = Place::new();
         let file = place.text_path("made.wav");
         place.write("text.wav", "a text");
@@ -35,8 +31,7 @@ fn what_the_generator_saves_is_opened_and_heard() {
         window.wait_for_part(&saved(&file));
         assert!(window.place.path("made.wav").is_file());
         window.click(said.recording_of);
-        window.click(said.open);
-        window.wait_for_part("5a c3");
+        window.click_for_part(said.open, "5a c3");
         window.wait_for(said.waveform);
         window.keep_picture(&format!("waves {language:?}"));
         // Never over one that is there.
@@ -49,10 +44,10 @@ fn what_the_generator_saves_is_opened_and_heard() {
         let text = window.place.text_path("text.wav");
         window.name_file(words.common.file, &text);
         window.click(said.open);
-        window.wait_for_part(match language {
-            Language::English => "text.wav is no WAV file",
-            Language::Korean => "읽을 수 있는 WAV 파일이 아닙니다",
-        });
+        window.wait_for_part(language.choose([
+            "text.wav is no WAV file",
+            "읽을 수 있는 WAV 파일이 아닙니다",
+        ]));
         assert!(window.shows_part("5a c3"), "what was shown stays");
     }
 }

@@ -1,7 +1,7 @@
 //! The statistics in the window: the figures of the command line, and bars that lead to their faults.
 
-use crate::common::window::{Window, settings};
-use crate::common::{Place, list, record_bad_unit, scripts, text};
+use crate::common::window::{Window, settings, settings_in};
+use crate::common::{Place, list, scripts, text};
 use eframe::egui::Key;
 use ptu_options::Page;
 use ptu_report::limits::short;
@@ -28,10 +28,7 @@ fn depot() -> Place {
 }
 
 fn window(place: Place, language: Language) -> Window {
-    let settings = Settings {
-        language,
-        ..settings(Page::Statistics)
-    };
+    let settings = settings_in(language, Page::Statistics);
     Window::with(place, scripts(), settings)
 }
 
@@ -58,10 +55,10 @@ fn the_figures_are_those_of_the_command_line_and_bars_lead_to_their_faults() {
             (here, percent(here), percent(rows.iter().map(cases).sum()))
         };
         assert_eq!(told("eb_relay").0, 2, "{stats}");
-        let (relay, antenna) = match language {
-            Language::English => ("EB relay", "TWC antenna"),
-            Language::Korean => ("비상제동 계전기", "TWC 안테나"),
-        };
+        let (relay, antenna) = language.choose([
+            ("EB relay", "TWC antenna"),
+            ("비상제동 계전기", "TWC 안테나"),
+        ]);
         let words = language.words();
         let mut window = window(place, language);
         let of_relay = format!("{relay}: 2 · ");
@@ -77,8 +74,7 @@ fn the_figures_are_those_of_the_command_line_and_bars_lead_to_their_faults() {
         window.wait_for(&chip);
         assert!(window.shows_part(&format!("{relay} · ")));
         assert!(!window.shows_part(&format!("{antenna} · ")));
-        window.click(&chip);
-        window.wait_for_part(&format!("{antenna} · "));
+        window.click_for_part(&chip, &format!("{antenna} · "));
 
         window.page(Page::Statistics);
         let month = window.place.json("faults stats --by month --json");
@@ -100,8 +96,7 @@ fn the_figures_are_those_of_the_command_line_and_bars_lead_to_their_faults() {
 fn control_limits_are_those_of_the_command_line() {
     for language in Language::ALL {
         let said = &language.words().statistics;
-        let place = Place::new();
-        record_bad_unit(&place);
+        let place = Place::with_bad_unit();
         let good = ["run", "atp/overspeed", "--serial-no", "A-2"];
         place.ptu(&good).exits(0);
         let first = "SELECT min(name) AS name FROM measurements WHERE value IS NOT NULL";
@@ -140,8 +135,10 @@ fn a_serial_number_leads_to_its_life_and_an_entry_to_its_fault() {
         let mut window = window(depot(), language);
         window.wait_for(words.statistics.mtbf_is);
         window.write(words.life.search, "A-1");
-        window.click(words.life.show);
-        window.wait_for_part(&fill(words.life.unit, &[("serial", &"A-1")]));
+        window.click_for_part(
+            words.life.show,
+            &fill(words.life.unit, &[("serial", &"A-1")]),
+        );
         window.wait_for(words.life.stored);
         let lives = window.place.json("faults life A-1 --json");
         let events = list(&lives[0]["events"]).len();
@@ -153,14 +150,14 @@ fn a_serial_number_leads_to_its_life_and_an_entry_to_its_fault() {
         assert!(window.shows_part(&told), "{told}: {:#?}", window.shown());
         window.click_part(&format!("{}: ", words.event_kind("repair")));
         window.until("the fault", |window| window.app().page() == Page::Faults);
-        window.click("SN-1");
-        window.wait_for_part(&fill(words.life.part, &[("serial", &"SN-1")]));
+        window.click_for_part("SN-1", &fill(words.life.part, &[("serial", &"SN-1")]));
         window.wait_for(words.life.units_of_part);
-        window.click(words.life.back);
-        window.wait_for(words.statistics.mtbf_is);
+        window.click_for(words.life.back, words.statistics.mtbf_is);
         window.write_over(words.life.search, "no-such");
-        window.click(words.life.show);
-        window.wait_for(&fill(words.life.nothing, &[("serial", &"no-such")]));
+        window.click_for(
+            words.life.show,
+            &fill(words.life.nothing, &[("serial", &"no-such")]),
+        );
     }
 }
 
@@ -176,12 +173,10 @@ fn a_question_is_saved_by_name_and_asked_again() {
     window.until("only the relay", |window| {
         !window.shows_part("TWC antenna · ")
     });
-    window.click(said.questions);
-    window.wait_for(said.save_question);
+    window.click_for(said.questions, said.save_question);
     assert!(!window.enabled(said.save_question));
     window.write(said.question_name, "relays");
-    window.click(said.save_question);
-    window.wait_for(said.forget_question);
+    window.click_for(said.save_question, said.forget_question);
     window.key(Key::Escape);
     window.write_over(words.faults.find, "antenna");
     window.wait_for_part("TWC antenna · ");
@@ -194,8 +189,7 @@ fn a_question_is_saved_by_name_and_asked_again() {
     let kept: Settings = serde_json::from_str(&text).expect("settings");
     assert_eq!(kept.faults.len(), 1);
     window.click(said.questions);
-    window.click(said.forget_question);
-    window.wait_for(said.question_name);
+    window.click_for(said.forget_question, said.question_name);
     assert!(window.app().settings().faults.is_empty());
 }
 
@@ -227,11 +221,9 @@ fn faults_for_each_10_000_km_are_those_of_the_command_line() {
         let file = place.write("odometers.csv", readings);
         let stats = format!("faults stats --by month --distances {file} --json");
         let mut window = window(place, language);
-        window.click(said.each_10000_km);
-        window.wait_for(said.no_distances);
+        window.click_for(said.each_10000_km, said.no_distances);
         window.name_file(said.odometers, &file);
-        window.click(said.read_odometers);
-        window.wait_for(said.per_10000_km);
+        window.click_for(said.read_odometers, said.per_10000_km);
         let month = window.place.json(&stats);
         let month = list(&month).last().expect("this month").clone();
         let faults = month["distance_faults"].as_u64().expect("a number");
@@ -255,10 +247,10 @@ fn faults_for_each_10_000_km_are_those_of_the_command_line() {
             .place
             .write("odometers.csv", &readings.replace("9000000", "many"));
         window.click(said.read_odometers);
-        let wrong = match language {
-            Language::English => "line 3, column 3 (km): \"many\" is no number of kilometres",
-            Language::Korean => "3행 3열(km): \"many\"은(는) 거리(km) 값이 아닙니다",
-        };
+        let wrong = language.choose([
+            "line 3, column 3 (km): \"many\" is no number of kilometres",
+            "3행 3열(km): \"many\"은(는) 거리(km) 값이 아닙니다",
+        ]);
         window.wait_for_part(wrong);
         // The rest of the page is as it was.
         assert!(window.shows(said.mtbf_is));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::common::window::Window;
+use crate::common::window::{Window, settings};
 use crate::common::{Place, scripts};
 use eframe::egui::Key;
 use ptu_options::Page;
@@ -27,8 +27,7 @@ fn csv(window: &mut Window, save: &str, field: &str) -> (Vec<String>, Vec<Vec<St
     // A new name each time: the message about the last file is still shown.
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     let name = window.place.text_path(&format!("view-{count}"));
-    window.click(window.app().settings().language.words().traces.save);
-    window.wait_for(field);
+    window.click_for(window.app().settings().language.words().traces.save, field);
     clear(window, field);
     window.write(field, &name);
     window.click(save);
@@ -134,14 +133,12 @@ fn over_distance_cursors_keep_their_rows_and_differences_are_told() {
     window.click_last("Statistics");
     window.wait_for(&format!("between the cursors: {:.2} s", b - a));
 
-    window.click("distance");
-    window.wait_for("0.00 m trigger");
+    window.click_for("distance", "0.00 m trigger");
     window.wait_for_part("between the cursors");
     assert!(window.shows_part(" m"), "{:#?}", window.shown());
     let (heads, _) = csv(&mut window, "Save CSV", "file name, without its ending");
     assert_eq!(heads[..2], ["time_s", "distance_m"]);
-    window.click("Clear");
-    window.wait_for_part("in view: ");
+    window.click_for_part("Clear", "in view: ");
 }
 
 #[test]
@@ -149,10 +146,8 @@ fn the_good_twin_tells_which_signals_deviate() {
     let mut window = window(Settings::default());
     window.wait_for("0.00 s trigger");
     window.click("what to compare with");
-    window.click("good twin");
-    window.wait_for_part("signals deviate, first eb at");
-    window.click("Show them");
-    window.wait_for("≠ deviates");
+    window.click_for_part("good twin", "signals deviate, first eb at");
+    window.click_for("Show them", "≠ deviates");
     window.click("what to compare with");
     window.click("nothing");
     window.until("no comparison", |window| !window.shows("≠ deviates"));
@@ -175,8 +170,7 @@ fn a_signal_the_trace_lacks_says_so_and_lanes_are_chosen_by_name() {
     window.click("hcr");
     clear(&mut window, "find a signal");
     window.click("up: hcr");
-    window.click("Automatic");
-    window.wait_for("down: speed");
+    window.click_for("Automatic", "down: speed");
 }
 
 #[test]
@@ -196,18 +190,14 @@ fn in_korean_a_trace_is_found_by_its_fault_and_unit() {
     clear(&mut window, filter);
     window.write(filter, "GOOD-9");
     window.wait_for("필터에 맞는 신호 기록이 없음");
-    window.click("거리");
-    window.wait_for("0.00 m 트리거");
+    window.click_for("거리", "0.00 m 트리거");
 }
 
 #[test]
 fn a_database_that_is_none_is_told_and_the_window_stays() {
     let place = Place::new();
     place.write("history.db", "this is no database");
-    let settings = Settings {
-        page: Page::Traces,
-        ..Settings::default()
-    };
+    let settings = settings(Page::Traces);
     let mut window = Window::with(place, scripts(), settings);
     window.wait_for_part("The traces cannot be listed");
     for _ in 0..3 {
@@ -248,8 +238,7 @@ fn signals_share_a_lane_and_a_stretch_is_zoomed_to_and_left() {
     window.click("Automatic");
     window.click("layouts");
     window.click("brakes");
-    window.click("layouts");
-    window.wait_for("Forget it");
+    window.click_for("layouts", "Forget it");
     window.key(Key::Escape);
     let (heads, _) = csv(&mut window, "Save CSV", field);
     assert_eq!(heads[1..], ["speed_kmh", "limit_kmh", "eb"]);
@@ -364,8 +353,7 @@ fn a_note_at_the_cursor_is_kept_with_its_place() {
     window.click("Cursor A");
     let at_s = told_place(&window, "A");
     window.write("note at cursor A", "the wheel slips");
-    window.click("Save note");
-    window.wait_for_part("s the wheel slips");
+    window.click_for_part("Save note", "s the wheel slips");
     let told = window.shown().into_iter();
     let told: Vec<_> = told
         .filter(|text| text.ends_with("s the wheel slips"))

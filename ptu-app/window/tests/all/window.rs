@@ -23,8 +23,7 @@ fn running(window: &Window) -> bool {
 #[test]
 fn connects_arms_and_stops_everything_with_one_key() {
     let mut window = Window::open(Page::Bench);
-    window.connect();
-    window.wait_for("SIM-0001");
+    window.connect_simulated();
     window.wait_for("Arm");
     window.hold("Arm", 1.3);
     window.wait_for("ARMED");
@@ -38,13 +37,10 @@ fn connects_arms_and_stops_everything_with_one_key() {
 /// the train: the plot's speed is that of the unit, and it is gone with the switch.
 #[test]
 fn a_run_is_followed_by_its_signals() {
-    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
-    window.connect();
-    window.wait_for("SIM-0001");
+    let mut window = Window::connected(Place::new(), realtime(Page::Procedures));
     let plot = "Plot: speed ";
     assert!(!window.shows_part(plot));
-    window.click("Live signals");
-    window.wait_for_part("Plot: speed 0.0 km/h");
+    window.click_for_part("Live signals", "Plot: speed 0.0 km/h");
     window.click_in("All, none, reload", "None");
     window.click("Overspeed: alarm, service brake, emergency brake");
     window.click("Run");
@@ -68,10 +64,8 @@ fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
     window.write("find a fault", "eb_relay.slow");
     window.click("eb_relay.slow");
     window.key(Key::Escape);
-    window.connect();
-    window.wait_for("SIM-0001");
-    window.click("Run");
-    window.wait_for_part("Run over: failed");
+    window.connect_simulated();
+    window.click_for_part("Run", "Run over: failed");
     window.wait_for_part("replace the EB relay (eb_relay, ");
     // A step that failed is a click from the trace that shows it.
     window.click("Trace");
@@ -102,17 +96,14 @@ fn an_operator_reads_no_source_and_a_passed_run_says_so() {
     settings.density = Density::Operator;
     let mut window = Window::with(Place::new(), &scripts, settings);
     let words = Language::English.words();
-    window.connect();
-    window.wait_for("SIM-0001");
-    window.click(words.procedures.run);
-    window.wait_for("There?");
+    window.connect_simulated();
+    window.click_for(words.procedures.run, "There?");
     assert!(!window.shows_part("own.star:"));
     window.click(words.frame.menu);
     window.click(words.frame.engineer);
     window.key(Key::Escape);
     window.wait_for_part("own.star:");
-    window.click("Yes");
-    window.wait_for_part("Run over: passed");
+    window.click_for_part("Yes", "Run over: passed");
     let passed = words.procedures.all_passed.replace("{n}", "1");
     window.wait_for(&passed);
 }
@@ -132,22 +123,17 @@ fn a_note_is_written_on_while_the_conclusion_comes() {
     let mut settings = settings(Page::Procedures);
     settings.operator = "Lee".into();
     let mut window = Window::with(Place::new(), &scripts, settings);
-    window.connect();
-    window.wait_for("SIM-0001");
-    window.click("Run");
-    window.wait_for("Quiet here?");
-    window.click("Yes");
-    window.wait_for_part("Run over: failed");
-    window.click("Run");
-    window.wait_for("Quiet here?");
+    window.connect_simulated();
+    window.click_for("Run", "Quiet here?");
+    window.click_for_part("Yes", "Run over: failed");
+    window.click_for("Run", "Quiet here?");
     let (release, held) = std::sync::mpsc::channel();
     let question = move |_: &_| {
         held.recv().expect("let go");
         Ok(())
     };
     let held_up = window.app().queries().run(question);
-    window.click("Yes");
-    window.wait_for_part("Run over: failed");
+    window.click_for_part("Yes", "Run over: failed");
     window.write("note on this run", "relay K3 ");
     assert!(!window.shows_part("cannot tell: "));
     release.send(()).expect("held up");
@@ -155,8 +141,7 @@ fn a_note_is_written_on_while_the_conclusion_comes() {
     assert!(held_up.take().is_some());
     window.harness().event(Event::Text("clicks late".into()));
     window.step();
-    window.click("Save note");
-    window.wait_for("Note saved");
+    window.click_for("Save note", "Note saved");
     assert_eq!(latest(&window)["notes"][0]["text"], "relay K3 clicks late");
 }
 
@@ -164,11 +149,8 @@ fn a_note_is_written_on_while_the_conclusion_comes() {
 fn the_least_of_steps_finds_the_part_too() {
     let mut settings = settings(Page::Procedures);
     settings.unit.faults = vec!["tra.dead".into()];
-    let mut window = Window::with(Place::new(), scripts(), settings);
-    window.connect();
-    window.wait_for("SIM-0001");
-    window.click("Find the part");
-    window.wait_for_part("replace the TRA (tra, ");
+    let mut window = Window::connected(Place::new(), settings);
+    window.click_for_part("Find the part", "replace the TRA (tra, ");
     assert!(latest(&window)["run"]["steps_run"].as_u64() < Some(200));
 }
 
@@ -188,19 +170,15 @@ fn speaks_korean_from_one_frame_to_the_next() {
         window.wait_for(name);
     }
     assert!(!window.shows("not connected"), "no English is left over");
-    window.connect();
-    window.wait_for("SIM-0001");
+    window.connect_simulated();
 }
 
 #[test]
 fn a_run_is_paused_stepped_and_stopped_and_its_record_closed() {
-    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
-    window.connect();
-    window.wait_for("SIM-0001");
+    let mut window = Window::connected(Place::new(), realtime(Page::Procedures));
     window.click("Run");
     window.until("the run", running);
-    window.click("Pause");
-    window.wait_for_part("Paused before: ");
+    window.click_for_part("Pause", "Paused before: ");
     let steps = |window: &Window| {
         let run = window.app().units().chosen().run.as_ref();
         run.map_or(0, |run| run.counts().run())
@@ -211,8 +189,7 @@ fn a_run_is_paused_stepped_and_stopped_and_its_record_closed() {
     window.wait_for_part("Paused before: ");
     assert_eq!(steps(&window), before + 1);
     window.click("Go on");
-    window.click("Stop");
-    window.wait_for_part("Run over: aborted");
+    window.click_for_part("Stop", "Run over: aborted");
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "aborted");
     assert_eq!(run["run"]["state"], "finished");
@@ -223,9 +200,7 @@ fn a_run_is_paused_stepped_and_stopped_and_its_record_closed() {
 
 #[test]
 fn stop_all_ends_a_run_with_its_clean_up_however_often_it_is_pressed() {
-    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
-    window.connect();
-    window.wait_for("SIM-0001");
+    let mut window = Window::connected(Place::new(), realtime(Page::Procedures));
     window.click("Run");
     window.until("a step", |window| {
         let run = window.app().units().chosen().run.as_ref();
@@ -259,8 +234,7 @@ fn what_is_over_is_no_longer_said() {
     window.set_up();
     window.click("simulated unit");
     window.key(Key::Escape);
-    window.connect();
-    window.wait_for("SIM-0001");
+    window.connect_simulated();
     assert!(!window.shows_part("Not connected"));
     window.click("Run");
     window.until("the run", running);
@@ -274,9 +248,7 @@ fn what_is_over_is_no_longer_said() {
 
 #[test]
 fn letting_go_in_a_run_closes_its_record_first() {
-    let mut window = Window::with(Place::new(), scripts(), realtime(Page::Procedures));
-    window.connect();
-    window.wait_for("SIM-0001");
+    let mut window = Window::connected(Place::new(), realtime(Page::Procedures));
     window.click("Run");
     window.until("the run", running);
     // A key beside those of the pages ends no run.
@@ -284,8 +256,7 @@ fn letting_go_in_a_run_closes_its_record_first() {
     window.step();
     assert!(running(&window));
     window.click("SIM-0001");
-    window.click("Disconnect");
-    window.wait_for_part("outputs safe");
+    window.click_for_part("Disconnect", "outputs safe");
     window.wait_for("not connected");
     assert_eq!(latest(&window)["run"]["verdict"], "aborted");
 }
@@ -317,17 +288,14 @@ fn a_script_asks_and_the_answer_decides() {
     );
     for (answer, verdict) in [("Yes", "passed"), ("No", "failed")] {
         let mut window = Window::with(Place::new(), &scripts, settings(Page::Procedures));
-        window.connect();
-        window.wait_for("SIM-0001");
-        window.click("Run");
-        window.wait_for("Does the lamp light?");
+        window.connect_simulated();
+        window.click_for("Run", "Does the lamp light?");
         // No key says what was seen.
         window.pass(0.7);
         let harness = window.harness();
         harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
         window.step();
-        window.click(answer);
-        window.wait_for_part(&format!("Run over: {verdict}"));
+        window.click_for_part(answer, &format!("Run over: {verdict}"));
     }
 }
 
@@ -337,12 +305,10 @@ fn a_script_that_no_longer_compiles_is_said_and_not_run() {
     let good = "procedure(title = \"Wait\", suspect = \"-\")\nstep(\"waits\", do = [wait(s(1))], measure = value(\"v\", speed))\n";
     let folder = own_scripts(&place, good);
     let mut window = Window::with(Place::new(), &folder, settings(Page::Procedures));
-    window.connect();
-    window.wait_for("SIM-0001");
+    window.connect_simulated();
     window.wait_for("Wait");
     std::fs::write(folder.join("own/own.star"), "procedure(title = \n").expect("written");
-    window.click("Run");
-    window.wait_for_part("The scripts have errors");
+    window.click_for_part("Run", "The scripts have errors");
     window.wait_for_part("own/own.star:");
     assert!(!window.enabled("Run"));
     // What would take the whole memory takes a process of its own with it, and the window stays.
@@ -357,8 +323,7 @@ fn a_script_that_no_longer_compiles_is_said_and_not_run() {
     assert!(!window.enabled("Run"));
     std::fs::write(folder.join("own/own.star"), good).expect("written");
     window.click_in("All, none, reload", "Reload scripts");
-    window.click("Run");
-    window.wait_for_part("Run over: passed");
+    window.click_for_part("Run", "Run over: passed");
 }
 
 #[test]
@@ -386,18 +351,14 @@ fn a_port_that_is_not_there_is_said() {
 fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
     let place = Place::new();
     place.write("history.db", "this is no database");
-    let mut window = Window::with(place, scripts(), settings(Page::Procedures));
-    window.connect();
-    window.wait_for("SIM-0001");
-    window.click("Run");
-    window.wait_for_part("The run was not begun");
+    let mut window = Window::connected(place, settings(Page::Procedures));
+    window.click_for_part("Run", "The run was not begun");
     assert!(window.app().units().chosen().is_connected());
     window.click("Noted");
     assert!(!window.shows_part("The run was not begun"));
 
     std::fs::remove_file(window.place.path("history.db")).expect("removed");
-    window.click("Run");
-    window.wait_for_part("Run over: passed");
+    window.click_for_part("Run", "Run over: passed");
     let lock = rusqlite::Connection::open(window.place.path("history.db")).expect("database");
     lock.execute_batch("PRAGMA locking_mode = EXCLUSIVE; BEGIN EXCLUSIVE")
         .expect("locked");
@@ -423,9 +384,7 @@ fn a_window_closed_in_mid_run_closes_the_record_and_keeps_its_settings() {
         operator: "Kim".into(),
         ..realtime(Page::Procedures)
     };
-    let mut window = Window::with(Place::new(), scripts(), settings);
-    window.connect();
-    window.wait_for("SIM-0001");
+    let mut window = Window::connected(Place::new(), settings);
     window.click("Run");
     window.until("the run", |window| {
         let run = window.app().units().chosen().run.as_ref();
@@ -454,9 +413,7 @@ fn a_window_closed_in_mid_run_closes_the_record_and_keeps_its_settings() {
 fn two_units_are_tested_side_by_side() {
     let mut settings = settings(Page::Procedures);
     settings.unit.faults = vec!["tra.dead".into()];
-    let mut window = Window::with(Place::new(), scripts(), settings);
-    window.connect();
-    window.wait_for("SIM-0001");
+    let mut window = Window::connected(Place::new(), settings);
     window.click("Add a unit");
     window.connect();
     window.until("both", |window| {

@@ -15,7 +15,7 @@ use ptu_window::DataPaths;
 use ptu_window::{App, Options, Settings};
 
 use super::picture::{Picture, Textures};
-use super::{Place, record_bad_unit, scripts};
+use super::{Place, scripts};
 
 /// Patience with what other threads do; a busy machine may hold them up. It costs time only in vain.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -63,6 +63,13 @@ impl Window {
         let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
         let paths = DataPaths::new(place.path("history.db"), scripts);
         Self::on(size, place, paths, settings)
+    }
+
+    /// A window with the simulated unit connected.
+    pub fn connected(place: Place, settings: Settings) -> Self {
+        let mut window = Self::with(place, scripts(), settings);
+        window.connect_simulated();
+        window
     }
 
     /// A second window on the history of this one.
@@ -175,6 +182,18 @@ impl Window {
         self.click_once_still(label, |places| places.first().copied(), 1);
     }
 
+    /// Clicks the first of this name, and waits until something of another name is shown.
+    pub fn click_for(&mut self, label: &str, shown: &str) {
+        self.click(label);
+        self.wait_for(shown);
+    }
+
+    /// Clicks the first of this name, and waits until something whose name contains this is shown.
+    pub fn click_for_part(&mut self, label: &str, part: &str) {
+        self.click(label);
+        self.wait_for_part(part);
+    }
+
     /// Clicks the first whose name contains this.
     pub fn click_part(&mut self, part: &str) {
         self.wait_for_part(part);
@@ -272,6 +291,12 @@ impl Window {
             window.app().units().chosen().phase() == Phase::Offline
         });
         self.key(Key::F9);
+    }
+
+    /// Connects the simulated unit, and waits until it has told its serial number.
+    pub fn connect_simulated(&mut self) {
+        self.connect();
+        self.wait_for("SIM-0001");
     }
 
     /// Presses the key that lets it go.
@@ -484,13 +509,17 @@ fn button(pos: Pos2, pressed: bool) -> Event {
 
 /// A window on the history of a bad unit, in this language.
 pub fn on_bad_unit(language: Language) -> Window {
-    let place = Place::new();
-    record_bad_unit(&place);
-    let settings = Settings {
-        language,
-        ..settings(Page::Case)
-    };
+    let place = Place::with_bad_unit();
+    let settings = settings_in(language, Page::Case);
     Window::with(place, scripts(), settings)
+}
+
+/// Settings of a window that shows this page, in a language.
+pub fn settings_in(language: Language, page: Page) -> Settings {
+    Settings {
+        language,
+        ..settings(page)
+    }
 }
 
 pub fn settings(page: Page) -> Settings {

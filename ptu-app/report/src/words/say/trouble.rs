@@ -6,7 +6,7 @@ use btu_rig::procedure::Procedure;
 use ptu_runs::failure::Failure;
 use ptu_runs::places::{Places, Teller};
 use ptu_runs::stdio;
-use ptu_runs::words::{Manner, Say};
+use ptu_runs::words::{Say, TextStyle};
 
 use super::super::{Language, Words};
 use super::condition;
@@ -14,12 +14,12 @@ use super::condition;
 impl Words {
     /// Sentence on a trouble, and the next move.
     pub fn trouble(&self, what: &impl Say) -> String {
-        what.say(self.manner(false))
+        what.say(self.style(false))
     }
 
     /// Sentence on a trouble, with the commands that help.
     pub fn told(&self, what: &impl Say) -> String {
-        what.say(self.manner(true))
+        what.say(self.style(true))
     }
 
     /// The procedures as a bench does them, told in this language.
@@ -37,9 +37,9 @@ impl Words {
         bench.fit(procedures, &teller)
     }
 
-    pub(in crate::words) fn manner(&self, commands: bool) -> Manner {
+    pub(in crate::words) fn style(&self, commands: bool) -> TextStyle {
         let korean = self.language == Language::Korean;
-        Manner { korean, commands }
+        TextStyle { korean, commands }
     }
 }
 

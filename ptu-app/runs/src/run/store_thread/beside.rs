@@ -60,7 +60,7 @@ pub(super) fn keep_beside(
     let made = [beside, elsewhere].into_iter().find_map(|path| {
         // What the open file holds is more than the run, if it can be read still.
         let copied = match *error {
-            StoreError::Misplaced { .. } => copy_with_run(store, run, &path),
+            StoreError::FileChanged { .. } => copy_with_run(store, run, &path),
             _ => None,
         };
         let made = copied.map(|copy| (copy, 0));

@@ -8,12 +8,12 @@ use crate::failure::{Failure, Near, RunTrouble, Trouble, Unknown};
 const SOURCE: &str = include_str!("../store.rs");
 const ERRORS: &str = include_str!("../../../../../fault-db/src/error/mod.rs");
 /// English and Korean, as a window says them.
-const WINDOW: [Manner; 2] = [
-    Manner {
+const WINDOW: [TextStyle; 2] = [
+    TextStyle {
         korean: false,
         commands: false,
     },
-    Manner {
+    TextStyle {
         korean: true,
         commands: false,
     },
@@ -87,9 +87,7 @@ fn what_is_said_with_a_command_is_said_without_one_in_a_window() {
 
 #[test]
 fn an_error_keeps_its_file_and_loses_its_option() {
-    let failure = Failure::from(StoreError::Missing {
-        path: "/data/history.db".into(),
-    });
+    let failure = Failure::from(StoreError::Missing("/data/history.db".into()));
     assert_eq!(
         failure.message.say(WINDOW[0]),
         "there is no database /data/history.db; a first run creates it, or choose another file"
@@ -100,10 +98,10 @@ fn an_error_keeps_its_file_and_loses_its_option() {
 fn what_is_known_is_told_without_commands_and_in_korean() {
     let path = || "/h.db".into();
     let id = fault_db::Id::from_bytes([7; 16]);
-    let error = || Arc::new(StoreError::Locked { path: path() });
+    let error = || Arc::new(StoreError::Locked(path()));
     for (trouble, english, korean) in [
         (
-            Trouble::Store(Arc::new(StoreError::Malformed { path: path() })),
+            Trouble::Store(Arc::new(StoreError::Malformed(path()))),
             "/h.db is damaged; check the history",
             "파일이 손상되었습니다: /h.db. 이력을 검사한 후 백업으로 계속하십시오",
         ),

@@ -139,7 +139,8 @@ impl TrainPlace {
         })
     }
 
-    /// ATO begins to power by data of another section than it departs into, although the train has stood at a stop point and the next is known.
+    /// ATO begins to power by data of another section than it departs into, although the train has stood at a stop point
+    /// and the next is known.
     pub fn driven_by_other(&self, seen: Observed<'_>) -> bool {
         let heard = seen.value(Signal::Wayside) == 1.0;
         let run_m = self

@@ -18,7 +18,7 @@ const FIELD: f32 = 380.0;
 
 /// State of the dialog and of its work.
 #[derive(Default)]
-pub struct Care {
+pub struct HistoryMaintenance {
     open: bool,
     address: String,
     /// The address was proposed once: an address typed in its place stays.
@@ -31,7 +31,7 @@ pub struct Care {
     asked: Option<(usize, u64)>,
 }
 
-impl Care {
+impl HistoryMaintenance {
     pub fn toggle(&mut self) {
         self.open = !self.open;
     }

@@ -115,8 +115,8 @@ fn stopped(words: &Words) -> Done {
 fn of_file(file: &Path, error: StoreError) -> Failure {
     let shown = file.display().to_string();
     match &error {
-        StoreError::Missing { path } if path == file => Failure::bench(FileTrouble::Missing(shown)),
-        StoreError::TargetExists { .. } => Failure::bench(FileTrouble::Exists(shown)),
+        StoreError::Missing(path) if path == file => Failure::bench(FileTrouble::Missing(shown)),
+        StoreError::TargetExists(_) => Failure::bench(FileTrouble::Exists(shown)),
         _ => error.into(),
     }
 }

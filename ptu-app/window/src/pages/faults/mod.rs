@@ -160,7 +160,7 @@ impl FaultsPage {
                     if let Some(asked) =
                         saved_questions(ui, &SavedSaid::questions(words), saved, &now)
                     {
-                        self.units.take(asked.unit.clone());
+                        self.units.choose(asked.unit.clone());
                         self.filter = Filter::asked(asked);
                     }
                     is_read = self.unit_log.show(ui, context);

@@ -13,10 +13,8 @@ fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
          step(\"the lamp lights\", do = [prompt(\"Does the lamp light?\", within = s(600))])\n",
     );
     let mut window = Window::with(Place::new(), scripts, settings(Page::Procedures));
-    window.connect();
-    window.wait_for("SIM-0001");
-    window.click("Run");
-    window.wait_for("Does the lamp light?");
+    window.connect_simulated();
+    window.click_for("Run", "Does the lamp light?");
     window.page(Page::Faults);
     window.wait_for("a script asks");
     let now = |window: &Window| window.app().units().chosen().bench.live().now;
@@ -32,6 +30,5 @@ fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
         "{bench_s} s on the bench in {clock_s} s"
     );
     window.click("a script asks");
-    window.click("Yes");
-    window.wait_for_part("Run over: passed");
+    window.click_for_part("Yes", "Run over: passed");
 }

@@ -2,13 +2,12 @@
 //! connection to the part that failed, the unit's log and its run record, in both languages.
 
 use crate::common::served::Unit;
-use crate::common::window::{Window, latest, own_scripts, settings};
+use crate::common::window::{Window, latest, own_scripts, settings, settings_in};
 use crate::common::{Place, list, scripts};
 use eframe::egui::Key;
 use ptu_options::Page;
 use ptu_report::words::{Language, Words};
 use ptu_runs::bench_worker::Phase;
-use ptu_window::Settings;
 
 /// Something that begins with `first` and ends with the last words of `pattern` is shown.
 fn told(window: &Window, first: &str, pattern: &str) -> bool {
@@ -27,11 +26,7 @@ fn the_whole_way(language: Language) {
     let campaign = ["campaign", "--harness", "none", "--faults", "eb_relay.slow"];
     place.ptu(&campaign).exits(0);
     let train = Unit::aboard(&["--service", "61", "--inject", "eb_relay.slow"]);
-    let mut settings = Settings {
-        page: Page::Bench,
-        language,
-        ..Settings::default()
-    };
+    let mut settings = settings_in(language, Page::Bench);
     settings.unit.endpoint = train.address.clone();
     settings.unit.train_no = "301".into();
     let mut window = Window::with(place, scripts(), settings);
@@ -61,8 +56,7 @@ fn the_whole_way(language: Language) {
                 .iter()
                 .any(|text| of_item(text, words.bench.item_test_board))
     });
-    window.click(words.frame.disarm);
-    window.wait_for(words.frame.arm);
+    window.click_for(words.frame.disarm, words.frame.arm);
 
     window.page(Page::Procedures);
     window.click_in(words.procedures.choice, words.procedures.none);
@@ -76,10 +70,10 @@ fn the_whole_way(language: Language) {
         window.click(title);
     }
     window.click(words.procedures.run);
-    window.wait_for_part(match language {
-        Language::English => "replace the EB relay (eb_relay, ",
-        Language::Korean => "교체 대상: 비상제동 계전기 (eb_relay, ",
-    });
+    window.wait_for_part(language.choose([
+        "replace the EB relay (eb_relay, ",
+        "교체 대상: 비상제동 계전기 (eb_relay, ",
+    ]));
     let run = window.place.json("runs show latest --json");
     for step in run["steps"].as_array().expect("steps") {
         if step["procedure"] == "ptu/identity" {
@@ -107,8 +101,7 @@ fn the_whole_way(language: Language) {
     window.until("the pulled run", |window| pulled(window).is_some());
     let trace = pulled(&window).expect("just seen");
     window.click(&trace);
-    window.click(words.memory.compare);
-    window.wait_for_part("line line8 section 61");
+    window.click_for_part(words.memory.compare, "line line8 section 61");
 }
 
 #[test]
@@ -183,10 +176,8 @@ fn a_run_whose_link_was_lost_goes_on_with_its_step() {
     settings.unit.endpoint = unit.address.clone();
     let mut window = Window::with(Place::new(), &scripts, settings);
     let words = Language::English.words();
-    window.connect();
-    window.wait_for("SIM-0001");
-    window.click(words.procedures.run);
-    window.wait_for("There?");
+    window.connect_simulated();
+    window.click_for(words.procedures.run, "There?");
     unit.kill();
     window.wait_for_part("link lost at step 2 of 3");
     window.wait_for(words.frame.link_gone);
@@ -194,11 +185,9 @@ fn a_run_whose_link_was_lost_goes_on_with_its_step() {
     assert!(!window.shows_part("link 100"));
     let broken = latest(&window)["run"]["id"].clone();
     let _again = Unit::at_port(&unit.port);
-    window.click(words.frame.go_on);
-    window.wait_for("There?");
+    window.click_for(words.frame.go_on, "There?");
     assert!(!window.shows(words.frame.link_gone));
-    window.click("Yes");
-    window.wait_for_part("Run over: passed");
+    window.click_for_part("Yes", "Run over: passed");
     let rest = latest(&window);
     assert_eq!(rest["run"]["continues"], broken);
     let steps = list(&rest["steps"]).iter();
@@ -209,10 +198,7 @@ fn a_run_whose_link_was_lost_goes_on_with_its_step() {
 #[test]
 fn the_windows_buttons_read_the_unit_that_is_not_connected() {
     let unit = Unit::on_tcp(&["--serial-no", "MEM-3"]);
-    let mut settings = Settings {
-        page: Page::Faults,
-        ..Settings::default()
-    };
+    let mut settings = settings(Page::Faults);
     settings.unit.endpoint = unit.address.clone();
     let mut window = Window::with(Place::new(), scripts(), settings);
     window.click_in("Records kept in the unit", "Import the unit's log");

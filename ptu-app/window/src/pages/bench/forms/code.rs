@@ -89,25 +89,23 @@ mod tests {
         assert_eq!(form.level_mv, config.receiver.level_nominal_mv);
         form.level_mv = 80.0;
         let code = &config.codes[4];
-        let expected = (code.carrier_hz, code.rate_hz, 80.0);
-        let Stimulus::Code {
-            carrier_hz,
-            rate_hz,
-            level_mv,
-        } = form.of_table(code, StimulusPath::Harness)
-        else {
-            panic!("a signal in the antenna");
-        };
-        assert_eq!((carrier_hz, rate_hz, level_mv), expected);
-        let Stimulus::PtuCode {
-            carrier_hz,
-            rate_hz,
-            level_mv,
-        } = form.of_table(code, StimulusPath::TestBoard)
-        else {
-            panic!("a signal in the test coil");
-        };
-        assert_eq!((carrier_hz, rate_hz, level_mv), expected);
+        let (carrier_hz, rate_hz, level_mv) = (code.carrier_hz, code.rate_hz, 80.0);
+        assert_eq!(
+            form.of_table(code, StimulusPath::Harness),
+            Stimulus::Code {
+                carrier_hz,
+                rate_hz,
+                level_mv
+            }
+        );
+        assert_eq!(
+            form.of_table(code, StimulusPath::TestBoard),
+            Stimulus::PtuCode {
+                carrier_hz,
+                rate_hz,
+                level_mv
+            }
+        );
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::View;
 use super::card::{card, named, write};
 use crate::Palette;
 use crate::pages::bench::text::since_start;
-use ptu_report::words::{Language, Words};
+use ptu_report::words::Words;
 
 const LINE: f32 = 18.0;
 /// Width of the time.
@@ -76,10 +76,7 @@ fn told(entry: &UnitEvent, words: &Words, palette: &Palette) -> (String, Option<
         );
     };
     let definition = event.definition();
-    let text = match words.language {
-        Language::English => definition.text,
-        Language::Korean => definition.text_ko,
-    };
+    let text = words.language.choose([definition.text, definition.text_ko]);
     let colour = match definition.severity {
         Severity::Info => None,
         Severity::Minor => Some(palette.warn),

@@ -2,7 +2,7 @@
 
 /// Change of the opened file, as text behind its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Misplaced {
+pub enum FileChange {
     /// The file has no name any more.
     #[error("was removed")]
     Removed,
