@@ -162,7 +162,7 @@ impl<'m, 'd> Belief<'m, 'd> {
         self.effects[effect]
     }
 
-    /// The same as far as it tells what the checks to come will show: a mode that was not seen yet is no twin of
+    /// What `like_effects` has, as far as it tells what the checks to come will show: a mode that was not seen yet is no twin of
     /// another, however alike they were so far.
     pub(super) fn vaguely_like_effects(&self, part: usize) -> Vec<f64> {
         let alike = self.model.resemblance(part).iter();

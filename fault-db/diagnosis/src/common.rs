@@ -1,6 +1,6 @@
 //! One cause at several parts: a supply, a ground or a link that two of the parts which it reaches suffer from.
 //!
-//! A check passes under two effects only if it passes under each, and fails if either makes it fail (noisy-OR). So a passed
+//! A check passes under two effects only if it passes under each, and fails if either makes it fail. So a passed
 //! check has the lesser of the two likelihoods; any other result is that of one of them.
 
 use std::collections::BTreeMap;
@@ -70,6 +70,7 @@ struct StrangeStep<'b> {
     /// Probability of its result under each effect, and that times the likelihood.
     weighted: Vec<(f64, f64)>,
 }
+
 impl<'b> Steps<'b> {
     fn new(belief: &'b Belief<'_, '_>, seen: &Observation) -> Self {
         let model = belief.model;

@@ -4,6 +4,8 @@
 //! It is a posterior-predictive check (Rubin 1984), whose weights are those of a logistic regression over runs of modes
 //! that were counted and of modes that were left out.
 
+use std::collections::BTreeMap;
+
 use super::belief::Belief;
 use super::model::FIRST_EFFECT;
 use super::observation::Observation;
@@ -12,7 +14,7 @@ use super::settings::CountedSettings;
 /// What of a run is not as counted under the likeliest fault of the dictionary.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Misfit {
-    /// Steps that end as they seldom did.
+    /// Checks that end as they seldom did.
     results: usize,
     /// Values far from those counted, and values missing that never were.
     values: usize,
@@ -31,21 +33,29 @@ impl Misfit {
         let effects = ln[FIRST_EFFECT..].iter().zip(model.effects()).enumerate();
         let likeliest = effects.max_by(|a, b| a.1.0.total_cmp(b.1.0));
         let (number, (_, likeliest)) = likeliest?;
-        let mut misfit = Self::default();
+        // However often a check was made, what lasts counts once.
+        let mut checks: BTreeMap<usize, (bool, usize)> = BTreeMap::new();
         for weighed in belief.steps() {
             let step = &seen.steps[weighed.seen];
-            let shown = model
-                .expected(*likeliest, weighed.place)
-                .result(step.result);
-            misfit.results += usize::from(shown < settings.seldom);
-            misfit.values += model.far_values(*likeliest, weighed.place, step);
+            let expected = model.expected(*likeliest, weighed.place);
+            let seldom = expected.is_counted() && expected.result(step.result) < settings.seldom;
+            let far = model.far_values(*likeliest, weighed.place, step);
+            let (is_seldom, most_far) = checks.entry(weighed.place).or_default();
+            *is_seldom |= seldom;
+            *most_far = far.max(*most_far);
         }
+        let mut misfit = Self {
+            results: checks.values().filter(|(seldom, _)| *seldom).count(),
+            values: checks.values().map(|(_, far)| far).sum(),
+            ..Self::default()
+        };
         let firsts = belief.residuals().iter();
         let shares = firsts.filter_map(|signal| {
             let place = model.residuals.place(signal)?;
             Some(model.residuals.of_effect(number, place))
         });
-        let shares: Vec<f64> = shares.collect();
+        let is_counted = model.residuals.is_counted(number);
+        let shares: Vec<f64> = shares.filter(|_| is_counted).collect();
         let seldom = shares
             .iter()
             .filter(|share| **share < settings.seldom_first);

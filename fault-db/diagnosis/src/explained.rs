@@ -9,7 +9,7 @@ use super::model::Hypothesis;
 use super::observation::{CheckName, Observation, Sign};
 use super::weights::Weights;
 
-/// A part that was found, and what it explains of the run.
+/// The part that is likeliest for certain, and what it explains of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cause {
     pub lru: LruId,

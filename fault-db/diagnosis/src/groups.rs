@@ -112,7 +112,8 @@ pub fn rivals<'m>(belief: &Belief<'m, '_>, part: &LruId) -> BTreeSet<&'m LruId> 
         .collect()
 }
 
-/// Whether a trace deviates first at a signal that a part makes; any trace may where none was held against a sound unit's.
+/// Whether a trace deviates first at a signal that a part makes; any trace may where none was held against
+/// a sound unit's, or none deviated.
 fn may_deviate_at(belief: &Belief<'_, '_>, part: &LruId) -> bool {
     let makers = &belief.model.relations.makers;
     let deviating = belief.residuals();

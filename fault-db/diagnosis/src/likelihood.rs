@@ -70,6 +70,11 @@ impl Expected<'_> {
         (n * share + self.doubt * nothing_known) / (n + self.doubt)
     }
 
+    /// Whether the check was counted at all.
+    pub fn is_counted(&self) -> bool {
+        self.cell.runs() > 0
+    }
+
     /// Share of the counted runs.
     pub fn share(&self, count: u32) -> f64 {
         match self.cell.runs() {
@@ -141,8 +146,8 @@ impl Expected<'_> {
         (1.0 - missing) * (anywhere + (1.0 - anywhere) * near)
     }
 
-    /// Whether a measured value is this many standard deviations or more from those counted, or is missing where none ever was;
-    /// of a measurement that was never counted, none is.
+    /// Whether a measured value is more than `far` standard deviations from those counted, or is missing where none ever was.
+    /// Where all that were counted were missing, any value is far; of a measurement that was never counted, none is.
     pub fn is_far(&self, name: &str, value: Option<f64>, scale: &Scale, far: f64) -> bool {
         let Some(values) = self.cell.values.get(name) else {
             return false;

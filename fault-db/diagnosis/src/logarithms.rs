@@ -1,8 +1,11 @@
 //! Weights and probabilities that are given by their logarithms, as products of many likelihoods are.
 
-/// Normalises weights given by their logarithms.
+/// Normalises weights given by their logarithms; where all are 0, as in a dictionary without modes, they are even.
 pub fn normalised(ln: &[f64]) -> Vec<f64> {
     let greatest = ln.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if greatest == f64::NEG_INFINITY {
+        return vec![1.0 / ln.len().max(1) as f64; ln.len()];
+    }
     let weights: Vec<_> = ln.iter().map(|ln| (ln - greatest).exp()).collect();
     let sum: f64 = weights.iter().sum();
     weights.into_iter().map(|weight| weight / sum).collect()

@@ -18,6 +18,7 @@ use super::logarithms::normalised;
 use super::model::{FIRST_EFFECT, Hypothesis, Model};
 use super::observation::CheckName;
 use super::verdict::PartProbability;
+use super::weights::ratio;
 
 /// A part is told by a check that passes, or does not, with this probability if the part has failed.
 const MOSTLY: f64 = 0.7;
@@ -201,7 +202,7 @@ impl Belief<'_, '_> {
         }
         for (class, part) in (FIRST_EFFECT..).zip(parts) {
             if let Some(pooled) = pooled.iter().find(|pooled| pooled.lru == **part) {
-                let factor = pooled.probability / all[class];
+                let factor = ratio(pooled.probability, all[class]);
                 all[class] = pooled.probability;
                 with_effect
                     .iter_mut()

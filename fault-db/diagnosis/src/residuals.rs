@@ -23,6 +23,8 @@ pub struct Residuals {
     signals: BTreeMap<String, usize>,
     /// Under each level of each mode, in order.
     of_effects: Vec<Vec<f64>>,
+    /// Whether traces of the level were counted.
+    counted: Vec<bool>,
     /// Under a fault of each part that is not in the dictionary.
     of_parts: Vec<Vec<f64>>,
     /// Under any fault.
@@ -84,6 +86,9 @@ impl Residuals {
         });
         Self {
             of_effects: of_effects.collect(),
+            counted: columns()
+                .map(|column| !column.residuals.is_empty())
+                .collect(),
             of_parts,
             of_any,
             signals: signals.clone(),
@@ -94,6 +99,11 @@ impl Residuals {
     /// Place of a signal in the tables.
     pub fn place(&self, signal: &str) -> Option<usize> {
         self.signals.get(signal).copied()
+    }
+
+    /// Whether traces were counted under a level of a mode.
+    pub fn is_counted(&self, effect: usize) -> bool {
+        self.counted.get(effect).copied().unwrap_or_default()
     }
 
     /// Share of the traces under a level of a mode in which a signal is the first to deviate.

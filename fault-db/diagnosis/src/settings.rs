@@ -51,7 +51,7 @@ pub struct Settings {
     pub history_days: u32,
     /// Confirmed repairs of all units that weigh as much as the dictionary's own weights of the parts.
     pub repairs_like_prior: f64,
-    /// Probabilities where nothing was counted. Defaults if the file has no such table, as in the next two.
+    /// Probabilities where nothing was counted. Defaults if the file has no such table, as in the next five.
     #[serde(default)]
     pub likelihood: LikelihoodSettings,
     /// Weights of signs, faults that show in a run.
@@ -171,7 +171,7 @@ pub struct LogSettings {
 pub struct ConclusionSettings {
     /// Parts from this probability on are named when it cannot be told which has failed.
     pub named_at: f64,
-    /// Candidates and pairs less likely than this are not shown, except for the first candidate.
+    /// Candidates less likely than this are not shown, except for the first candidate.
     pub least_shown: f64,
     /// Greatest number of candidates shown.
     pub most_shown: usize,
@@ -179,6 +179,8 @@ pub struct ConclusionSettings {
     pub explained_at: f64,
     /// A part less likely than this is none of those of which one has failed for certain.
     pub least_of_set: f64,
+    /// Nothing is certain where those that are left have a lesser probability in all.
+    pub least_in_all: f64,
     /// Nothing is certain where more parts than this are left, and one more where that may be the cause at the others.
     pub most_of_set: usize,
     /// A run whose fault was counted with a lesser probability is like no fault that is known.
@@ -225,6 +227,7 @@ impl Settings {
             ("conclusion.least_shown", conclusion.least_shown),
             ("conclusion.explained_at", conclusion.explained_at),
             ("conclusion.least_of_set", conclusion.least_of_set),
+            ("conclusion.least_in_all", conclusion.least_in_all),
             ("conclusion.unlike_any", conclusion.unlike_any),
             ("counted.seldom", counted.seldom),
             ("counted.seldom_first", counted.seldom_first),
@@ -383,6 +386,7 @@ impl Default for ConclusionSettings {
             most_shown: 10,
             explained_at: 0.1,
             least_of_set: 0.01,
+            least_in_all: 0.85,
             most_of_set: 5,
             unlike_any: 0.05,
         }

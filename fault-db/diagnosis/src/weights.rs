@@ -130,7 +130,7 @@ impl Weights {
             let shares: Vec<f64> = shares.collect();
             for fault in &mut faults {
                 if let Some(part) = model.part(fault.hypothesis) {
-                    fault.probability *= shares[part] / parts[part];
+                    fault.probability *= ratio(shares[part], parts[part]);
                 }
             }
             parts = shares;
@@ -153,6 +153,14 @@ impl Weights {
     }
 }
 
+/// How many times one probability is another; 0 of what was impossible.
+pub fn ratio(one: f64, other: f64) -> f64 {
+    match other > 0.0 {
+        true => one / other,
+        false => 0.0,
+    }
+}
+
 /// The parts one of which has failed for certain, with the parts of the bench that would act alike.
 fn set(
     belief: &Belief<'_, '_>,
@@ -165,7 +173,8 @@ fn set(
     let (set, rest) = parts.split_at(parts.partition_point(|part| part.probability >= least));
     let has_cause = set.iter().any(|part| causes.contains(&part.lru));
     let most = settings.most_of_set + usize::from(has_cause);
-    if no_fault >= least || set.len() > most {
+    let in_all: f64 = set.iter().map(|part| part.probability).sum();
+    if no_fault >= least || set.len() > most || in_all < settings.least_in_all {
         return Vec::new();
     }
     let of_unit = set.iter().map(|part| &part.lru);

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use ::matrix::{Matrix, Method, Node, Outcome, Posterior};
 use diagnosis::{
-    Basis, CheckName, Diagnosis, Dictionary, Finding, ModeName, Model, Observation, ObservedStep,
-    Settings,
+    Basis, CheckName, ConclusionSettings, CountedSettings, Diagnosis, Dictionary, Finding,
+    ModeName, Model, Observation, ObservedStep, Settings,
 };
 use protocol::Verdict;
 
@@ -208,6 +208,15 @@ fn a_dictionary_counted_from_tests_that_err_is_not_surer_than_it_may_be() {
         let settings = Settings {
             no_fault: 1.0 / matrix.states().len() as f64,
             weight_of_step: 0.99,
+            // Each fault that a circuit has was counted.
+            counted: CountedSettings {
+                as_counted: 50.0,
+                ..CountedSettings::default()
+            },
+            conclusion: ConclusionSettings {
+                least_of_set: 0.05,
+                ..ConclusionSettings::default()
+            },
             ..Settings::default()
         };
         let model = Model::new(&dictionary, &settings, &BTreeMap::new());

@@ -415,7 +415,7 @@ fn a_run_of_another_page_is_none_of_the_case() {
         let run = &latest(window)["run"];
         run["id"] != found && run["verdict"] == "failed"
     });
-    counted.window.wait_for_part("replace the EB relay");
+    counted.window.wait_for_part("the EB relay");
     counted.window.page(Page::Case);
     counted.window.step();
     counted.window.wait_for(case.fitted);

@@ -168,10 +168,7 @@ fn korean_pages_name_measurements_parts_and_severities_in_korean() {
     window.click_in(words.procedures.choice, words.procedures.none);
     window.click("과속에 따른 ATP 제동 체결");
     window.connect_simulated();
-    window.click_for_part(
-        words.procedures.run,
-        "교체 대상: 비상제동 계전기 (eb_relay, ",
-    );
+    window.click_for_part(words.procedures.run, "비상제동 계전기 (eb_relay, ");
     window.wait_for_part("EB 반응 시간");
     let report = window.place.json("runs show latest --json");
     let steps = report["steps"].as_array().expect("steps").iter();
@@ -182,7 +179,7 @@ fn korean_pages_name_measurements_parts_and_severities_in_korean() {
     for (page, shows) in [
         (Page::Procedures, "EB 반응 시간"),
         (Page::Faults, "EB 반응 시간"),
-        (Page::Diagnosis, "교체 대상: 비상제동 계전기 (eb_relay, "),
+        (Page::Diagnosis, "비상제동 계전기 (eb_relay, "),
     ] {
         window.page(page);
         window.wait_for_part(shows);
@@ -262,7 +259,7 @@ fn the_window_says_what_the_command_line_says() {
         (
             &["--inject", "eb_relay.slow", "atp/overspeed"],
             1,
-            "replace the EB relay (eb_relay, ",
+            "the EB relay (eb_relay, ",
         ),
         (
             &["--inject", "atp_receiver.dead", "atp/limit_speed"],

@@ -66,7 +66,7 @@ fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
     window.key(Key::Escape);
     window.connect_simulated();
     window.click_for_part("Run", "Run over: failed");
-    window.wait_for_part("replace the EB relay (eb_relay, ");
+    window.wait_for_part("the EB relay (eb_relay, ");
     // A step that failed is a click from the trace that shows it.
     window.click("Trace");
     window.until("the traces page", |window| {

@@ -1,6 +1,6 @@
 //! Sets of parts: which parts an answer holds beside the likeliest, and what tells them apart.
 
-use diagnosis::{Group, Measure, Relations, Shared, Sign};
+use diagnosis::{Conclusion, Group, Measure, Relations, Shared, Sign};
 
 use super::*;
 
@@ -154,4 +154,67 @@ fn a_part_of_the_bench_stays_in_the_answer_unless_something_speaks_against_it() 
     assert_eq!(named(&["contact"], &["b"]), both);
     assert_eq!(named(&["order"], &[]), relay);
     assert_eq!(named(&["contact"], &["a"]), relay);
+}
+
+/// Goal: what lasts speaks once against a fault that was counted, however often its check is made. Method: a run that fits no
+/// mode, and the same with one of its failed checks made five times more.
+#[test]
+fn a_check_made_again_speaks_once_against_what_was_counted() {
+    let (dictionary, relations) = (dictionary(), Relations::default());
+    let mut seen = run(&["a.s2", "b.s1", "b.s2", "c.s2"], Some(240.0));
+    let first = |seen: &Observation| said(&dictionary, seen, &relations).parts[0].clone();
+    let once = first(&seen);
+    let failed = seen.steps.iter().find(|step| step.check == name("a", "s2"));
+    let failed = failed.cloned().expect("a.s2");
+    seen.steps.extend(std::iter::repeat_n(failed, 5));
+    let often = first(&seen);
+    assert_eq!(once.lru, often.lru);
+    let apart = (once.probability - often.probability).abs();
+    assert!(apart < 0.01, "{once:?}, {often:?}");
+}
+
+/// Goal: a dictionary that knows parts and no fault of them gives probabilities. Method: all checks fail.
+#[test]
+fn parts_without_modes_have_probabilities() {
+    let known = dictionary();
+    let mut dictionary = Dictionary::new(Basis::default(), vec![1], known.checks.clone());
+    dictionary.parts = parts(["relay", "antenna"]);
+    let seen = run(&["a.s1", "b.s1", "c.s1"], Some(240.0));
+    let found = said(&dictionary, &seen, &Relations::default());
+    let all: f64 = found.parts.iter().map(|part| part.probability).sum();
+    assert!((all + found.no_fault - 1.0).abs() < 1e-9, "{found:?}");
+    assert!(found.next_check.is_none(), "{found:?}");
+}
+
+/// Goal: a run under no counted fault is told so. Method: all checks fail, with a sign that no fault shows.
+#[test]
+fn a_run_like_no_counted_fault_is_told_so() {
+    let names: Vec<String> = checks()
+        .iter()
+        .map(|check| format!("{}.{}", check.procedure, check.step))
+        .collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let is_unlike = |fails: &[&str], sign: bool| {
+        let mut seen = run(fails, Some(900.0));
+        seen.steps[4].signs = sign.then(|| sign_of("antenna")).into_iter().collect();
+        let conclusion = ConclusionSettings {
+            unlike_any: 0.3,
+            most_of_set: 1,
+            ..ConclusionSettings::default()
+        };
+        let settings = Settings {
+            conclusion,
+            counted: CountedSettings::default(),
+            ..settings()
+        };
+        let dictionary = dictionary();
+        let model = Model::new(&dictionary, &settings, &BTreeMap::new());
+        let found = Diagnosis::of(&model, &seen);
+        match found.conclusion {
+            Conclusion::CannotTell { is_unlike_any, .. } => is_unlike_any,
+            _ => false,
+        }
+    };
+    assert!(is_unlike(&names, true));
+    assert!(!is_unlike(&["b.s1", "c.s1"], false));
 }

@@ -18,7 +18,7 @@ pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names
         | Conclusion::NoFault { .. }
         | Conclusion::NotWeighed
         | Conclusion::BenchFailed { .. } => None,
-        // A measurement tells which.
+        // Where no check is left, the measurement tells which.
         Conclusion::OneOf { measure, .. } if !measure.english.is_empty() => {
             next.map(|next| run_next(next, names))
         }
@@ -148,8 +148,10 @@ fn cannot_tell(shown: &[Both], more: usize, can_go_on: bool) -> Both {
 
 fn unlike_any([said, said_ko]: &Both) -> Both {
     [
-        format!("like no fault that is known: examine the bench and its harness first; {said}"),
-        format!("알려진 고장과 다릅니다. 시험대와 하네스를 먼저 점검하십시오; {said_ko}"),
+        format!(
+            "like no fault that is known: examine cables, connectors and the bench first; {said}"
+        ),
+        format!("알려진 고장과 다릅니다. 케이블, 커넥터, 시험대를 먼저 점검하십시오; {said_ko}"),
     ]
 }
 

@@ -140,7 +140,10 @@ impl CasePage {
                     .map_or_else(String::new, |found| count_text(&found.counts, words)),
             },
             Stage::Result => self.found.as_ref().map_or_else(String::new, |found| {
-                let part = found.parts.first().filter(|_| found.told == Told::Part);
+                let part = found
+                    .parts
+                    .first()
+                    .filter(|_| matches!(found.told, Told::Part | Told::Few));
                 let word = || found.told.word(&words.case);
                 part.map_or_else(word, |part| self.known.part_name(part, words))
                     .to_owned()

@@ -16,8 +16,10 @@ use ptu_report::words::Case;
 /// Result of a case, as the page tells it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Told {
-    /// A check failed, and these parts have.
+    /// A check failed, and this part has.
     Part,
+    /// A check failed, and one of few parts has, one of which is likelier than all others.
+    Few,
     /// A check failed, and more than one part may have.
     Unsure,
     /// A check failed, and no part explains it.
@@ -46,6 +48,11 @@ impl Told {
         match run {
             Verdict::Failed => match said {
                 Some(Conclusion::Found { .. }) => Self::Part,
+                Some(Conclusion::OneOf { parts, .. })
+                    if parts.first().is_some_and(|first| first.probability > 0.5) =>
+                {
+                    Self::Few
+                }
                 Some(said) if !said.parts().is_empty() => Self::Unsure,
                 _ => Self::NoPart,
             },
@@ -57,13 +64,13 @@ impl Told {
     }
 
     pub fn is_failed(self) -> bool {
-        matches!(self, Self::Part | Self::Unsure | Self::NoPart)
+        matches!(self, Self::Part | Self::Few | Self::Unsure | Self::NoPart)
     }
 
     /// `all` = every step was run.
     pub fn next(self, all: bool) -> Next {
         match self {
-            Self::Part => Next::Repair,
+            Self::Part | Self::Few => Next::Repair,
             // A check by itself is no run of the case.
             Self::Unsure if !all => Next::WholeSuite,
             Self::Unsure | Self::NoPart => Next::ShowFailed,
@@ -75,7 +82,7 @@ impl Told {
 
     pub fn word(self, words: &Case) -> &'static str {
         match self {
-            Self::Part | Self::NoPart => words.is_failed,
+            Self::Part | Self::Few | Self::NoPart => words.is_failed,
             Self::Unsure => words.is_unsure,
             Self::NotAll => words.is_not_found,
             Self::NotTested => words.is_not_tested,
@@ -88,7 +95,7 @@ impl Told {
     pub fn headline(self, words: &Case) -> &'static str {
         match self {
             Self::Part => words.replace,
-            Self::Unsure => words.probably,
+            Self::Few | Self::Unsure => words.probably,
             Self::NoPart => words.no_part_explains,
             Self::NotAll => words.not_everything,
             Self::NotTested => "{why}",
@@ -99,7 +106,7 @@ impl Told {
 
     pub fn icon(self) -> MaterialIcon {
         match self {
-            Self::Part | Self::NoPart => ICON_CANCEL,
+            Self::Part | Self::Few | Self::NoPart => ICON_CANCEL,
             Self::Unsure | Self::NotAll => ICON_HELP,
             Self::NotTested => ICON_WARNING,
             Self::Stopped => ICON_DO_NOT_DISTURB_ON,
@@ -109,7 +116,7 @@ impl Told {
 
     pub fn colour(self, palette: &Palette) -> Color32 {
         match self {
-            Self::Part | Self::NoPart => palette.bad,
+            Self::Part | Self::Few | Self::NoPart => palette.bad,
             Self::Unsure | Self::NotAll | Self::NotTested | Self::Stopped => palette.warn,
             Self::NoFault => palette.good,
         }
@@ -144,9 +151,13 @@ mod tests {
             likely: parts(n),
             is_unlike_any: false,
         };
-        let one_of = Conclusion::OneOf {
-            parts: parts(2),
-            measure: Measure::default(),
+        let one_of = |first: f64| {
+            let mut parts = parts(2);
+            parts[0].probability = first;
+            Conclusion::OneOf {
+                parts,
+                measure: Measure::default(),
+            }
         };
         let found = Conclusion::Found {
             part: part.clone(),
@@ -162,7 +173,8 @@ mod tests {
                 }),
                 1,
             ),
-            (Some(one_of), 1),
+            (Some(one_of(0.4)), 1),
+            (Some(one_of(0.9)), 3),
             (Some(cannot_tell(3)), 1),
             (Some(cannot_tell(0)), 2),
             (Some(Conclusion::NoFault { probability }), 2),
@@ -174,6 +186,7 @@ mod tests {
             ("Failed", "Replace {part}", Next::Repair),
             ("Not certain yet", "Probably {part}", Next::WholeSuite),
             ("Failed", "No single part explains it", Next::ShowFailed),
+            ("Failed", "Probably {part}", Next::Repair),
         ];
         let others = [
             (

@@ -70,10 +70,9 @@ fn the_whole_way(language: Language) {
         window.click(title);
     }
     window.click(words.procedures.run);
-    window.wait_for_part(language.choose([
-        "replace the EB relay (eb_relay, ",
-        "교체 대상: 비상제동 계전기 (eb_relay, ",
-    ]));
+    window.wait_for_part(
+        language.choose(["the EB relay (eb_relay, ", "비상제동 계전기 (eb_relay, "]),
+    );
     let run = window.place.json("runs show latest --json");
     for step in run["steps"].as_array().expect("steps") {
         if step["procedure"] == "ptu/identity" {
