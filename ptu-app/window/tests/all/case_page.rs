@@ -213,7 +213,7 @@ fn signed_sheet(mut counted: Counted) {
     assert!(
         counted
             .window
-            .shows(&fill(case.replace, &[("part", &part)]))
+            .shows(&fill(case.probably, &[("part", &part)]))
     );
     let id = text(&found["run"]["id"]);
     assert!(

@@ -150,7 +150,7 @@ fn the_least_of_steps_finds_the_part_too() {
     let mut settings = settings(Page::Procedures);
     settings.unit.faults = vec!["tra.dead".into()];
     let mut window = Window::connected(Place::new(), settings);
-    window.click_for_part("Find the part", "replace the TRA (tra, ");
+    window.click_for_part("Find the part", "the TRA (tra, ");
     assert!(latest(&window)["run"]["steps_run"].as_u64() < Some(200));
 }
 
