@@ -109,8 +109,8 @@ pub fn campaign_text(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -
             s,
         );
     }
-    line("right part named, or its group", figures.named);
-    line("wrong part or group named", figures.wrong);
+    line("right part named, or among few", figures.named);
+    line("wrong parts named", figures.wrong);
     let _ = writeln!(
         text,
         "{:34} {} of {} good runs",
@@ -222,8 +222,8 @@ fn adaptive_text(adaptive: &AdaptiveFigures) -> String {
     for (what, share) in [
         ("detected", adaptive.detected),
         ("detected, unsafe", adaptive.unsafe_detected),
-        ("right part named, or its group", adaptive.named),
-        ("wrong part or group named", adaptive.wrong),
+        ("right part named, or among few", adaptive.named),
+        ("wrong parts named", adaptive.wrong),
     ] {
         text += &share_text(what, share);
     }

@@ -20,11 +20,11 @@ fn figures_json(figures: &UnseenFigures) -> Value {
     json!({
         "first": share_json(figures.first),
         "first_two": share_json(figures.first_two),
-        "first_or_group": share_json(figures.first_or_group),
-        "first_or_group_within": figures.first_or_group_within,
+        "first_or_named": share_json(figures.first_or_named),
+        "first_or_named_within": figures.first_or_named_within,
         "wrong_within": figures.wrong_within,
         "found": share_json(figures.found),
-        "found_or_group": share_json(figures.found_or_group),
+        "named_for_certain": share_json(figures.named_for_certain),
         "wrong": share_json(figures.wrong),
         "reliability": figures.reliability.map(share_json),
         "brier": figures.brier,
@@ -122,18 +122,18 @@ fn figures_text(text: &mut String, figures: &UnseenFigures) {
     let shares = [
         ("right part first", figures.first),
         ("among the first two", figures.first_two),
-        ("right part first, or its group", figures.first_or_group),
+        ("right part first, or among few", figures.first_or_named),
         ("named for certain, the right one", figures.found),
-        ("or a group with it", figures.found_or_group),
+        ("alone or among few", figures.named_for_certain),
         ("named for certain, a wrong one", figures.wrong),
     ];
     shares_text(text, &shares);
-    if let (Some(first), Some(wrong)) = (figures.first_or_group_within, figures.wrong_within) {
+    if let (Some(first), Some(wrong)) = (figures.first_or_named_within, figures.wrong_within) {
         let [first, wrong] = [first, wrong]
             .map(|[low, high]| format!("{:.1} to {:.1} %", 100.0 * low, 100.0 * high));
         let _ = writeln!(
             text,
-            "  95 % intervals, drawn by fault mode: first or its group {first}, wrong {wrong}"
+            "  95 % intervals, drawn by fault mode: first or among few {first}, wrong {wrong}"
         );
     }
     let curve = figures.reliability.iter().enumerate();

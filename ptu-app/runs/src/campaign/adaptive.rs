@@ -46,7 +46,7 @@ pub struct AdaptiveFigures {
     pub detected: Share,
     /// The same of those with an unsafe mode.
     pub unsafe_detected: Share,
-    /// Runs that end with the right part, or a group that it is of.
+    /// Runs that end with the right part, alone or among few.
     pub named: Share,
     /// Runs that end with a wrong one for certain.
     pub wrong: Share,
@@ -85,7 +85,7 @@ impl AdaptiveFigures {
             time_s: Effort::of(runs.iter().map(|run| run.time_s)),
             detected: Share::over(all(), |run| run.detected),
             unsafe_detected: Share::over(unsafe_(), |run| run.detected),
-            named: Share::over(all(), Assessment::is_found_or_group),
+            named: Share::over(all(), Assessment::is_named),
             wrong: Share::over(all(), Assessment::is_wrong),
             missed: missed.map(|run| run.fault.clone()).collect(),
         }

@@ -39,22 +39,22 @@ pub struct Assessment {
 impl Assessment {
     /// Whether it is isolated to at most `parts` parts, the right one among them.
     pub fn isolated(&self, parts: usize) -> bool {
-        self.detected && self.parts.len() <= parts && self.is_found_or_group()
+        self.detected && self.parts.len() <= parts && self.is_named()
     }
 
-    /// One part or a few are named for certain, and not the right one alone or a group with it.
+    /// One part or few are named for certain, and the right one is not among them.
     pub fn is_wrong(&self) -> bool {
         self.is_certain() && !self.names_the_part()
     }
 
-    /// The right part is named for certain and nothing else, or a group that it is of.
-    pub fn is_found_or_group(&self) -> bool {
+    /// The right part is named for certain, alone or among few.
+    pub fn is_named(&self) -> bool {
         self.is_certain() && self.names_the_part()
     }
 
-    /// The right part is the likeliest, or of the group that is named.
-    pub fn is_first_or_group(&self) -> bool {
-        self.rank() == Some(0) || self.is_found_or_group()
+    /// The right part is the likeliest, or named for certain.
+    pub fn is_first_or_named(&self) -> bool {
+        self.rank() == Some(0) || self.is_named()
     }
 
     /// The right part is named for certain, and nothing else.
@@ -183,9 +183,9 @@ pub struct Figures {
     pub detected_isolated: Share,
     /// Runs isolated to at most 1, 2, 3 parts.
     pub isolated: [Share; MOST_PARTS],
-    /// Runs in which diagnosis names one part or a group for certain, and it is the wrong one.
+    /// Runs in which diagnosis names one part or few for certain, and the right one is not among them.
     pub wrong: Share,
-    /// Runs in which it names the right part or a group with it, of those detected.
+    /// Runs in which it names the right part, alone or among few, of those detected.
     pub named: Share,
     /// Modes that were not detected in some run.
     pub undetected: Vec<Shortfall>,
@@ -239,10 +239,7 @@ pub fn figures(assessments: &[Assessment], good: &[Vec<String>]) -> Figures {
         detected_isolated: Share::over(all().filter(|run| run.detected), |run| run.isolated(1)),
         isolated: [1, 2, 3].map(|parts| Share::over(all(), |run| run.isolated(parts))),
         wrong: Share::over(all(), Assessment::is_wrong),
-        named: Share::over(
-            all().filter(|run| run.detected),
-            Assessment::is_found_or_group,
-        ),
+        named: Share::over(all().filter(|run| run.detected), Assessment::is_named),
         undetected: lacking(&|run| run.detected),
         not_isolated: lacking(&|run| run.isolated(1)),
         ambiguous: ambiguous(assessments),

@@ -34,15 +34,15 @@ pub struct UnseenFigures {
     pub first: Share,
     /// It is among the first two.
     pub first_two: Share,
-    /// It is the likeliest, or of the group that is named.
-    pub first_or_group: Share,
+    /// It is the likeliest, or named for certain.
+    pub first_or_named: Share,
     /// Interval of that share, 95 %, by fault mode.
-    pub first_or_group_within: Option<[f64; 2]>,
+    pub first_or_named_within: Option<[f64; 2]>,
     /// It is named for certain, and nothing else.
     pub found: Share,
-    /// It is named for certain, alone or with its group.
-    pub found_or_group: Share,
-    /// Another part, or a group without it, is named for certain.
+    /// It is named for certain, alone or among few.
+    pub named_for_certain: Share,
+    /// Others are named for certain, and it is not among them.
     pub wrong: Share,
     /// Interval of that share, 95 %, by fault mode.
     pub wrong_within: Option<[f64; 2]>,
@@ -167,11 +167,11 @@ impl UnseenFigures {
         Self {
             first: share(&|run| run.rank() == Some(0)),
             first_two: share(&|run| run.rank().is_some_and(|rank| rank < 2)),
-            first_or_group: share(&Assessment::is_first_or_group),
-            first_or_group_within: interval(&runs, Assessment::is_first_or_group),
+            first_or_named: share(&Assessment::is_first_or_named),
+            first_or_named_within: interval(&runs, Assessment::is_first_or_named),
             wrong_within: interval(&runs, Assessment::is_wrong),
             found: share(&Assessment::is_found),
-            found_or_group: share(&Assessment::is_found_or_group),
+            named_for_certain: share(&Assessment::is_named),
             wrong: share(&Assessment::is_wrong),
             reliability: std::array::from_fn(|of| {
                 let in_class = runs.iter().copied().filter(|run| class(run) == of);

@@ -22,7 +22,7 @@ fn no_more_parts_are_named_than_a_person_can_choose_from() {
     assert!(korean.contains("c (20.0 %) 외 2개;"), "{korean}");
     assert!(!english.contains("d (") && !korean.contains("d ("));
     let [unlike, unlike_ko] = concluded(&cannot_tell(true), None, &[]);
-    let examine = "like no fault that is known: examine the bench and its harness first; ";
+    let examine = "like no fault that is known: examine cables, connectors and the bench first; ";
     assert_eq!(unlike, format!("{examine}{english}"));
     assert!(unlike_ko.ends_with(&korean), "{unlike_ko}");
 }
