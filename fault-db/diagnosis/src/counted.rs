@@ -1,8 +1,8 @@
 //! How likely it is that the fault of a run is one that was counted: the run is as counted under the likeliest fault of the
 //! dictionary, or results, values, first deviations and signs are not.
 //!
-//! It is a posterior-predictive check (Rubin 1984), whose weights are those of a logistic regression over runs of modes
-//! that were counted and of modes that were left out.
+//! The question is that of a posterior-predictive check (Rubin 1984); the weights are those of a logistic regression over
+//! runs of modes that were counted and of modes that were left out.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +25,7 @@ pub struct Misfit {
 }
 
 impl Misfit {
-    /// Of a run; `None` of a dictionary without faults.
+    /// How far a run is from what was counted; `None` of a dictionary without faults.
     pub fn of(belief: &Belief<'_, '_>, seen: &Observation) -> Option<Self> {
         let model = belief.model;
         let settings = &model.settings.counted;

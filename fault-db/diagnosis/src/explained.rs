@@ -1,4 +1,4 @@
-//! What of a run the fault explains that it was found to have: consequences of one cause.
+//! What of a run the likeliest fault explains: consequences of one cause.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use super::model::Hypothesis;
 use super::observation::{CheckName, Observation, Sign};
 use super::weights::Weights;
 
-/// The part that is likeliest for certain, and what it explains of the run.
+/// The likeliest of the parts that an answer names for certain, and what it explains of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cause {
     pub lru: LruId,

@@ -94,8 +94,8 @@ fn dictionary() -> Dictionary {
 }
 
 /// Nine checks that are independent of each other, where a suite has hundreds that are not: each weighs
-/// more, and they cannot rule out a fault that nobody knows as far, which is rarer here. Every fault counts as one of the dictionary, and an answer names
-/// two of the few parts at most.
+/// more, and they cannot rule out a fault that nobody knows as far, which is rarer here. Every fault counts as one of
+/// the dictionary, and an answer names two of the few parts at most.
 fn settings() -> Settings {
     Settings {
         healthy_at: 0.95,
@@ -179,7 +179,7 @@ fn modes_that_no_check_distinguishes_are_reported_as_ambiguous() {
     assert_eq!(found.next_check, None, "nothing tells them apart");
 }
 
-/// Goal: of what failed each part that was found has what its fault shows, and nothing that it does not.
+/// Goal: of what failed the likeliest part has what its fault shows, and nothing that it does not.
 /// Method: one fault; two parts that act alike; and a good unit.
 #[test]
 fn what_failed_is_the_consequence_of_the_part_that_explains_it() {
