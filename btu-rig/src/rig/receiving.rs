@@ -6,7 +6,7 @@ use protocol::message::{IoOutput, Message};
 use super::Rig;
 
 impl Rig {
-    /// Takes bytes from the unit.
+    /// Decodes bytes that came from the unit, and hands each frame on.
     pub fn receive(&mut self, now: Instant, bytes: &[u8]) {
         self.now = now;
         self.watch.note(bytes.len());

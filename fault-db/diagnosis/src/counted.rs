@@ -12,7 +12,7 @@ use super::observation::Observation;
 use super::settings::CountedSettings;
 
 /// What of a run is not as counted under the likeliest fault of the dictionary.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misfit {
     /// Checks that end as they seldom did.
     results: usize,
@@ -25,11 +25,11 @@ pub struct Misfit {
 }
 
 impl Misfit {
-    /// How far a run is from what was counted; `None` of a dictionary without faults.
-    pub fn of(belief: &Belief<'_, '_>, seen: &Observation) -> Option<Self> {
+    /// How far a run is from what was counted; `ln` has the logarithms of its hypotheses' probabilities. `None` of a dictionary
+    /// without faults.
+    pub fn of(belief: &Belief<'_, '_>, seen: &Observation, ln: &[f64]) -> Option<Self> {
         let model = belief.model;
         let settings = &model.settings.counted;
-        let ln = belief.ln();
         let effects = ln[FIRST_EFFECT..].iter().zip(model.effects()).enumerate();
         let likeliest = effects.max_by(|a, b| a.1.0.total_cmp(b.1.0));
         let (number, (_, likeliest)) = likeliest?;
@@ -44,26 +44,16 @@ impl Misfit {
             *is_seldom |= seldom;
             *most_far = far.max(*most_far);
         }
-        let mut misfit = Self {
-            results: checks.values().filter(|(seldom, _)| *seldom).count(),
-            values: checks.values().map(|(_, far)| far).sum(),
-            ..Self::default()
-        };
-        let firsts = belief.residuals().iter();
-        let shares = firsts.filter_map(|signal| {
-            let place = model.residuals.place(signal)?;
-            Some(model.residuals.of_effect(number, place))
-        });
-        let is_counted = model.residuals.is_counted(number);
-        let shares: Vec<f64> = shares.filter(|_| is_counted).collect();
-        let seldom = shares
-            .iter()
-            .filter(|share| **share < settings.seldom_first);
-        misfit.first = seldom.count() as f64 / shares.len().max(1) as f64;
         let signs = belief.signs().all();
         let never = signs.filter(|sign| model.share_of_sign(number, sign) == 0.0);
-        misfit.signs = never.count();
-        Some(misfit)
+        Some(Self {
+            results: checks.values().filter(|(seldom, _)| *seldom).count(),
+            values: checks.values().map(|(_, far)| far).sum(),
+            first: model
+                .residuals
+                .seldom_first(number, belief.residuals(), settings.seldom_first),
+            signs: never.count(),
+        })
     }
 
     /// Probability that the fault was counted.

@@ -56,6 +56,12 @@ pub static NO_RELATIONS: Relations = Relations {
 };
 
 impl Relations {
+    /// Whether a part makes a signal of others.
+    pub fn makes(&self, part: &LruId, signal: &str) -> bool {
+        let makers = self.makers.get(signal);
+        makers.is_some_and(|makers| makers.contains(part))
+    }
+
     /// Whether two parts are of one group.
     pub fn are_near(&self, one: &LruId, other: &LruId) -> bool {
         let mut groups = self.groups.iter();
@@ -115,10 +121,9 @@ pub fn rivals<'m>(belief: &Belief<'m, '_>, part: &LruId) -> BTreeSet<&'m LruId> 
 /// Whether a trace deviates first at a signal that a part makes; any trace may where none was held against
 /// a sound unit's, or none deviated.
 fn may_deviate_at(belief: &Belief<'_, '_>, part: &LruId) -> bool {
-    let makers = &belief.model.relations.makers;
+    let relations = belief.model.relations;
     let deviating = belief.residuals();
-    let is_made = |signal: &String| makers.get(signal).is_some_and(|all| all.contains(part));
-    deviating.is_empty() || deviating.iter().any(is_made)
+    deviating.is_empty() || deviating.iter().any(|signal| relations.makes(part, signal))
 }
 
 /// Whether a step failed that judges the part and that the bench has no part in.

@@ -16,7 +16,7 @@ use super::common::gains;
 use super::counted::Misfit;
 use super::groups::Shared;
 use super::logarithms::normalised;
-use super::model::FIRST_EFFECT;
+use super::model::{FIRST_EFFECT, Model};
 use super::observation::Observation;
 
 /// A part is about as likely as the likeliest at this share of its probability.
@@ -33,10 +33,10 @@ pub struct Pooled {
 }
 
 impl Pooled {
-    /// Of a run that shows a fault.
-    pub fn of(belief: &Belief<'_, '_>, seen: &Observation) -> Self {
+    /// Pools the evidence of a run that shows a fault; `ln` has the logarithms of its hypotheses' probabilities.
+    pub fn of(belief: &Belief<'_, '_>, seen: &Observation, ln: &[f64]) -> Self {
         let settings = &belief.model.settings;
-        let posterior = of_parts(belief);
+        let posterior = of_parts(belief.model, ln);
         let mut scores = scores(belief, seen, &posterior);
         let causes = causes(belief, seen);
         let greatest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -45,7 +45,8 @@ impl Pooled {
                 *score = score.max(greatest - settings.pool.below_first);
             }
         }
-        let counted = Misfit::of(belief, seen).map_or(0.0, |fit| fit.counted(&settings.counted));
+        let counted =
+            Misfit::of(belief, seen, ln).map_or(0.0, |fit| fit.counted(&settings.counted));
         let not_counted = normalised(&scores);
         let mixed = posterior.iter().zip(not_counted);
         Self {
@@ -74,10 +75,8 @@ fn scores(belief: &Belief<'_, '_>, seen: &Observation, posterior: &[f64]) -> Vec
     let suspects = &model.dictionary.suspects;
     let suspects = shares(failed.map(|step| suspects.get(step.place)?.as_ref()));
     let score = |(part, posterior): (&&LruId, &f64)| {
-        let made = deviating.iter().filter(|(signal, _)| {
-            let makers = model.relations.makers.get(**signal);
-            makers.is_some_and(|makers| makers.contains(*part))
-        });
+        let made = deviating.iter();
+        let made = made.filter(|(signal, _)| model.relations.makes(part, signal));
         let made: f64 = made.map(|(_, share)| share).sum();
         let named = |shares: &BTreeMap<&LruId, f64>| shares.get(part).copied().unwrap_or(0.0);
         let mut likely = likely.iter().map(|(likely, _)| *likely);
@@ -111,9 +110,7 @@ fn causes(belief: &Belief<'_, '_>, seen: &Observation) -> BTreeSet<LruId> {
 }
 
 /// The posterior of each part, if one has failed.
-fn of_parts(belief: &Belief<'_, '_>) -> Vec<f64> {
-    let model = belief.model;
-    let ln = belief.ln();
+fn of_parts(model: &Model<'_>, ln: &[f64]) -> Vec<f64> {
     let faulty = normalised(&ln[FIRST_EFFECT..]);
     let mut parts = vec![0.0; model.parts().len()];
     for (hypothesis, probability) in model.hypotheses[FIRST_EFFECT..].iter().zip(faulty) {

@@ -55,10 +55,7 @@ impl Residuals {
         let even = vec![1.0 / signals.len().max(1) as f64; signals.len()];
         let of_any = counted_beside(columns().filter_map(shares), &even);
         let of_part = |part: &&LruId| {
-            let makes = |signal: &String| {
-                let makers = relations.makers.get(signal);
-                f64::from(u8::from(makers.is_some_and(|all| all.contains(*part))))
-            };
+            let makes = |signal: &String| f64::from(u8::from(relations.makes(part, signal)));
             let made: Vec<f64> = signals.keys().map(makes).collect();
             let of_ways: f64 = made.iter().sum();
             let assumed = made.iter().zip(&of_any).map(|(made, any)| match of_ways {
@@ -101,9 +98,16 @@ impl Residuals {
         self.signals.get(signal).copied()
     }
 
-    /// Whether traces were counted under a level of a mode.
-    pub fn is_counted(&self, effect: usize) -> bool {
-        self.counted.get(effect).copied().unwrap_or_default()
+    /// Share of these traces that deviate first at a signal which was the first in a lesser share than `seldom` of the traces
+    /// under a level of a mode; 0 where none of its traces were counted.
+    pub fn seldom_first(&self, effect: usize, seen: &[String], seldom: f64) -> f64 {
+        if !self.counted.get(effect).is_some_and(|counted| *counted) {
+            return 0.0;
+        }
+        let known = seen.iter().filter_map(|signal| self.place(signal));
+        let shares: Vec<f64> = known.map(|signal| self.of_effect(effect, signal)).collect();
+        let below = shares.iter().filter(|share| **share < seldom).count();
+        below as f64 / shares.len().max(1) as f64
     }
 
     /// Share of the traces under a level of a mode in which a signal is the first to deviate.

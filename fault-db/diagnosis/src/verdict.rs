@@ -34,7 +34,7 @@ pub struct Candidate {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartProbability {
     pub lru: LruId,
-    /// That it has failed.
+    /// Probability that the part has failed.
     pub probability: f64,
 }
 

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::belief::Belief;
 use super::dictionary::ModeName;
 use super::groups::rivals;
+use super::logarithms::normalised;
 use super::model::Hypothesis;
 use super::observation::Observation;
 use super::pool::Pooled;
@@ -20,7 +21,7 @@ const UNSEEN: &str = "unseen";
 #[derive(Clone, Copy, Debug)]
 pub struct Fault {
     pub hypothesis: Hypothesis,
-    /// Of all its levels.
+    /// Probability of all levels of the fault together.
     pub probability: f64,
     pub of_level: f64,
 }
@@ -103,10 +104,11 @@ impl Weights {
     /// Of all evidence; where nothing wrong was seen, by Bayes' rule alone.
     pub fn after(belief: &Belief<'_, '_>, seen: &Observation) -> Self {
         let model = belief.model;
+        let ln = belief.ln();
         let mut faults: Vec<Fault> = Vec::new();
         let mut parts = vec![0.0; model.parts().len()];
         let mut no_fault = 0.0;
-        for (hypothesis, p) in model.hypotheses.iter().zip(belief.probabilities()) {
+        for (hypothesis, p) in model.hypotheses.iter().zip(normalised(&ln)) {
             let Some(part) = model.part(*hypothesis) else {
                 no_fault = p;
                 continue;
@@ -125,7 +127,7 @@ impl Weights {
         }
         let (mut counted, mut causes) = (1.0, BTreeSet::new());
         if seen.shows_a_fault() {
-            let pooled = Pooled::of(belief, seen);
+            let pooled = Pooled::of(belief, seen, &ln);
             let shares = pooled.shares.iter().map(|share| share * (1.0 - no_fault));
             let shares: Vec<f64> = shares.collect();
             for fault in &mut faults {

@@ -193,22 +193,7 @@ macro_rules! refusals {
         })*
     };
 }
-refusals!(
-    Asked,
-    DiagnosisTrouble,
-    DriveTrouble,
-    EndpointError,
-    FieldTrouble,
-    FileTrouble,
-    KeepTrouble,
-    KeyTrouble,
-    NoUnit,
-    RecordTrouble,
-    RunTrouble,
-    SoundTrouble,
-    Unknown,
-    Warning
-);
+with_areas!(refusals);
 
 impl From<NoUnit> for Failure {
     fn from(why: NoUnit) -> Self {

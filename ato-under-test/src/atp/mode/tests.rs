@@ -333,7 +333,7 @@ fn a_position_that_is_passed_and_a_forced_door_begin_no_run() {
     );
     assert_eq!(after(2_000, DRIVERLESS), Mode::Automatic, "forced");
     after(200, withheld(DRIVERLESS));
-    assert_eq!(after(200, DRIVERLESS), Mode::AutomaticRun, "given anew");
+    assert_eq!(after(200, DRIVERLESS), Mode::AutomaticRun, "given again");
 }
 
 #[test]

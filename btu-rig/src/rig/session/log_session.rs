@@ -89,7 +89,7 @@ impl LogSession {
         }
     }
 
-    /// Takes bytes from the unit.
+    /// Decodes bytes that came from the unit, and hands each frame on.
     pub fn receive(&mut self, now: Instant, bytes: &[u8]) {
         self.watch.note(bytes.len());
         self.link.push(bytes);

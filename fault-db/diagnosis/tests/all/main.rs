@@ -1,4 +1,4 @@
-//! What the crate promises.
+//! Tests of what diagnosis promises to its callers.
 
 mod diagnosis;
 mod proof;

@@ -1,4 +1,4 @@
-//! What the crate promises.
+//! Tests of decision trees against published problems and results.
 
 mod iscas;
 mod iscas_errors;

@@ -54,7 +54,7 @@ pub struct UnseenFigures {
     pub confused: Vec<(LruId, LruId, usize)>,
     /// Modes whose part was not named and others were, with those.
     pub wrong_answers: Vec<(String, String)>,
-    /// What two simpler ways come to.
+    /// What nearest neighbours and naive Bayes say of the same runs.
     pub baselines: Baselines,
 }
 

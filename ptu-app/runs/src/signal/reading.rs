@@ -30,7 +30,7 @@ impl Clock {
     }
 }
 
-/// What is in a file.
+/// Signals that were found in a file of a recording, and how loud its channels are.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Reading {
     /// Length, s.

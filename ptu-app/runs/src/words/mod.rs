@@ -163,6 +163,29 @@ macro_rules! sentences {
 }
 use sentences;
 
+/// Gives all areas of refusals to a macro.
+macro_rules! with_areas {
+    ($macro:ident) => {
+        $macro!(
+            Asked,
+            DiagnosisTrouble,
+            DriveTrouble,
+            EndpointError,
+            FieldTrouble,
+            FileTrouble,
+            KeepTrouble,
+            KeyTrouble,
+            NoUnit,
+            RecordTrouble,
+            RunTrouble,
+            SoundTrouble,
+            Unknown,
+            Warning
+        );
+    };
+}
+pub(crate) use with_areas;
+
 /// Makes one type of all areas.
 macro_rules! areas {
     ($($area:ident),*) => {
@@ -177,22 +200,7 @@ macro_rules! areas {
         }
     };
 }
-areas!(
-    Asked,
-    DiagnosisTrouble,
-    DriveTrouble,
-    EndpointError,
-    FieldTrouble,
-    FileTrouble,
-    KeepTrouble,
-    KeyTrouble,
-    NoUnit,
-    RecordTrouble,
-    RunTrouble,
-    SoundTrouble,
-    Unknown,
-    Warning
-);
+with_areas!(areas);
 
 /// All sentences, for tests of their wording: name, English and Korean.
 pub fn all() -> impl Iterator<Item = [&'static str; 3]> {
