@@ -60,6 +60,26 @@ impl Values {
         self.squares += off * (value - self.mean);
     }
 
+    /// Those of both together.
+    fn with(&self, other: &Self) -> Self {
+        let [here, there] = [self, other].map(|values| f64::from(values.n));
+        let (of_other, apart) = (there / (here + there), other.mean - self.mean);
+        let Self { missing, .. } = *other;
+        let missing = self.missing + missing;
+        match (self.n, other.n) {
+            (_, 0) => Self { missing, ..*self },
+            (0, _) => Self { missing, ..*other },
+            _ => Self {
+                n: self.n + other.n,
+                missing,
+                mean: self.mean + of_other * apart,
+                squares: self.squares + other.squares + here * of_other * apart * apart,
+                low: self.low.min(other.low),
+                high: self.high.max(other.high),
+            },
+        }
+    }
+
     /// Whether they agree with those of a healthy unit, as far as so few values can tell.
     fn is_like(&self, healthy: &Self) -> bool {
         /// Limits in standard deviations, of one value, and of the mean of several.
@@ -106,6 +126,49 @@ impl Cell {
         self.time_s += (step.time_s - self.time_s) / f64::from(self.runs());
         for (name, value) in &step.values {
             self.values.entry(name.clone()).or_default().add(*value);
+        }
+    }
+
+    /// The counts of both together.
+    pub fn with(&self, other: &Self) -> Self {
+        let mut both = self.clone();
+        let [here, there] = [self, other].map(|cell| f64::from(cell.runs()));
+        both.time_s += (other.time_s - self.time_s) * there / (here + there);
+        for (signature, count) in &other.signatures {
+            match both.signatures.iter_mut().find(|(s, _)| s == signature) {
+                Some((_, known)) => *known += count,
+                None => both.signatures.push((signature.clone(), *count)),
+            }
+        }
+        for (name, values) in &other.values {
+            let known = both.values.entry(name.clone()).or_default();
+            *known = known.with(values);
+        }
+        both
+    }
+
+    /// These counts as so many runs would have them, of which all show what most did.
+    pub fn of_runs(&self, runs: u32) -> Self {
+        let most = self.signatures.iter().max_by_key(|(_, count)| *count);
+        let values = self.values.iter().map(|(name, values)| {
+            let values = match values.n {
+                0 => Values {
+                    missing: runs,
+                    ..*values
+                },
+                n => Values {
+                    n: runs,
+                    missing: 0,
+                    squares: values.squares * f64::from(runs) / f64::from(n),
+                    ..*values
+                },
+            };
+            (name.clone(), values)
+        });
+        Self {
+            signatures: most.map(|(s, _)| (s.clone(), runs)).into_iter().collect(),
+            time_s: self.time_s,
+            values: values.collect(),
         }
     }
 

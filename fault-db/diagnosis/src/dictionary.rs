@@ -195,6 +195,45 @@ impl Dictionary {
         }
     }
 
+    /// Adds a level between two of the last mode, as if all sizes between them had been counted: a check that ends in one way
+    /// at the one and in another at the other may end in either, and values lie about the middle.
+    pub fn add_between(&mut self, levels: [usize; 2]) {
+        let Some(mode) = self.modes.last_mut() else {
+            return;
+        };
+        let [one, other] = levels.map(|level| &mode.columns[level]);
+        let cell = |column: &Column, place: &usize| match column.cells.get(place) {
+            Some(own) => Some(own.clone()),
+            None => Some(self.healthy.cells.get(place)?.of_runs(column.runs)),
+        };
+        let places: BTreeSet<usize> = one
+            .cells
+            .keys()
+            .chain(other.cells.keys())
+            .copied()
+            .collect();
+        let both = |place: usize| match (cell(one, &place), cell(other, &place)) {
+            (Some(one), Some(other)) => Some((place, one.with(&other))),
+            (one, other) => Some((place, one.or(other)?)),
+        };
+        let mut signs: BTreeMap<Sign, u32> = one.signs.iter().cloned().collect();
+        for (sign, count) in &other.signs {
+            *signs.entry(sign.clone()).or_default() += count;
+        }
+        let mut residuals = one.residuals.clone();
+        for (signal, count) in &other.residuals {
+            *residuals.entry(signal.clone()).or_default() += count;
+        }
+        let between = Column {
+            level: format!("{} to {}", one.level, other.level),
+            runs: one.runs + other.runs,
+            cells: places.into_iter().filter_map(both).collect(),
+            signs: signs.into_iter().collect(),
+            residuals,
+        };
+        mode.columns.push(between);
+    }
+
     /// Adds real runs with a fault of a part, as a mode of their own: so many runs are so many observations. Checks that
     /// passed in all of them tell of these units rather than of the fault, and count as a healthy unit's.
     pub fn add_cases(&mut self, mode: &ModeName, runs: &[Observation]) {

@@ -36,6 +36,9 @@ pub fn cause(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) -> 
     let signs = signs.filter(|sign| is_explained(&|effect| model.share_of_sign(effect, sign)));
     let failed = belief.steps().iter().filter(|weighed| {
         let step = &seen.steps[weighed.seen];
+        if step.result == Verdict::Passed {
+            return false;
+        }
         // A check may fail under several faults; what it measured tells which.
         let values = |effect| model.likelihood_of_values(effect, weighed.place, step);
         let likeliest = (0..model.effects().len()).map(values);
@@ -44,7 +47,7 @@ pub fn cause(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) -> 
             let counted = model.expected(model.effects()[effect], weighed.place);
             counted.share(counted.cell.count(step.result)) * values(effect) / likeliest
         };
-        step.result != Verdict::Passed && is_explained(&share)
+        is_explained(&share)
     });
     Some(Cause {
         lru: found.lru.clone(),

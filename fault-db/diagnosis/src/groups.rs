@@ -44,6 +44,9 @@ pub struct Relations {
     pub without_bench: Vec<String>,
     /// Of each signal the parts that make it of others.
     pub makers: BTreeMap<String, BTreeSet<LruId>>,
+    /// Of each signal that is made of one which the bench reads, the parts of the bench on the way of that one: a wire that
+    /// breaks behind the place where it is read deviates first here.
+    pub behind_bench: BTreeMap<String, BTreeSet<LruId>>,
 }
 
 /// Parts that do not depend on each other, as far as is known.
@@ -53,6 +56,7 @@ pub static NO_RELATIONS: Relations = Relations {
     of_bench: BTreeSet::new(),
     without_bench: Vec::new(),
     makers: BTreeMap::new(),
+    behind_bench: BTreeMap::new(),
 };
 
 impl Relations {
@@ -101,8 +105,8 @@ impl Relations {
 }
 
 /// Parts of the bench of a group with a part of the unit: what comes from the bench cannot tell the bench from the part that
-/// the bench reaches. None where no trace deviates first at a signal that the part of the bench makes, or a step failed that
-/// judges the part of the unit without the bench.
+/// the bench reaches. None where no trace deviates first at a signal that the part of the bench makes, or that is made of one
+/// behind its place, or a step failed that judges the part of the unit without the bench.
 pub fn rivals<'m>(belief: &Belief<'m, '_>, part: &LruId) -> BTreeSet<&'m LruId> {
     let relations = belief.model.relations;
     if relations.of_bench.contains(part) || fails_without_bench(belief, part) {
@@ -118,12 +122,17 @@ pub fn rivals<'m>(belief: &Belief<'m, '_>, part: &LruId) -> BTreeSet<&'m LruId> 
         .collect()
 }
 
-/// Whether a trace deviates first at a signal that a part makes; any trace may where none was held against
+/// Whether a trace deviates first where a fault of a part of the bench shows; any trace may where none was held against
 /// a sound unit's, or none deviated.
 fn may_deviate_at(belief: &Belief<'_, '_>, part: &LruId) -> bool {
     let relations = belief.model.relations;
+    let is_behind = |signal: &String| {
+        let behind = relations.behind_bench.get(signal);
+        behind.is_some_and(|parts| parts.contains(part))
+    };
+    let shows = |signal: &String| relations.makes(part, signal) || is_behind(signal);
     let deviating = belief.residuals();
-    deviating.is_empty() || deviating.iter().any(|signal| relations.makes(part, signal))
+    deviating.is_empty() || deviating.iter().any(shows)
 }
 
 /// Whether a step failed that judges the part and that the bench has no part in.

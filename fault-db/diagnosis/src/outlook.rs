@@ -19,35 +19,33 @@ pub struct Outlook {
 /// The outlook of each check of a dictionary, in order; `columns` are its effects.
 pub fn outlooks<'a>(
     dictionary: &'a Dictionary,
-    columns: impl Iterator<Item = &'a Column> + Clone,
+    columns: impl Iterator<Item = &'a Column>,
 ) -> Vec<Outlook> {
-    let of_check = |place: usize| {
-        let mut known: Vec<&StepOutcome> = Vec::new();
-        let mut shares = |cell: &'a Cell| -> Shares {
-            let runs = f64::from(cell.runs());
-            let outcomes = cell.signatures.iter().map(|(outcome, count)| {
-                let number = known.iter().position(|known| *known == outcome);
-                let number = number.unwrap_or_else(|| {
-                    known.push(outcome);
-                    known.len() - 1
-                });
-                (number, f64::from(*count) / runs)
-            });
-            outcomes.collect()
-        };
-        let healthy = dictionary.healthy.cells.get(&place);
-        let healthy = healthy.map(&mut shares).unwrap_or_default();
-        let acting = columns.clone().enumerate();
-        let acting =
-            acting.filter_map(|(effect, column)| Some((effect, column.cells.get(&place)?)));
-        let effects = acting
-            .map(|(effect, cell)| (effect, shares(cell)))
-            .collect();
-        Outlook {
-            outcomes: known.into_iter().cloned().collect(),
-            healthy,
-            effects,
+    let mut outlooks = vec![Outlook::default(); dictionary.checks.len()];
+    for (place, cell) in &dictionary.healthy.cells {
+        outlooks[*place].healthy = outlooks[*place].shares(cell);
+    }
+    for (effect, column) in columns.enumerate() {
+        for (place, cell) in &column.cells {
+            let shares = outlooks[*place].shares(cell);
+            outlooks[*place].effects.push((effect, shares));
         }
-    };
-    (0..dictionary.checks.len()).map(of_check).collect()
+    }
+    outlooks
+}
+
+impl Outlook {
+    /// The outcomes of a cell, numbered, with their shares.
+    fn shares(&mut self, cell: &Cell) -> Shares {
+        let runs = f64::from(cell.runs());
+        let outcomes = cell.signatures.iter().map(|(outcome, count)| {
+            let number = self.outcomes.iter().position(|known| known == outcome);
+            let number = number.unwrap_or_else(|| {
+                self.outcomes.push(outcome.clone());
+                self.outcomes.len() - 1
+            });
+            (number, f64::from(*count) / runs)
+        });
+        outcomes.collect()
+    }
 }

@@ -103,20 +103,21 @@ pub struct ShownSign<'a> {
     /// Share of runs in which it showed.
     pub share: f64,
     /// Checks in which it showed, by index.
-    places: Vec<usize>,
+    places: BTreeSet<usize>,
 }
 
 /// The signs of a mode at one level.
-pub fn shown_signs<'a>(column: &'a Column) -> Vec<ShownSign<'a>> {
-    let of_sign = |counted: &'a (Sign, u32)| {
-        let (sign, count) = counted;
-        let cells = column.cells.iter();
-        let shows = cells.filter(|(_, cell)| cell.count_sign(sign) > 0);
-        ShownSign {
-            sign,
-            share: f64::from(*count) / f64::from(column.runs.max(1)),
-            places: shows.map(|(place, _)| *place).collect(),
+pub fn shown_signs(column: &Column) -> Vec<ShownSign<'_>> {
+    let mut places: BTreeMap<&Sign, BTreeSet<usize>> = BTreeMap::new();
+    for (place, cell) in &column.cells {
+        for sign in cell.signatures.iter().flat_map(|(shown, _)| &shown.signs) {
+            places.entry(sign).or_default().insert(*place);
         }
-    };
-    column.signs.iter().map(of_sign).collect()
+    }
+    let shown = column.signs.iter().map(|(sign, count)| ShownSign {
+        sign,
+        share: f64::from(*count) / f64::from(column.runs.max(1)),
+        places: places.remove(sign).unwrap_or_default(),
+    });
+    shown.collect()
 }

@@ -4,14 +4,12 @@
 //! of a part on the same way: that is the likelier, the more alike the checks are which the modes of both act on. Much
 //! of what a suite does passes many parts: likeness counts squared.
 
-use std::collections::BTreeMap;
-
 use protocol::LruId;
 
 use super::dictionary::{Dictionary, Mode};
 
-/// How often the modes of a part act on each check.
-type Profile = BTreeMap<usize, f64>;
+/// How often the modes of a part act on each check, divided by the root of the sum of squares; 0 of a part without modes.
+type Profile = Vec<f64>;
 
 /// For each of the parts, logarithms of the probability that an unseen mode of it acts like each effect of the
 /// dictionary, a level of a mode, in order. `other_part` is the least likeness of two parts, 0 to 1.
@@ -24,7 +22,9 @@ pub fn resemblance(dictionary: &Dictionary, parts: &[&LruId], other_part: f64) -
         of_modes.filter_map(move |(mode, of)| (*of == Some(part)).then_some(mode))
     };
     let numbers = 0..parts.len();
-    let profiles: Vec<Profile> = numbers.clone().map(|part| profile(of_part(part))).collect();
+    let checks = dictionary.checks.len();
+    let profile = |part| profile(of_part(part), checks);
+    let profiles: Vec<Profile> = numbers.clone().map(profile).collect();
     let weight = |part| of_part(part).map(|mode| mode.name.weight).sum::<f64>();
     let weights: Vec<f64> = numbers.clone().map(weight).collect();
     let like_each = |part: usize| -> Vec<f64> {
@@ -46,34 +46,23 @@ pub fn resemblance(dictionary: &Dictionary, parts: &[&LruId], other_part: f64) -
     numbers.clone().map(like_each).collect()
 }
 
-fn profile<'a>(modes: impl Iterator<Item = &'a Mode>) -> Profile {
-    let mut profile = Profile::new();
+fn profile<'a>(modes: impl Iterator<Item = &'a Mode>, checks: usize) -> Profile {
+    let mut profile = vec![0.0; checks];
     for mode in modes {
         for column in &mode.columns {
             for place in column.cells.keys() {
-                *profile.entry(*place).or_default() += 1.0 / mode.columns.len() as f64;
+                profile[*place] += 1.0 / mode.columns.len() as f64;
             }
         }
     }
+    let length = likeness(&profile, &profile).sqrt();
+    profile
+        .iter_mut()
+        .for_each(|share| *share /= length.max(f64::MIN_POSITIVE));
     profile
 }
 
 /// Cosine of the angle between two profiles: 1 of the same, 0 where no check is common.
 fn likeness(one: &Profile, other: &Profile) -> f64 {
-    let common = one
-        .iter()
-        .filter_map(|(place, share)| Some(share * other.get(place)?));
-    let length = |profile: &Profile| {
-        profile
-            .values()
-            .map(|share| share * share)
-            .sum::<f64>()
-            .sqrt()
-    };
-    let lengths = length(one) * length(other);
-    if lengths > 0.0 {
-        common.sum::<f64>() / lengths
-    } else {
-        0.0
-    }
+    one.iter().zip(other).map(|(one, other)| one * other).sum()
 }

@@ -245,4 +245,24 @@ car = 5
         };
         assert_eq!(dead.kind(), FaultKind::Permanent);
     }
+
+    /// Levels are next to each other by their size on one side of what a good part has: a good part lies between the sides.
+    #[test]
+    fn next_levels_are_on_one_side_of_a_good_part() {
+        let next = |effect: &str, levels: &str| {
+            let gain = "effect = { kind = \"gain\", factor = 0.5 }";
+            let fault = FAULT
+                .replace("brake_cylinder", "speed_sensor1")
+                .replace("car = 5\n", "");
+            let text = format!("{PARTS}{}levels = {levels}", fault.replace(gain, effect));
+            FaultCatalogue::from_toml(&text).unwrap().faults[0].next_levels()
+        };
+        let gain = "effect = { kind = \"gain\", factor = 1.04 }";
+        assert_eq!(next(gain, "[0.96, 1.02, 1.08]"), [[2, 0], [0, 3]]);
+        assert_eq!(
+            next("effect = { kind = \"noise\", per_s = 80.0 }", "[40.0]"),
+            [[1, 0]]
+        );
+        assert!(next(gain, "[]").is_empty());
+    }
 }

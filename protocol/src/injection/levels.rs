@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use alloc::vec::Vec;
+
 use super::{Effect, FaultMode};
 
 /// Greatest effort, from which a limit comes down as it grows [S0: 1024 steps].
@@ -56,9 +58,36 @@ impl FaultMode {
             ..self.clone()
         })
     }
+
+    /// The two next levels on one side of what a good part has, for each such two: between them the mode lies at all sizes
+    /// that are not listed.
+    pub fn next_levels(&self) -> Vec<[usize; 2]> {
+        let sizes = (0..=self.levels.len()).filter_map(|level| {
+            let size = self.at_level(level)?.effect.size()?;
+            Some((size, level))
+        });
+        let mut sizes: Vec<_> = sizes.collect();
+        sizes.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        let next = sizes.windows(2);
+        let one_sided = next.filter(|next| next[0].0.signum() == next[1].0.signum());
+        one_sided.map(|next| [next[0].1, next[1].1]).collect()
+    }
 }
 
 impl Effect {
+    /// How far its number is from that of a good part; none of an effect without a number.
+    fn size(self) -> Option<f64> {
+        match self {
+            Self::Dead | Self::StuckOn | Self::StuckOff | Self::Deaf { .. } => None,
+            Self::Gain { factor } => Some(factor - 1.0),
+            Self::Limit { to: number }
+            | Self::Offset { by: number }
+            | Self::Noise { per_s: number }
+            | Self::BitErrors { rate: number } => Some(number),
+            Self::Delay { ms } | Self::Bounce { ms } => Some(f64::from(ms)),
+        }
+    }
+
     /// The effect at a strength of 0 to 1; `None` when there is nothing of it.
     pub fn at_strength(self, strength: f64) -> Option<Self> {
         if strength <= 0.0 {

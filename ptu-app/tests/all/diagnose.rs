@@ -6,11 +6,28 @@ use crate::common::{Place, list, number, text};
 use serde_json::Value;
 
 /// Parts whose fault modes look different enough that a whole run at the default seed must tell them.
-const TOLD: [(&str, &str); 4] = [
-    ("eb_relay.slow", "eb_relay"),
-    ("speed_sensor_1.dead", "speed_sensor_1"),
-    ("door_contact.open", "door_contact"),
-    ("inverter.dead", "inverter"),
+const TOLD: [(&str, &str, [&str; 2]); 4] = [
+    (
+        "eb_relay.slow",
+        "eb_relay",
+        ["the EB relay", "비상제동 계전기"],
+    ),
+    (
+        "speed_sensor_1.dead",
+        "speed_sensor_1",
+        ["speed sensor 1", "속도센서 1"],
+    ),
+    (
+        "door_contact.open",
+        "door_contact",
+        ["the door contact", "출입문 닫힘 접점"],
+    ),
+    // Of several on a train, the one that TCMS names.
+    (
+        "inverter.dead",
+        "inverter",
+        ["car 2's VVVF inverter", "2호차 추진제어장치(VVVF)"],
+    ),
 ];
 
 fn diagnosis(place: &Place) -> Value {
@@ -24,7 +41,7 @@ fn diagnosis(place: &Place) -> Value {
 
 #[test]
 fn a_whole_run_names_the_part_with_reasons() {
-    for (fault, lru) in TOLD {
+    for (fault, lru, [name, name_ko]) in TOLD {
         let place = Place::new();
         place.ptu(&["run", "--inject", fault]).exits(1);
         let said = diagnosis(&place);
@@ -37,7 +54,13 @@ fn a_whole_run_names_the_part_with_reasons() {
             "{fault}: {said:#}"
         );
         assert!(!list(&first["for"]).is_empty(), "{fault}");
-        assert!(text(&said["conclusion"]).contains(lru), "{fault}");
+        for (conclusion, name) in [("conclusion", name), ("conclusion_ko", name_ko)] {
+            let named = format!("{name} ({lru}");
+            assert!(
+                text(&said[conclusion]).contains(&named),
+                "{fault}: {said:#}"
+            );
+        }
         if finding == "found" {
             assert!(said["next_check"].is_null(), "{fault}: nothing is open");
         }

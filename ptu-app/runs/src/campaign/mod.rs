@@ -268,6 +268,9 @@ fn dictionary(
             };
             dictionary.add(&name, label, &of(Some(&mode.id), level));
         }
+        mode.next_levels()
+            .into_iter()
+            .for_each(|two| dictionary.add_between(two));
     }
     dictionary
 }

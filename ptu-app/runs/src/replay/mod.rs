@@ -19,6 +19,6 @@ pub use compare::{Comparison, Deviation, Difference, Rule, compare};
 pub use explain::{Explanation, Link, explain};
 pub use original::{Original, rule_between};
 pub use rerun::{ReplayMatch, Rerun, Rerunning, rerun};
-pub use residual::{add_residuals, first_deviation};
+pub use residual::{first_deviation, first_traces, residuals};
 
 pub use replay_embedded::good_twin;

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use btu_rig::recorded::StimulusPlayer;
 use btu_rig::recorder::RecordedWindow;
-use diagnosis::Observation;
 use fault_db::{Id, RunOccurrence, Store, TraceData};
 
 use super::{Original, Rule, compare, good_twin};
 use crate::data::ScriptsDirectory;
+use crate::pool;
 use crate::run::trace_data::trace_data;
 use crate::run::{BenchSetup, RecordedStimuli, Window};
 use crate::stop::Stop;
@@ -36,32 +36,29 @@ pub fn first_deviation(
     first(&trace_data(cut), &twin, &Rule::exact())
 }
 
-/// Adds the residual of the first trace of each procedure of a stored run, as far as the traces can
-/// be made again.
-pub fn add_residuals(
-    seen: &mut Observation,
-    (store, directory): (&Store, &ScriptsDirectory),
-    occurrences: &[RunOccurrence],
-) {
+/// The first trace of each procedure of a stored run, as far as its stimuli can be repeated.
+pub fn first_traces(store: &Store, occurrences: &[RunOccurrence]) -> Vec<Original> {
     let mut procedures = BTreeSet::new();
     let mut traces: Vec<Id> = occurrences.iter().filter_map(|one| one.trace_id).collect();
     traces.dedup();
     // Traces of one procedure come one after the other: its first is the first to be asked for.
-    for trace in traces {
-        let procedure = store.recording(trace).ok().flatten();
-        let procedure = procedure.map(|recording| recording.procedure);
-        if !procedure.is_some_and(|procedure| procedures.insert(procedure)) {
-            continue;
-        }
-        let Ok(original) = Original::read(store, trace) else {
-            continue;
-        };
-        let twin = good_twin(&original, directory);
-        let first = twin
-            .ok()
-            .and_then(|(twin, rule)| first(&original.trace, &twin, &rule));
-        seen.residuals.extend(first);
-    }
+    traces.retain(|trace| {
+        let recording = store.recording(*trace).ok().flatten();
+        recording.is_some_and(|recording| procedures.insert(recording.procedure))
+    });
+    let read = |trace| Original::read(store, trace).ok();
+    traces.into_iter().filter_map(read).collect()
+}
+
+/// The first signal of each trace that leaves its good twin's, for those that leave it.
+pub fn residuals(traces: &[Original], directory: &ScriptsDirectory) -> Vec<String> {
+    let first_of = |i: usize| {
+        let (twin, rule) = good_twin(&traces[i], directory).ok()?;
+        first(&traces[i].trace, &twin, &rule)
+    };
+    let stop = Stop::default();
+    let found = pool::run(traces.len(), pool::cores(), &stop, &mut |_| {}, first_of);
+    found.into_iter().filter_map(|(_, first)| first).collect()
 }
 
 fn first(came: &TraceData, twin: &TraceData, rule: &Rule) -> Option<String> {

@@ -12,6 +12,7 @@ use protocol::LruId;
 use protocol::injection::Lru;
 
 use super::attribution::with_faults;
+use super::cars::name_cars;
 use super::confirmed::take_confirmed;
 use super::dictionary::{Chosen, Origin, choose};
 use super::history::OwnHistory;
@@ -19,7 +20,7 @@ use super::{UNIT_CONFIG, settings};
 use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
 use crate::failure::{DiagnosisTrouble, Failure, Trouble, Unknown, did_you_mean};
-use crate::replay::add_residuals;
+use crate::replay::{first_traces, residuals};
 use crate::run::{Adaptive, of_run};
 use crate::stored::{DEPARTURE, findings};
 use crate::structure::Structure;
@@ -102,14 +103,25 @@ pub fn diagnose(
     let run = store.run(id)?;
     let occurrences = store.run_occurrences(id)?;
     let settings = settings(directory)?;
+    let traces = first_traces(store, &occurrences);
+    // Repeating what was recorded takes as long as reading what it is held against.
+    let (chosen, residuals) = std::thread::scope(|scope| {
+        let residuals = scope.spawn(|| residuals(&traces, directory));
+        let chosen = choose(Some(store), directory, connection_of(&run));
+        let residuals = residuals.join();
+        (
+            chosen,
+            residuals.unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+        )
+    });
     let Chosen {
         mut dictionary,
         from,
         mut warnings,
         current,
-    } = choose(Some(store), directory, connection_of(&run))?;
+    } = chosen?;
     let mut seen = of_run(&run, &occurrences);
-    add_residuals(&mut seen, (store, directory), &occurrences);
+    seen.residuals = residuals;
     let mut seen = comparable(&run, seen, &dictionary, &mut warnings);
     for other in with {
         let more = of_same_unit((store, directory), &run, *other)?;
@@ -138,7 +150,8 @@ pub fn diagnose(
         warnings.push(Warning::NoRelations(why));
         Relations::default()
     });
-    let names = catalogue.map(|all| all.lrus).unwrap_or_default();
+    let mut names = catalogue.map(|all| all.lrus).unwrap_or_default();
+    name_cars(&mut names, &occurrences);
     // A symptom that this directory's file no longer has says nothing.
     let said = run.run.symptom.as_deref();
     if let Some(symptom) = said.and_then(|id| symptoms::find(directory, &names, id).ok()) {
@@ -207,7 +220,7 @@ fn of_same_unit(
     }
     let occurrences = store.run_occurrences(that.id)?;
     let mut seen = of_run(&other, &occurrences);
-    add_residuals(&mut seen, (store, directory), &occurrences);
+    seen.residuals = residuals(&first_traces(store, &occurrences), directory);
     Ok(seen)
 }
 

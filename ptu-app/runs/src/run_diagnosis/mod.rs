@@ -3,6 +3,7 @@
 mod answer;
 mod attribution;
 mod basis;
+mod cars;
 mod confirmed;
 mod dictionary;
 mod history;

@@ -130,7 +130,8 @@ fn sign_of(part: &str) -> Sign {
 
 /// Goal: what comes from the bench cannot tell the bench from the part that it reaches. Method: the relay's fault as counted,
 /// with the bench's input in a group with the relay: beside the relay where no trace was held against a sound unit, or one
-/// deviates at what the bench reads; not where traces deviate at what the unit makes, or a check without the bench fails.
+/// deviates at what the bench reads, or at what is made of that behind the bench; not where traces deviate at what else the unit
+/// makes, or a check without the bench fails.
 #[test]
 fn a_part_of_the_bench_stays_in_the_answer_unless_something_speaks_against_it() {
     let mut dictionary = dictionary();
@@ -152,6 +153,7 @@ fn a_part_of_the_bench_stays_in_the_answer_unless_something_speaks_against_it() 
             .map(|name| (*name).to_owned())
             .collect(),
         makers: made.clone().into(),
+        behind_bench: BTreeMap::from([("use".to_owned(), parts(["bench"]).into_iter().collect())]),
         ..grouped(["bench", "relay"])
     };
     let named = |deviates: &[&str], without_bench: &[&str]| {
@@ -164,6 +166,7 @@ fn a_part_of_the_bench_stays_in_the_answer_unless_something_speaks_against_it() 
     let (both, relay) = (parts(["relay", "bench"]), parts(["relay"]));
     assert_eq!(named(&[], &[]), both);
     assert_eq!(named(&["contact"], &["b"]), both);
+    assert_eq!(named(&["use"], &[]), both);
     assert_eq!(named(&["order"], &[]), relay);
     assert_eq!(named(&["contact"], &["a"]), relay);
 }
