@@ -34,12 +34,14 @@ pub fn gains<'m>(belief: &Belief<'m, '_>, seen: &Observation) -> BTreeMap<&'m Lr
             let [Some(one), Some(other)] = parts else {
                 continue;
             };
+            if one == other {
+                continue;
+            }
             let shared = model.relations.shared.iter();
             let reach = shared.filter(|shared| {
-                one != other
-                    && [one, other]
-                        .iter()
-                        .all(|part| shared.reaches.contains(part))
+                [one, other]
+                    .iter()
+                    .all(|part| shared.reaches.contains(part))
             });
             let mut reach = reach.peekable();
             if reach.peek().is_none() {

@@ -13,7 +13,15 @@ const MOST_LISTED: usize = 20;
 
 /// Both, by what was left out.
 pub fn left_out_json(left_out: &LeftOut) -> Value {
-    json!({ "modes": figures_json(&left_out.modes), "parts": figures_json(&left_out.parts) })
+    let of = |figures: &UnseenFigures| {
+        let mut json = figures_json(figures);
+        let baselines = figures.baselines.map(|Baseline { first, wrong }| {
+            json!({ "first": share_json(first), "wrong": share_json(wrong) })
+        });
+        json["baselines"] = json!(baselines);
+        json
+    };
+    json!({ "modes": of(&left_out.modes), "parts": of(&left_out.parts) })
 }
 
 fn figures_json(figures: &UnseenFigures) -> Value {
@@ -34,9 +42,6 @@ fn figures_json(figures: &UnseenFigures) -> Value {
         "wrong_answers": figures.wrong_answers.iter().map(|(fault, answer)| {
             json!({ "fault": fault, "answer": answer })
         }).collect::<Vec<_>>(),
-        "baselines": figures.baselines.map(|Baseline { first, wrong }| {
-            json!({ "first": share_json(first), "wrong": share_json(wrong) })
-        }),
     })
 }
 

@@ -122,6 +122,12 @@ pub fn diagnose(
     } = chosen?;
     let mut seen = of_run(&run, &occurrences);
     seen.residuals = residuals;
+    // What the bench was built of stands beside a trace.
+    let on = traces.first().map(|trace| &trace.made.train.name);
+    if let Some(train) = on.filter(|train| **train != dictionary.basis.train) {
+        let of_dictionary = dictionary.basis.train.clone();
+        warnings.push(Warning::OtherTrain(train.clone(), of_dictionary));
+    }
     let mut seen = comparable(&run, seen, &dictionary, &mut warnings);
     for other in with {
         let more = of_same_unit((store, directory), &run, *other)?;
