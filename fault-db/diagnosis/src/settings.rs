@@ -284,7 +284,7 @@ impl Default for Settings {
             found_at: 0.95,
             healthy_at: 0.99,
             hidden_fault: 0.05,
-            least_gain_bits: 0.01,
+            least_gain_bits: 0.05,
             told_gain_bits: 0.1,
             doubt_runs: 1.0,
             otherwise: 0.0001,
