@@ -30,17 +30,10 @@ pub struct Undo {
 impl Undo {
     /// Tells when it is done.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
-        if !self.under_way.poll() {
-            return;
-        }
         let frame = &context.words.frame;
-        match std::mem::take(&mut self.under_way) {
-            Request::Failed(why) => context.messages.trouble(frame.not_undone, why.clone()),
-            Request::Ready(written) => {
-                let said = fill(frame.undone, &[("what", &self.what)]);
-                context.messages.tell_taken_back(said, written);
-            }
-            Request::Idle | Request::Pending(_) => {}
+        if let Some(written) = self.under_way.take(frame.not_undone, context.messages) {
+            let said = fill(frame.undone, &[("what", &self.what)]);
+            context.messages.tell_taken_back(said, written);
         }
     }
 

@@ -16,6 +16,8 @@ use std::sync::Arc;
 use btu_rig::procedure::Procedure;
 use eframe::egui::Ui;
 
+use procedures::Wanted;
+
 use super::Page;
 use super::page_context::{Destination, PageContext};
 
@@ -90,7 +92,7 @@ impl Pages {
                 Page::Diagnosis
             }
             Destination::Fault(id) => {
-                self.faults.open(id, context);
+                self.faults.open(id);
                 Page::Faults
             }
             Destination::Life(serial) => {
@@ -102,21 +104,26 @@ impl Pages {
                 Page::Faults
             }
             Destination::FindPart(symptom) => {
-                self.procedures.find_part(symptom, true, context);
+                let adaptive = true;
+                self.procedures
+                    .want(Wanted::Part { symptom, adaptive }, context);
                 Page::Case
             }
             Destination::RunAll(symptom) => {
-                self.procedures.find_part(symptom, false, context);
+                let adaptive = false;
+                self.procedures
+                    .want(Wanted::Part { symptom, adaptive }, context);
                 Page::Case
             }
             Destination::Prove { procedures, part } => {
-                self.procedures.prove(procedures, part, context);
+                self.procedures
+                    .want(Wanted::Prove { procedures, part }, context);
                 Page::Case
             }
             // The frame has opened it.
             Destination::Setup => context.settings.page,
             Destination::GoOn => {
-                self.procedures.go_on(context);
+                self.procedures.want(Wanted::Rest, context);
                 context.settings.page
             }
             Destination::ChooseStep { procedure, step } => {

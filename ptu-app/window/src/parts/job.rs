@@ -20,6 +20,17 @@ pub struct Done {
     pub broken_off: Option<Trouble>,
 }
 
+impl Done {
+    /// Work that was done to its end.
+    pub fn all(text: String, notes: Vec<String>) -> Self {
+        Self {
+            text,
+            notes,
+            broken_off: None,
+        }
+    }
+}
+
 /// The work, while it goes on and after it.
 #[derive(Default)]
 pub struct Job {
@@ -80,23 +91,14 @@ impl Job {
 
     /// Takes what it came to; true when it has been done, to its end or not.
     pub fn poll(&mut self, context: &mut PageContext<'_>, failed: &str) -> bool {
-        if !self.under_way.poll() {
+        let Some(done) = self.under_way.take(failed, context.messages) else {
             return false;
+        };
+        if let Some(why) = &done.broken_off {
+            context.messages.trouble(failed, why.clone());
         }
-        match std::mem::take(&mut self.under_way) {
-            Request::Ready(done) => {
-                if let Some(why) = &done.broken_off {
-                    context.messages.trouble(failed, why.clone());
-                }
-                self.done = Some(done);
-                true
-            }
-            Request::Failed(why) => {
-                context.messages.trouble(failed, why.clone());
-                false
-            }
-            Request::Idle | Request::Pending(_) => false,
-        }
+        self.done = Some(done);
+        true
     }
 
     /// Progress of the work, with a button that stops it, if it can be stopped.

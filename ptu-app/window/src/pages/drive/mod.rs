@@ -5,12 +5,12 @@ mod form;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
+use eframe::egui::{CentralPanel, ScrollArea, Ui};
 use egui_material_icons::icons::ICON_TRAIN;
 
+use crate::PageContext;
 use crate::parts::{Done, Face, Job, Look, empty, foot, form, show_sheet};
 use crate::request::Request;
-use crate::{PageContext, Palette};
 use form::{Form, Offered};
 use ptu_report::drive::Results;
 use ptu_report::run::page::{Page, pages};
@@ -47,16 +47,11 @@ impl DrivePage {
                 return;
             }
             self.job.result(ui);
-            match &self.pages {
-                Request::Ready(pages) => show_sheet(ui, ("drive", self.number), pages),
-                Request::Failed(why) => {
-                    ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
-                }
-                Request::Pending(_) => drop(ui.label(words.common.loading)),
-                Request::Idle => {
-                    let missing = (words.drive.nothing, words.drive.explained);
-                    empty(ui, ICON_TRAIN, missing, None);
-                }
+            if self.pages.is_idle() {
+                let missing = (words.drive.nothing, words.drive.explained);
+                empty(ui, ICON_TRAIN, missing, None);
+            } else if let Some(pages) = self.pages.shown(ui, words) {
+                show_sheet(ui, ("drive", self.number), pages);
             }
         });
     }
@@ -65,26 +60,18 @@ impl DrivePage {
     fn form(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> bool {
         let words = context.words;
         let why_not = self.job.is_under_way().then_some(words.drive.under_way);
-        match &self.offered {
-            Request::Ready(offered) => {
-                let begin = Face::new(Look::Primary, words.drive.drive).off(why_not);
-                let asked = foot(ui, "begin to drive", |ui| begin.show(ui).clicked());
-                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                    ui.add_enabled_ui(why_not.is_none(), |ui| self.form.show(ui, words, offered));
-                });
-                return asked;
+        let Request::Ready(offered) = &self.offered else {
+            if (self.offered).missing(ui, words, words.drive.cannot_list) {
+                self.offered = Request::Idle;
             }
-            Request::Failed(why) => {
-                let said = RichText::new(words.drive.cannot_list).color(Palette::of(ui).bad);
-                ui.label(said.strong());
-                ui.label(&*words.trouble(why));
-                if ui.button(words.common.refresh).clicked() {
-                    self.offered = Request::Idle;
-                }
-            }
-            Request::Idle | Request::Pending(_) => drop(ui.label(words.common.loading)),
-        }
-        false
+            return false;
+        };
+        let begin = Face::new(Look::Primary, words.drive.drive).off(why_not);
+        let asked = foot(ui, "begin to drive", |ui| begin.show(ui).clicked());
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.add_enabled_ui(why_not.is_none(), |ui| self.form.show(ui, words, offered));
+        });
+        asked
     }
 
     /// Takes what has come, and has it laid out in the window's language.
@@ -130,11 +117,7 @@ impl DrivePage {
                 false => String::new(),
             };
             *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(runs);
-            Ok(Done {
-                text,
-                notes: Vec::new(),
-                broken_off: None,
-            })
+            Ok(Done::all(text, Vec::new()))
         });
     }
 }

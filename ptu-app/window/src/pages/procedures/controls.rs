@@ -63,11 +63,11 @@ impl ProceduresPage {
             }
         }
         ui.add(
-            DragValue::new(&mut self.repeat)
+            DragValue::new(&mut self.how.repeat)
                 .range(1..=MOST)
                 .suffix(format!(" × {}", words.repeat)),
         );
-        ui.checkbox(&mut self.stop_on_fail, words.stop_on_fail);
+        ui.checkbox(&mut self.how.stop_on_fail, words.stop_on_fail);
     }
 }
 

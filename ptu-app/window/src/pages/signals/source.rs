@@ -119,7 +119,7 @@ impl Source {
             if asked == Asked::Open {
                 let (reading, pictures) = signal::read_and_picture(&file, &unit, FULL_SCALE_MV)?;
                 show(Seen { reading, pictures }, told);
-                return Ok(done(String::new(), Vec::new()));
+                return Ok(Done::all(String::new(), Vec::new()));
             }
             let file = free_beside(&file);
             let known = Calibrations::load(&sound_file::usual()?)?;
@@ -167,7 +167,7 @@ impl Source {
                 words.signals.recorded,
                 &[("file", &file), ("time", &seconds)],
             );
-            Ok(done(text, notes))
+            Ok(Done::all(text, notes))
         });
     }
 
@@ -193,7 +193,7 @@ impl Source {
                 let made = signal::make(&wave, &unit, strength, (&path, FULL_SCALE_MV))?;
                 let path = path.display().to_string();
                 let clipped = cut_off(made.clipped, words);
-                return Ok(done(
+                return Ok(Done::all(
                     fill(words.common.saved, &[("file", &path)]),
                     clipped.into_iter().collect(),
                 ));
@@ -216,19 +216,11 @@ impl Source {
             notes.extend(cut_off(played.clipped, words));
             notes.extend(gaps(played.underruns, words));
             let seconds = format!("{:.2}", played.seconds);
-            Ok(done(
+            Ok(Done::all(
                 fill(words.signals.played, &[("time", &seconds)]),
                 notes,
             ))
         });
-    }
-}
-
-fn done(text: String, notes: Vec<String>) -> Done {
-    Done {
-        text,
-        notes,
-        broken_off: None,
     }
 }
 
