@@ -9,15 +9,15 @@ use super::{Atp, Code, CodeDecoder, EmergencyBrake, ModeSequence, Tachometers};
 impl Atp {
     /// States that the output contacts should have.
     pub fn outputs(&self, healthy: bool) -> Outputs {
-        let mut outputs = self.doors.enable() | self.door_orders.passed();
-        let code_valid = matches!(self.decoder.code(), Code::Known(_));
+        let mut outputs = self.doors.enable | self.door_orders.passed;
+        let code_valid = matches!(self.decoder.code, Code::Known(_));
         outputs.set(Outputs::EB_RELAY, !self.brake.applied());
         outputs.set(Outputs::FSB, self.fsb_cause != FsbCause::None);
         outputs.set(Outputs::POWER_CUT, self.power_cut());
-        let alarm = self.overspeed.alarm || self.proceeds.warns();
+        let alarm = self.overspeed.alarm || self.proceeds.warns;
         outputs.set(Outputs::ALARM, alarm);
         outputs.set(Outputs::CODE_VALID, code_valid);
-        outputs.set(Outputs::STANDSTILL, self.tachometers.standstill());
+        outputs.set(Outputs::STANDSTILL, self.tachometers.standstill);
         outputs.set(Outputs::HEALTHY, healthy);
         outputs
     }
@@ -68,7 +68,7 @@ impl Atp {
     }
 
     pub fn enabled(&self) -> DoorSide {
-        enabled_sides(self.doors.enable())
+        enabled_sides(self.doors.enable)
     }
 
     /// ATO may order doors to close. One contact closes all doors, so none may be open on a side that is not

@@ -73,9 +73,11 @@ pub struct Locator {
     /// Share by which the wheels run farther than they tell, as markers proved before others contradicted them.
     proved_farther: f64,
     /// Way that the marker of this scan ends, if it was believed and the wheels rolled.
-    span: Option<MarkerSpan>,
-    last_marker: u8,
-    count: u8,
+    pub span: Option<MarkerSpan>,
+    /// Last marker detected, 0 = none.
+    pub last_marker: u8,
+    /// Markers detected, wrapping.
+    pub count: u8,
 }
 
 impl Locator {
@@ -299,11 +301,6 @@ impl Locator {
         }
     }
 
-    /// The way that this scan's marker ends.
-    pub fn span(&self) -> Option<MarkerSpan> {
-        self.span
-    }
-
     /// Stopped within tolerance of the stop point, by the last marker and by the way from the marker before.
     pub fn aligned(&self) -> bool {
         let within = |distance_m: f64| libm::fabs(distance_m) <= self.aligned_m;
@@ -372,19 +369,9 @@ impl Locator {
         unsure_m.max(self.early_m)
     }
 
-    /// Last marker detected, 0 = none.
-    pub fn last_marker(&self) -> u8 {
-        self.last_marker
-    }
-
     /// Goes on with the count of another instance.
     pub fn count_on_from(&mut self, other: &Self) {
         self.count = other.count;
-    }
-
-    /// Markers detected, wrapping.
-    pub fn count(&self) -> u8 {
-        self.count
     }
 }
 

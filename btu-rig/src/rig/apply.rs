@@ -178,7 +178,7 @@ impl Rig {
             Stimulus::Tcms(condition) => self.tcms_port.condition = condition,
             Stimulus::AtoEnable { on } => self.tcms_port.ato_enable = on,
             Stimulus::Load { passengers_kg } => {
-                let full_kg = self.train.full_load_kg();
+                let full_kg = self.train.full_load_kg;
                 self.tcms_port.load_kg = in_range("load", passengers_kg, 0.0, full_kg, "kg")?;
             }
             _ => return self.apply_ptu(now, stimulus),
@@ -188,7 +188,7 @@ impl Rig {
 
     /// Stimuli that go through the unit's TEST board.
     fn apply_ptu(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
-        let session = self.tester.session();
+        let session = self.tester.session;
         let request = match *stimulus {
             Stimulus::PtuArm => Request::Arm {
                 refusal_fails: true,
@@ -248,7 +248,7 @@ impl Rig {
             }
             TachoCondition::Good | TachoCondition::Dead | TachoCondition::Reversed => {}
         }
-        let distance_m = self.wheel.axle().distance_m;
+        let distance_m = self.wheel.axle.distance_m;
         let tacho = usize::from(channel)
             .checked_sub(1)
             .and_then(|i| self.tachos.get_mut(i));
@@ -347,7 +347,7 @@ impl Rig {
         if self.codes_along {
             self.check_codes(section)?;
         }
-        let position_m = self.wheel.motion().position_m;
+        let position_m = self.wheel.motion.position_m;
         self.markers.lay(section, position_m);
         self.track = Some(Track::new(section.clone(), position_m));
         Ok(())

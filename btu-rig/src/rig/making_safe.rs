@@ -50,7 +50,7 @@ impl Rig {
         self.track = None;
         self.desk.reset(self.now);
         self.wayside.reset(&self.line.sections[0]);
-        let distance_m = self.wheel.axle().distance_m;
+        let distance_m = self.wheel.axle.distance_m;
         for tacho in &mut self.tachos {
             tacho.set_condition(TachoCondition::Good, distance_m);
         }

@@ -37,7 +37,8 @@ const MAX_WAITING_STEPS: usize = 16_384;
 /// interrupted.
 pub struct RunWriter<'a> {
     pub(crate) store: &'a Store,
-    id: Id,
+    /// The run's id.
+    pub id: Id,
     pub(crate) run: i64,
     unit: i64,
     line: String,
@@ -142,11 +143,6 @@ impl<'a> RunWriter<'a> {
         record: &RunRecord,
     ) -> Result<RunWriter<'b>, StoreError> {
         RunWriter::begin_as(self.id, store, record)
-    }
-
-    /// The run's id.
-    pub fn id(&self) -> Id {
-        self.id
     }
 
     /// Steps recorded but not yet in the file.

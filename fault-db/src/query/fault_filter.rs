@@ -61,7 +61,7 @@ pub(crate) enum FilteredTable {
 #[derive(Clone)]
 pub(crate) struct Resolved<'a> {
     filter: &'a FaultFilter,
-    unit: Option<i64>,
+    pub unit: Option<i64>,
     codes: Option<Vec<i64>>,
     lrus: Option<Vec<String>>,
     search: Option<Search>,
@@ -127,10 +127,6 @@ impl Resolved<'_> {
             of_runs: is_frequent("note_words", "run_note")?,
         };
         Ok(())
-    }
-
-    pub fn unit(&self) -> Option<i64> {
-        self.unit
     }
 
     /// The numbers of the codes asked for.

@@ -42,12 +42,14 @@ pub struct Options {
 }
 
 pub struct App {
-    queries: QueryWorker,
+    /// Questions to the database and to files, likewise.
+    pub queries: QueryWorker,
     database: DataWatch,
     /// The person was told that it is gone.
     told_gone: bool,
-    units: Units,
-    settings: Settings,
+    /// The units, for who drives the window from outside.
+    pub units: Units,
+    pub settings: Settings,
     /// The name of the operator as it was written last.
     operator: String,
     saved: Settings,
@@ -161,23 +163,9 @@ impl App {
         }
     }
 
-    /// The units, for who drives the window from outside.
-    pub fn units(&self) -> &Units {
-        &self.units
-    }
-
-    /// Questions to the database and to files, likewise.
-    pub fn queries(&self) -> &QueryWorker {
-        &self.queries
-    }
-
     /// The window is closed: every run recorded, every unit disarmed.
     pub fn is_closed(&self) -> bool {
         self.closed
-    }
-
-    pub fn settings(&self) -> &Settings {
-        &self.settings
     }
 
     pub fn page(&self) -> Page {
@@ -192,7 +180,7 @@ impl App {
         }
         self.messages.over(About::Database);
         if gone {
-            let file = self.queries.paths().database.display().to_string();
+            let file = self.queries.paths.database.display().to_string();
             self.messages
                 .trouble_about(About::Database, words.frame.database_gone, told(file));
         }

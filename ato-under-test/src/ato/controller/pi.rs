@@ -59,7 +59,7 @@ impl SpeedController for Pi {
         let reference = self.generator.step(input.into());
         let error = reference.setpoint.speed_mps - input.speed_mps;
         self.integral.add(self.integral_rate * error, input);
-        let law_n = self.proportional * error + self.integral.value();
+        let law_n = self.proportional * error + self.integral.value;
         let mut force_n = law_n * input.mass_kg / self.mass_kg;
         if self.feed_forward || reference.stopping {
             force_n += input.mass_kg * reference.setpoint.accel_mps2;

@@ -28,7 +28,7 @@ const UPTIME_WRAP_MS: u32 = 1 << 31;
 
 #[derive(Debug)]
 pub struct Tester {
-    session: u32,
+    pub session: u32,
     silent: bool,
     speaks_since: Instant,
     keep_alive_due: Instant,
@@ -38,17 +38,20 @@ pub struct Tester {
     first: Option<Identity>,
     /// Differences of another unit that answered.
     changed: Option<LinkTrouble>,
-    self_test: SelfTest,
+    /// Self-test items that failed, as the unit has said since it was started.
+    pub self_test: SelfTest,
     /// Count of events in the last status.
     logged: Option<u32>,
-    events_at_contact: Option<u32>,
+    /// Entries the unit's log had when it was first heard.
+    pub events_at_contact: Option<u32>,
     /// Events from before the contact are not read.
     leaves_old: bool,
-    restarts: u32,
+    /// Times the unit was started again.
+    pub restarts: u32,
     /// The log says that the unit restarted by itself after it was started.
     restarted_itself: bool,
     exchange: Exchange,
-    log: LogReader,
+    pub log: LogReader,
     /// The log is not read: what is stored is, instead.
     holds_log: bool,
     clock: UnitClock,
@@ -234,7 +237,7 @@ impl Tester {
 
     /// Why the unit refused or ended arming, as it said last.
     pub fn arm_refusal(&self) -> ArmRefusal {
-        self.exchange.refusal()
+        self.exchange.refusal
     }
 
     /// Every request has its outcome.
@@ -263,18 +266,9 @@ impl Tester {
         (!self.silent).then_some(self.speaks_since)
     }
 
-    pub fn session(&self) -> u32 {
-        self.session
-    }
-
     /// Identity of the unit, once the unit has told it.
     pub fn identity(&self) -> Option<&Identity> {
         self.identity.as_ref()
-    }
-
-    /// Entries the unit's log had when it was first heard.
-    pub fn events_at_contact(&self) -> Option<u32> {
-        self.events_at_contact
     }
 
     /// The log is not read, or from now on it is.
@@ -307,11 +301,6 @@ impl Tester {
         self.exchange.take_ended().filter(|_| !self.silent)
     }
 
-    /// Times the unit was started again.
-    pub fn restarts(&self) -> u32 {
-        self.restarts
-    }
-
     /// Whether it restarted by itself when it was started last, as its log says; `None` until that is read.
     pub fn restarted_itself(&self, now: Instant) -> Option<bool> {
         let read = self.logged.is_some() && self.log.state(now) == LogState::Read;
@@ -325,11 +314,7 @@ impl Tester {
 
     /// What the last self-test asked for found, as far as it came.
     pub fn self_test_items(&self) -> &[SelfTestItem] {
-        self.exchange.self_test()
-    }
-
-    pub fn log(&self) -> &LogReader {
-        &self.log
+        &self.exchange.self_test
     }
 
     /// How far the log is read.
@@ -339,11 +324,6 @@ impl Tester {
             LogState::Unanswered if self.silent => LogState::Behind,
             state => state,
         }
-    }
-
-    /// Self-test items that failed, as the unit has said since it was started.
-    pub fn self_test(&self) -> SelfTest {
-        self.self_test
     }
 
     /// Why nothing that is heard can be judged: another unit answers, or the log cannot be read.

@@ -19,8 +19,8 @@ const NO_FIXED_SPEED: u8 = 255;
 /// The wayside equipment of one loop.
 #[derive(Debug)]
 pub struct Wayside {
-    condition: WaysideCondition,
-    data: StationData,
+    pub condition: WaysideCondition,
+    pub data: StationData,
     pub orders: OrderSender,
     next_due: Instant,
     random: Random,
@@ -53,16 +53,8 @@ impl Wayside {
         self.data = data;
     }
 
-    pub fn data(&self) -> &StationData {
-        &self.data
-    }
-
     pub fn set_condition(&mut self, condition: WaysideCondition) {
         self.condition = condition;
-    }
-
-    pub fn condition(&self) -> WaysideCondition {
-        self.condition
     }
 
     /// Sends the frames that are due, if any, to the train of this number.
@@ -159,8 +151,8 @@ mod tests {
             while unit.poll(now).is_some() {}
             now += PERIOD;
         }
-        assert_eq!(unit.counters().accepted(Channel::Twc), 0);
-        assert_eq!(unit.counters().accepted(Channel::Ptu), 20_000);
-        assert!(unit.counters().rejected_total() >= 10_000);
+        assert_eq!(unit.counters.accepted(Channel::Twc), 0);
+        assert_eq!(unit.counters.accepted(Channel::Ptu), 20_000);
+        assert!(unit.counters.rejected_total() >= 10_000);
     }
 }

@@ -22,7 +22,7 @@ pub(super) fn count(
     let spans: Vec<_> = spans.iter().map(Span::of).collect();
     let mut counting = Counting {
         filter,
-        unit: resolved.unit(),
+        unit: resolved.unit,
         codes: resolved.codes(),
         lrus: resolved.lrus(),
         faults: resolved.faults_by_text(backend)?,

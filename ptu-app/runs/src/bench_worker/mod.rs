@@ -60,7 +60,8 @@ enum Order {
 /// The window's side of a bench thread. Dropping it stops the run, makes outputs safe and disarms.
 pub struct BenchWorker {
     orders: Option<Sender<Order>>,
-    live_state: Arc<LiveState>,
+    /// State of the run that the operator acts on: pause, single step, answers.
+    pub live_state: Arc<LiveState>,
     events: Receiver<BenchEvent>,
     /// Stops the run that was ordered last.
     stop: Stop,
@@ -153,11 +154,6 @@ impl BenchWorker {
     /// How often the present run was asked to stop.
     pub fn stop_presses(&self) -> u32 {
         self.stop.presses()
-    }
-
-    /// State of the run that the operator acts on: pause, single step, answers.
-    pub fn live_state(&self) -> &Arc<LiveState> {
-        &self.live_state
     }
 
     /// The latest cycle and the rows before it; held for as short a time as possible.

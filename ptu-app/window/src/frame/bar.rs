@@ -298,7 +298,7 @@ fn states(context: &PageContext<'_>, with_words: bool, items: &mut Vec<Item>) {
         items.push(warned(differs.clone(), differs));
     }
     if context.only_reads().is_some() {
-        let server = context.queries.paths().database.display().to_string();
+        let server = context.queries.paths.database.display().to_string();
         let said = fill(words.care.reads, &[("server", &server)]);
         let hint = format!("{said}. {}", words.care.is_server);
         items.push(warned(said, hint));
@@ -333,7 +333,7 @@ fn right(context: &PageContext<'_>, without: Without) -> Vec<Item> {
         let find = Face::new(Look::Quiet, "").icon(ICON_SEARCH).small(key);
         items.push((What::Find, find.named(words.find_anything)));
     }
-    let n = context.messages.all().len();
+    let n = context.messages.all.len();
     let count = if n > 0 { n.to_string() } else { String::new() };
     let bell = Face::new(Look::Quiet, count).icon(ICON_NOTIFICATIONS);
     items.push((What::Bell, bell.named(words.messages)));

@@ -66,7 +66,7 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
     let place = undoable.map(|(place, ..)| place);
     let words = context.words;
     let (mut noted, mut seen, mut taken_back) = (false, false, None);
-    let all = context.messages.all();
+    let all = &context.messages.all;
     let trouble = context.messages.unread_trouble();
     let last = context.messages.latest_note(place, now_s);
     // The case shows itself what its run came to.
@@ -135,7 +135,7 @@ pub fn bell(response: &Response, context: &mut PageContext<'_>) {
     let words = context.words;
     Popup::menu(response).show(|ui| {
         ui.set_min_width(WIDE);
-        let all = context.messages.all();
+        let all = &context.messages.all;
         if all.is_empty() {
             ui.label(words.common.nothing);
             return;

@@ -72,7 +72,7 @@ impl Job {
     ) {
         let queries = context.queries;
         if self.thread.is_none() {
-            match QueryWorker::new(queries.paths().clone(), queries.wake().clone()) {
+            match QueryWorker::new(queries.paths.clone(), queries.wake.clone()) {
                 Ok(thread) => self.thread = Some(thread),
                 Err(failure) => return context.messages.trouble(failed, failure.message),
             }
@@ -80,7 +80,7 @@ impl Job {
         self.told = Told {
             stop: Stop::default(),
             said: Arc::new(Mutex::new(said)),
-            wake: Some(queries.wake().clone()),
+            wake: Some(queries.wake.clone()),
         };
         self.done = None;
         let told = self.told.clone();

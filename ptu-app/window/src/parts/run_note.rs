@@ -78,7 +78,7 @@ impl RunNoteForm {
         ui.add(note_edit(&mut self.text, wide))
             .labelled_by(label.id);
         let (who, text) = (who.trim().to_owned(), self.text.trim().to_owned());
-        let writes = !queries.paths().is_server();
+        let writes = !queries.paths.is_server();
         let may = writes && !who.is_empty() && !text.is_empty() && self.under_way.is_idle();
         let why = match writes {
             true => words.report.note_hint,

@@ -64,7 +64,7 @@ impl HistoryMaintenance {
         if context.settings.locked {
             super::only_look(ui);
         }
-        let file = context.queries.paths().database.display().to_string();
+        let file = context.queries.paths.database.display().to_string();
         ui.horizontal_wrapped(|ui| {
             ui.label(RichText::new(words.care.file).color(Palette::of(ui).quiet));
             ui.label(file);

@@ -19,7 +19,7 @@ impl ProceduresPage {
         ui.horizontal_wrapped(|ui| {
             let unit = context.units.chosen();
             let phase = unit.phase();
-            let live_state = unit.bench.live_state();
+            let live_state = &unit.bench.live_state;
             let state = (
                 unit.id,
                 phase == Phase::Running,
@@ -84,7 +84,7 @@ pub fn why_not(unit: &Unit, words: &Words) -> &'static str {
 fn running(ui: &mut Ui, context: &mut PageContext<'_>, place: &ActionPlace) {
     let words = &context.words.procedures;
     let worker = &context.units.chosen().bench;
-    let live_state = worker.live_state();
+    let live_state = &worker.live_state;
     let paused = live_state.paused();
     let pause = if paused { words.resume } else { words.pause };
     let pause = Face::new(Look::Secondary, pause).icon(ICON_PAUSE);

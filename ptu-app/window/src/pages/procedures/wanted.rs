@@ -81,7 +81,7 @@ impl ProceduresPage {
             return;
         };
         let connection = of.connection();
-        let same = of.waiting_run().filter(|_| !of.is_other());
+        let same = of.waiting_run().filter(|_| !of.is_other);
         let rest = same.map(|(run, _)| (Selection::rest(run), run.id()));
         if let Wanted::Rest = wanted
             && rest.is_some()
@@ -90,7 +90,7 @@ impl ProceduresPage {
             self.wanted = Some((wanted, unit));
             return;
         }
-        let was_of_case = of.is_run_of_case();
+        let was_of_case = of.is_run_of_case;
         let mut how = RunSettings::default();
         let all = &suite.procedures;
         let of_case = match &wanted {

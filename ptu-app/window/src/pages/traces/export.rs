@@ -59,7 +59,7 @@ impl Export {
             edit.surrender_focus();
             ui.close();
             let (sender, receiver) = mpsc::channel();
-            let wake = context.queries.wake().clone();
+            let wake = context.queries.wake.clone();
             ui.ctx().request_screenshot(move |image| {
                 // Another trace may have been opened since.
                 let _ = sender.send(image);
@@ -110,13 +110,13 @@ impl Export {
     }
 
     fn write_csv(&mut self, scene: &TracePlot, context: &PageContext<'_>) {
-        let opened = scene.opened().clone();
-        let channels: Vec<usize> = scene.lanes().iter().filter_map(|lane| lane.place).collect();
+        let opened = scene.opened.clone();
+        let channels: Vec<usize> = scene.lanes.iter().filter_map(|lane| lane.place).collect();
         let rows = scene.rows_in_view();
-        let axis = (scene.axis().kind() == Kind::Distance).then(|| scene.axis().clone());
+        let axis = (scene.axis.kind() == Kind::Distance).then(|| scene.axis.clone());
         let name = self.name.clone();
         let question = move |_: &_| {
-            let text = csv(opened.view.data(), &channels, rows, axis.as_ref());
+            let text = csv(&opened.view.data, &channels, rows, axis.as_ref());
             let place = with_ending(&name, "csv");
             let mut file = NewFile::begin_beside(&place)?;
             let written = file.write_all(text.as_bytes());

@@ -62,7 +62,7 @@ impl TracesPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.poll(context);
         let words = &context.words.traces;
-        let chosen = self.scene.as_ref().map(|scene| scene.opened().id);
+        let chosen = self.scene.as_ref().map(|scene| scene.opened.id);
         let list = Side {
             name: words.recorded,
             wide: [268.0, 320.0],
@@ -117,7 +117,7 @@ impl TracesPage {
         }
         if let Some(scene) = &mut self.scene {
             self.behind.poll(scene, context);
-            self.notes.poll(scene.opened().id, context);
+            self.notes.poll(scene.opened.id, context);
         }
         self.export.poll(context);
     }
@@ -174,7 +174,7 @@ impl TracesPage {
 /// Whose trace it is, what is amiss with it, and ways on from here.
 fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageContext<'_>) {
     let words = context.words;
-    let opened = scene.opened();
+    let opened = &scene.opened;
     let (unit, when) = list.whose(opened.run);
     let known = |text| match text {
         "" => words.traces.not_known,
@@ -184,7 +184,7 @@ fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageC
     let title = fill(words.traces.of_unit, &[("unit", &unit), ("when", &when)]);
     let title = ui.label(RichText::new(title).strong());
     title.on_hover_text(opened.id.to_string());
-    let data = opened.view.data();
+    let data = &opened.view.data;
     let warn = Palette::of(ui).warn;
     for (amiss, text) in [
         (data.partial, words.traces.cut_short),

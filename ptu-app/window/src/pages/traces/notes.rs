@@ -51,8 +51,8 @@ impl TraceNotes {
                     if link(ui, text).on_hover_text(whole(note)).clicked()
                         && let Some(row) = row_of(note, scene.view())
                     {
-                        let place = scene.axis().at(row);
-                        scene.camera().centre(place);
+                        let place = scene.axis.at(row);
+                        scene.camera.centre(place);
                     }
                 }
                 if notes.len() > LINKS {
@@ -66,8 +66,8 @@ impl TraceNotes {
         let view = scene.view();
         let rows = row as i64 - view.trigger_row() as i64;
         let place = TracePlace {
-            trace: scene.opened().id,
-            at_us: rows.saturating_mul(view.data().period_us),
+            trace: scene.opened.id,
+            at_us: rows.saturating_mul(view.data.period_us),
         };
         ui.horizontal_wrapped(|ui| {
             let who = &context.settings.operator;
@@ -84,7 +84,7 @@ impl TraceNotes {
             let Some(row) = row_of(note, sheet.scene.view()) else {
                 continue;
             };
-            let x = lane::x_at(lanes, sheet.scene.window(), sheet.scene.axis().at(row));
+            let x = lane::x_at(lanes, sheet.scene.window(), sheet.scene.axis.at(row));
             if !lanes.x_range().contains(x) {
                 continue;
             }
@@ -107,7 +107,7 @@ impl TraceNotes {
 
 /// The row at its time, if the trace has it.
 fn row_of(note: &TraceNote, view: &TraceView) -> Option<usize> {
-    let data = view.data();
+    let data = &view.data;
     let rows = note.time_us.div_euclid(data.period_us);
     let row = rows.saturating_add(view.trigger_row() as i64);
     usize::try_from(row).ok().filter(|row| *row < data.rows())

@@ -62,7 +62,7 @@ impl Scratch {
     /// Finds the first rows of the columns of pixels, which all lanes share.
     pub fn edges(&mut self, scene: &TracePlot, width: f32) {
         let columns = width.round().max(1.0) as usize;
-        scene.axis().edges(scene.window(), columns, &mut self.own);
+        scene.axis.edges(scene.window(), columns, &mut self.own);
         if let Some(behind) = scene.behind() {
             behind.axis.edges(scene.window(), columns, &mut self.behind);
         }
@@ -73,7 +73,7 @@ impl Sheet<'_> {
     /// Heights of all lanes; where there is room, quantities take it.
     pub fn heights(&self, room: f32) -> Vec<f32> {
         let groups = self.scene.groups();
-        let lanes = self.scene.lanes();
+        let lanes = &self.scene.lanes;
         let first = |group: &Range<usize>| &lanes[group.start];
         let height = |group: &Range<usize>| {
             // Each name in it has a line.
@@ -123,7 +123,7 @@ impl Sheet<'_> {
         let between = Stroke::new(1.0, self.palette.grid);
         ui.painter()
             .hline(places.names..=places.end, row.bottom() - GAP / 2.0, between);
-        let lanes = &self.scene.lanes()[group.clone()];
+        let lanes = &self.scene.lanes[group.clone()];
         // Colour tells curves of a lane apart; a state is grey unless it deviates.
         let curves = &self.palette.curves;
         let is_state = |lane: &Lane| {
@@ -155,7 +155,7 @@ impl Sheet<'_> {
         let own = Source {
             view: self.scene.view(),
             place,
-            axis: self.scene.axis(),
+            axis: &self.scene.axis,
         };
         match own.view.summary(place) {
             Summary::Unknown => note(ui, rect, self.words.traces.not_known, self.palette.quiet),
@@ -222,7 +222,7 @@ impl Sheet<'_> {
             let own = Source {
                 view: self.scene.view(),
                 place,
-                axis: self.scene.axis(),
+                axis: &self.scene.axis,
             };
             curve(own, edges, colour(number));
         }
@@ -328,7 +328,7 @@ impl Sheet<'_> {
             return;
         };
         let painter = ui.painter_at(rect);
-        let (window, axis, bad) = (self.scene.window(), self.scene.axis(), self.palette.bad);
+        let (window, axis, bad) = (self.scene.window(), &self.scene.axis, self.palette.bad);
         let mut painted = rect.left();
         for rows in stretches {
             let from = lane::x_at(rect, window, axis.at(rows.start));
