@@ -83,7 +83,7 @@ pub fn plan(matrix: &Matrix, known: &Posterior, options: PlanOptions) -> Result<
     let mut warnings = remarks(matrix);
     let problem = Problem::new(matrix, known, options.confidence);
     let tests = problem.tests.len();
-    let small = problem.len() <= MAX_OPTIMAL && (problem.is_crisp() || tests <= MAX_OPTIMAL);
+    let small = problem.len() <= MAX_OPTIMAL && (problem.matrix.is_crisp() || tests <= MAX_OPTIMAL);
     let tried = match options.method {
         Some(Method::Optimal) if !small => {
             return Err(MatrixError::TooLargeForOptimal {
@@ -134,7 +134,7 @@ pub fn plan(matrix: &Matrix, known: &Posterior, options: PlanOptions) -> Result<
 }
 
 fn best_tree(problem: &Problem<'_>) -> Result<Tree, WorkLimitReached> {
-    if problem.is_crisp() {
+    if problem.matrix.is_crisp() {
         let space = CrispSpace::new(problem);
         let root = space.root();
         searched(problem, Search::new(space, CRISP_LIMITS), root)

@@ -72,11 +72,6 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Whether every remaining test is certain.
-    pub(super) fn is_crisp(&self) -> bool {
-        self.matrix.is_crisp()
-    }
-
     /// Groups that are left.
     pub(super) fn len(&self) -> usize {
         self.groups.len()
@@ -201,7 +196,7 @@ impl<'a> Problem<'a> {
         }
         states.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         let mass = belief.mass();
-        if self.is_crisp() {
+        if self.matrix.is_crisp() {
             states.sort_by_key(|(state, _)| *state);
             return Leaf {
                 states: states.into_iter().map(|(state, _)| state).collect(),

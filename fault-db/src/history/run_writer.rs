@@ -248,7 +248,7 @@ impl<'a> RunWriter<'a> {
         let (stored, digest) = store.write(DOING, |conn| {
             let work = || {
                 insert_steps(conn, run, waiting)?;
-                insert_fault(store.backend(), &place, ids, record)
+                insert_fault(&store.backend, &place, ids, record)
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))
         })?;
@@ -335,12 +335,12 @@ impl<'a> RunWriter<'a> {
                 conn.prepare_cached(SQL)?.execute(values)?;
                 match is_rest {
                     true => Ok(()),
-                    false => seal::append(store.backend(), "run", id, &payload, &digest),
+                    false => seal::append(&store.backend, "run", id, &payload, &digest),
                 }
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))?;
             store.note_passed((unit, run, id), known_events, end)?;
-            fill_empty_blocks(store.backend()).map_err(|error| store.failed(DOING, error))
+            fill_empty_blocks(&store.backend).map_err(|error| store.failed(DOING, error))
         })
     }
 

@@ -62,8 +62,8 @@ pub(crate) enum FilteredTable {
 pub(crate) struct Resolved<'a> {
     filter: &'a FaultFilter,
     pub unit: Option<i64>,
-    codes: Option<Vec<i64>>,
-    lrus: Option<Vec<String>>,
+    pub codes: Option<Vec<i64>>,
+    pub lrus: Option<Vec<String>>,
     search: Option<Search>,
     frequent: FrequentWords,
 }
@@ -105,7 +105,7 @@ impl Resolved<'_> {
     /// knows that by itself.
     pub fn estimate_frequency(&mut self, store: &Store) -> Result<(), StoreError> {
         let is_few = self.filter.limit.is_some_and(|most| most <= FEW);
-        let (Backend::File(_), Some(search), true) = (store.backend(), &self.search, is_few) else {
+        let (Backend::File(_), Some(search), true) = (&store.backend, &self.search, is_few) else {
             return Ok(());
         };
         let asked = search.for_file();
@@ -127,16 +127,6 @@ impl Resolved<'_> {
             of_runs: is_frequent("note_words", "run_note")?,
         };
         Ok(())
-    }
-
-    /// The numbers of the codes asked for.
-    pub fn codes(&self) -> Option<&[i64]> {
-        self.codes.as_deref()
-    }
-
-    /// The stored spellings of the part asked for: usually one, or more that differ in capitals.
-    pub fn lrus(&self) -> Option<&[String]> {
-        self.lrus.as_deref()
     }
 
     pub fn filter(&self) -> &FaultFilter {

@@ -23,8 +23,8 @@ pub(super) fn count(
     let mut counting = Counting {
         filter,
         unit: resolved.unit,
-        codes: resolved.codes(),
-        lrus: resolved.lrus(),
+        codes: resolved.codes.as_deref(),
+        lrus: resolved.lrus.as_deref(),
         faults: resolved.faults_by_text(backend)?,
         runs: resolved.runs(backend)?,
         by: query.by,
