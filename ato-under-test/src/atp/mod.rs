@@ -97,14 +97,14 @@ pub struct ScanContext {
 #[derive(Clone, Debug)]
 pub struct Atp {
     decoder: CodeDecoder,
-    tachometers: Tachometers,
+    pub tachometers: Tachometers,
     yard: Yard,
     proceeds: StopAndProceed,
     supervision: OverspeedSupervision,
     proof: BrakeProof,
-    doors: Doors,
+    pub doors: Doors,
     door_orders: DoorOrders,
-    switch: Contacts<ModeSwitch>,
+    pub switch: Contacts<ModeSwitch>,
     reverser: Contacts<TrainLines>,
     rollback: Rollback,
     jog: JogGuard,
@@ -334,7 +334,7 @@ impl Atp {
             || self.limit == Speed::ZERO
             || self.interlock.cuts()
             || self.jog.refuses()
-            || self.tachometers.cuts_power()
+            || self.tachometers.credible.cuts_power()
     }
 
     /// Evidence against which the speed is held.

@@ -22,11 +22,6 @@ impl Atp {
         outputs
     }
 
-    /// The mode switch comes to rest at no position: no position counts.
-    pub fn switch_chatters(&self) -> bool {
-        self.switch.chatters()
-    }
-
     /// Cab at automatic or driverless.
     pub fn switch_automatic(switch: ModeSwitch) -> bool {
         matches!(switch, ModeSwitch::Automatic | ModeSwitch::Driverless)
@@ -44,11 +39,6 @@ impl Atp {
     /// Sides on which doors were not proved closed and locked in the last scan.
     pub fn doors_open(&self) -> DoorSide {
         self.doors_open
-    }
-
-    /// Sets the way that a pulse stands for, m.
-    pub fn set_pulse(&mut self, pulse_m: f64) {
-        self.tachometers.set_pulse(pulse_m);
     }
 
     pub fn tachometers(&self) -> &Tachometers {
@@ -77,11 +67,6 @@ impl Atp {
         let enabled = self.enabled();
         // Codes of sides are sets of bits.
         enabled != DoorSide::None && self.doors_open.code() & !enabled.code() == 0
-    }
-
-    /// Doors are open on a side that is not enabled.
-    pub fn forced(&self) -> bool {
-        self.doors.hold()
     }
 
     /// Cause of the full service brake.

@@ -42,7 +42,7 @@ pub struct Tachometers {
     pub ways_m: [f64; 2],
     /// The channel that counts the distance, 0 or 1.
     pub distance_channel: usize,
-    credible: CredibleSpeed,
+    pub credible: CredibleSpeed,
     /// Share by which the train is faster than its wheels tell.
     farther: f64,
 }
@@ -193,11 +193,6 @@ impl Tachometers {
     pub fn speed(&self) -> Speed {
         self.measured()
             .max(self.credible.doubted().unwrap_or(Speed::ZERO))
-    }
-
-    /// Power moves nothing: it is cut.
-    pub fn cuts_power(&self) -> bool {
-        self.credible.cuts_power()
     }
 
     /// Speed of channel 0 or 1.

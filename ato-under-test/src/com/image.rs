@@ -21,7 +21,7 @@ pub struct IoImage {
     /// Rate of the clock that times the inputs.
     pub clock_rate: f64,
     crosstalk: Option<(Crosstalk, Instant)>,
-    sampled: Option<Sampled>,
+    pub sampled: Option<Sampled>,
 }
 
 impl IoImage {
@@ -38,11 +38,6 @@ impl IoImage {
             crosstalk: None,
             sampled: None,
         }
-    }
-
-    /// Sets how fast the clock runs that times the inputs.
-    pub fn set_clock_rate(&mut self, rate: f64) {
-        self.clock_rate = rate;
     }
 
     /// Takes a frame sampled at the sender's `stamp_ms`, and what the receivers made of the waveforms that came with it.
@@ -89,11 +84,6 @@ impl IoImage {
     /// The last frame and its sampling time, while the harness is alive.
     pub fn input(&self) -> Option<(&IoInput, Instant)> {
         self.latest.as_ref().map(|input| (input, self.sampled_at))
-    }
-
-    /// Result of the receivers, where code, pulses and marker came as waveforms.
-    pub fn sampled(&self) -> Option<&Sampled> {
-        self.sampled.as_ref()
     }
 
     /// Frames have come at least once since power-up.

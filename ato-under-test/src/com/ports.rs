@@ -66,11 +66,6 @@ impl Ports {
             .find_map(|port| Some((port, self.link_mut(port).poll(now)?)))
     }
 
-    /// A tester was heard at `port`.
-    pub fn hear_tester(&mut self, port: Port) {
-        self.tester_at = port;
-    }
-
     /// Sends to the partner of the message's channel; frames for the harness are appended to `out`.
     pub fn send(&mut self, now: Instant, message: &Message, out: &mut Vec<u8>) {
         if message.channel() == Channel::Ptu && self.tester_at == Port::Maintenance {

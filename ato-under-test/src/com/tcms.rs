@@ -20,7 +20,7 @@ pub struct TcmsLink {
     pub last: TcmsToAtc,
     heard: Option<Instant>,
     counter_moved: Option<Instant>,
-    pace: Pace,
+    pub pace: Pace,
     pub alive: bool,
     reported: Option<bool>,
     timeout: Duration,
@@ -113,11 +113,6 @@ impl TcmsLink {
     pub fn speed(&self) -> Option<Speed> {
         let tells = self.says(TcmsToAtcBits::TELLS_SPEED);
         tells.then(|| Speed::from_cms(self.last.speed_cms))
-    }
-
-    /// Share by which the unit's clock is faster than TCMS's; 0 of one that is not.
-    pub fn clock_ahead(&self) -> f64 {
-        self.pace.clock_ahead()
     }
 
     /// TCMS reads the head control relay of the unit's cab as dropped.

@@ -110,7 +110,7 @@ impl FrontEnd {
             .map(|(frame, _)| *frame)
             .unwrap_or_default();
         let mut own = in_antenna(frame.carrier_hz, frame.code_rate_chz, frame.level_mv);
-        if let Some(sampled) = image.sampled() {
+        if let Some(sampled) = image.sampled.as_ref() {
             (own.heard_for, own.lags) = (sampled.heard_for, sampled.lags);
         }
         let track = self.separate(
@@ -120,9 +120,9 @@ impl FrontEnd {
                 .map(|second| in_antenna(second.carrier_hz, second.code_rate_chz, second.level_mv)),
             faults,
         );
-        let is_wave = image.sampled().is_some();
+        let is_wave = image.sampled.as_ref().is_some();
         let received = self.receive((track, is_wave), board.code(), built_in, faults);
-        let marker_age = image.sampled().map(|sampled| sampled.marker_age);
+        let marker_age = image.sampled.as_ref().map(|sampled| sampled.marker_age);
         let frame_of_marker = input.map(|(frame, _)| (frame, marker_age));
         let (marker, from_board) = self.marker(now, frame_of_marker, board, faults);
         let tested = Inputs {

@@ -41,8 +41,8 @@ pub struct Locator {
     /// Tolerance of the stop point, m.
     aligned_m: f64,
     odometer: Odometer,
-    wheel: WheelCalibration,
-    section: Option<Section>,
+    pub wheel: WheelCalibration,
+    pub section: Option<Section>,
     fix: PositionFix,
     /// Number the next pulse should have; pulses of test markers count, too.
     expected: u8,
@@ -322,19 +322,10 @@ impl Locator {
             .map(|section| section.stop_m - self.position_m())
     }
 
-    /// Correction of the odometer's distance, as a share.
-    pub fn wheel_correction(&self) -> f64 {
-        self.wheel.correction()
-    }
-
     /// Share by which markers prove that the wheels run farther than is measured; 0 within what wheels may differ by.
     pub fn runs_farther(&self) -> f64 {
         let proved = self.wheel.impossible().unwrap_or_default();
         proved.max(self.proved_farther)
-    }
-
-    pub fn section(&self) -> Option<&Section> {
-        self.section.as_ref()
     }
 
     /// Position, m.
@@ -350,7 +341,7 @@ impl Locator {
 
     fn wheels(&self) -> Wheels {
         Wheels {
-            scale: 1.0 + self.wheel_correction(),
+            scale: 1.0 + self.wheel.correction(),
             // 4σ: a marker that is not believed costs more than one that is.
             uncertainty: 2.0 * self.wheel.uncertainty(),
             slid_m: self.slid_m,

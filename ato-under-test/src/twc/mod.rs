@@ -56,7 +56,7 @@ pub struct Twc {
     heard: Option<Instant>,
     pub up: bool,
     /// The last data that were not refused.
-    data: Option<TwcWayside>,
+    pub data: Option<TwcWayside>,
     /// The last frame was not refused.
     pub valid: bool,
     refusal_reported: Option<(Event, i32)>,
@@ -202,11 +202,6 @@ impl Twc {
             speed_cms: train.speed.to_cms(),
         }
     }
-
-    /// The last station data that were not refused, while there is communication.
-    pub fn data(&self) -> Option<&TwcWayside> {
-        self.data.as_ref()
-    }
 }
 
 #[cfg(test)]
@@ -271,7 +266,7 @@ mod tests {
         for _ in 0..8 {
             bench.take(bench.data(9999), OWN);
         }
-        assert!(!bench.twc.up && bench.twc.data().is_none());
+        assert!(!bench.twc.up && bench.twc.data.as_ref().is_none());
         assert_eq!(
             bench.logged(Event::TwcOtherTrain),
             1,
@@ -314,7 +309,7 @@ mod tests {
         };
         (0..4).for_each(|_| bench.take(wrong, OWN));
         assert!(bench.twc.up && !bench.twc.valid);
-        assert_eq!(bench.twc.data(), Some(&bench.data(OWN)));
+        assert_eq!(bench.twc.data.as_ref(), Some(&bench.data(OWN)));
         assert_eq!(bench.logged(Event::TwcWrongNext), 1);
         assert_eq!(bench.twc.refused, 4);
     }

@@ -36,7 +36,7 @@ impl Unit {
             if header.channel == Channel::Ptu && port != self.ports.tester_at {
                 // What was asked at the other port is answered there.
                 self.send_replies(now, out);
-                self.ports.hear_tester(port);
+                self.ports.tester_at = port;
             }
             match message {
                 Message::CoilSamples(samples) => {

@@ -97,7 +97,7 @@ impl Functions {
         self.relocated = false;
         let between_loops = self.between_loops(around);
         self.twc.step(now, between_loops, log);
-        if let Some(data) = self.twc.data().filter(|_| self.twc.valid) {
+        if let Some(data) = self.twc.data.as_ref().filter(|_| self.twc.valid) {
             let standstill = self.atp.tachometers().standstill;
             let line = &around.setup.line;
             let section = line.section(data.section).filter(|_| around.guards.station);
@@ -132,7 +132,8 @@ impl Functions {
             at_platform: self.at_platform(),
             door_side: self
                 .twc
-                .data()
+                .data
+                .as_ref()
                 .map(|data| data.door_side)
                 .unwrap_or_default(),
             door_order: self.door_order(around.faults),
@@ -149,7 +150,7 @@ impl Functions {
                 false => 0.0,
             },
             tcms_speed: around.tcms.speed(),
-            clock_ahead: around.tcms.clock_ahead(),
+            clock_ahead: around.tcms.pace.clock_ahead(),
             tcms_holds: around.tcms.overrides(),
             ato_powers: self.ato_outputs.effort > 0,
             jogs_backward: self.ato_outputs.jogs_backward,
@@ -221,13 +222,13 @@ impl Functions {
 
     /// Whether the train is on the arrival station's loop, with valid station data.
     pub(super) fn at_platform(&self) -> bool {
-        let on_loop = self.twc.data().zip(self.locator.section());
+        let on_loop = self.twc.data.as_ref().zip(self.locator.section.as_ref());
         self.twc.valid && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
     }
 
     /// No loop lies where the train is, by data of its section.
     fn between_loops(&self, around: &Surroundings<'_>) -> bool {
-        let here = self.locator.section().zip(self.twc.data());
+        let here = self.locator.section.as_ref().zip(self.twc.data.as_ref());
         around.guards.loop_places
             && here.is_some_and(|(section, data)| {
                 let own = data.section == section.section || data.station == section.to_station;
@@ -286,7 +287,7 @@ impl Functions {
     /// Station data that are valid and of the place where the train stands.
     pub(super) fn station_data(&self) -> Option<&TwcWayside> {
         let refused = !self.twc.valid || self.elsewhere.value();
-        self.twc.data().filter(|_| !refused)
+        self.twc.data.as_ref().filter(|_| !refused)
     }
 
     /// Departure in valid station data, given or withheld; `None` = no data, or no run may begin.
@@ -344,7 +345,7 @@ impl Functions {
         ModeInputs {
             ready: around.self_tester.finished() && self.inputs.alive && !asleep,
             cab_active: lines.contains(TrainLines::HCR) || given_up,
-            switch: if self.inputs.alive && !self.atp.switch_chatters() {
+            switch: if self.inputs.alive && !self.atp.switch.chatters() {
                 switch
             } else {
                 ModeSwitch::Off
@@ -361,7 +362,7 @@ impl Functions {
             gave_up: self.ato.gave_up(),
             line_open: line_open && !self.atp.brake().applied(),
             line_fell: around.line_fell,
-            forced: self.atp.forced(),
+            forced: self.atp.doors.hold(),
         }
     }
 

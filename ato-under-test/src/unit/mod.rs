@@ -197,7 +197,7 @@ impl Unit {
         self.guards = Guards::of(&self.faults);
         let clock_rate = self.faults.gain(Place::Clock);
         let now = self.power.own(now, clock_rate);
-        self.image.set_clock_rate(clock_rate);
+        self.image.clock_rate = clock_rate;
         if let Some(coils) = &mut self.coils {
             let unselective = self.faults.dead(Place::CodeSeparation);
             coils.suffer(atp_gain(&self.faults), unselective);

@@ -102,7 +102,7 @@ impl Unit {
         }
         self.setup.config.tacho.wheel_diameter_mm = diameter_mm;
         let pulse_m = self.setup.config.metres_per_pulse();
-        self.functions.atp.set_pulse(pulse_m);
+        self.functions.atp.tachometers.set_pulse(pulse_m);
         self.functions.locator.set_pulse(pulse_m);
         self.board.set_pulse(pulse_m);
         self.log.push(now, Event::WheelEntered, parameter);
@@ -152,7 +152,7 @@ impl Functions {
         let busy = self.cabs.busy() || self.stabling.asleep();
         lacks.set(OrderLacks::FREE, busy);
         if order == TrainOrder::TurnBack {
-            let here = self.twc.data().map(|data| data.station);
+            let here = self.twc.data.as_ref().map(|data| data.station);
             let arrived = here == Some(self.twc.destination()) && self.at_platform();
             let aligned = standstill && self.locator.aligned();
             lacks.set(OrderLacks::AT_DESTINATION, !(arrived && aligned));

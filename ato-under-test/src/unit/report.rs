@@ -55,7 +55,7 @@ pub fn status(unit: &Unit) -> Message {
         test_level_mv: libm::round(board_code.level_mv) as u16,
         test_speed_cms: unit.board.speed().unwrap_or_default().to_cms(),
         ato_state: tested.ato.state,
-        wheel_correction_10ppm: libm::round(tested.locator.wheel_correction() * 1e5) as i16,
+        wheel_correction_10ppm: libm::round(tested.locator.wheel.correction() * 1e5) as i16,
     }
     .into()
 }
@@ -73,7 +73,7 @@ pub fn train_state(unit: &Unit, now: Instant) -> TrainState {
     let (train, tested) = (&unit.functions, unit.tested());
     let speeds = [0, 1].map(|channel| train.atp.tachometers().channel(channel).to_cms());
     let tcms = &unit.tcms.last;
-    let station = tested.twc.data().copied().unwrap_or_default();
+    let station = tested.twc.data.as_ref().copied().unwrap_or_default();
     let (effort, mode) = unit.commands(now);
     let modem = &unit.board.modem;
     let test_answer = modem.last_answer();

@@ -19,7 +19,7 @@ impl Rig {
         self.desk.line_said = Default::default();
         self.door_gear = DoorGear::default();
         self.tcms_port.reset();
-        self.wayside.set_condition(WaysideCondition::Good);
+        self.wayside.condition = WaysideCondition::Good;
         self.tester.make_safe(now);
         self.making_safe = true;
         self.finish_making_safe();

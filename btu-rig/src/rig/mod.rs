@@ -321,7 +321,7 @@ impl Rig {
     /// Bench and unit both stood still for so long, which is no time for either.
     pub fn note_pause(&mut self, now: Instant, pause: Duration) {
         self.note_stalled(now);
-        self.tester.put_off_time(pause);
+        self.tester.clock.put_off(pause);
     }
 
     /// What the unit logged before it was first heard is not read.
@@ -331,7 +331,7 @@ impl Rig {
 
     /// Tells the unit the time, now and after each restart.
     pub fn tell_time(&mut self, time: TimeOfDay) {
-        self.tester.tell_time(time);
+        self.tester.clock.tell(time);
     }
 
     /// The wheels do what was last asked of them: speed reached, or distance run.

@@ -32,7 +32,7 @@ impl Rig {
                 }
                 Message::AtcToTcms(command) => {
                     if !self.tcms_port.silent() {
-                        self.tcms.receive(now, command);
+                        self.tcms.atc.receive(now, command);
                     }
                     self.latest.on_tcms(now, command);
                 }

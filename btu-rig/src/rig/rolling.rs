@@ -31,7 +31,7 @@ impl Rig {
     /// Changes how train and track differ from what the unit is configured for, from now on.
     pub fn set_conditions(&mut self, conditions: Conditions) {
         self.train.set_conditions(&conditions);
-        self.markers.set_offsets(conditions.marker_offsets_m);
+        self.markers.offsets_m = conditions.marker_offsets_m;
         let pulse_m = self.metres_per_pulse * conditions.wheel_factor;
         let distance_m = self.wheel.axle.distance_m;
         for tacho in &mut self.tachos {

@@ -57,7 +57,7 @@ impl Rig {
         let equipment = self.train_driven.then(|| self.train.equipment());
         let refused = self.link.counters.rejected_on(Channel::Tcms);
         let desk = &self.desk;
-        let on = |switch| desk.is_on(switch);
+        let on = |switch| desk.switches.on(switch);
         let inputs = TcmsInputs {
             cabs: desk.cabs(&self.tcms.data),
             doors_closed: desk.doors_proved(),
@@ -82,7 +82,7 @@ impl Rig {
         let changes = !self.quiescent && !self.faults.cabs_stay;
         match view.cab_order.filter(|_| changes) {
             Some(CabOrder::GiveUp) => self.desk.hcr = false,
-            Some(CabOrder::TakeUp) => self.desk.switch(TrainSwitch::OtherCab, true),
+            Some(CabOrder::TakeUp) => self.desk.switches.set(TrainSwitch::OtherCab, true),
             None => {}
         }
         let line = view.line;

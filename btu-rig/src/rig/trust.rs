@@ -17,7 +17,7 @@ impl Rig {
     /// New entries of the unit's log in the order of their indices, each once, and of TCMS's. Indices
     /// of the unit begin from the start when it is started again.
     pub fn take_events(&mut self) -> Vec<UnitEvent> {
-        let mut events = self.tester.take_events();
+        let mut events = self.tester.log.take();
         events.append(&mut self.tcms_events);
         events
     }
@@ -41,7 +41,7 @@ impl Rig {
 
     /// Identity of the unit, once the unit has told it.
     pub fn identity(&self) -> Option<&Identity> {
-        self.tester.identity()
+        self.tester.identity.as_ref()
     }
 
     /// Time at which the last frame of the unit came, and the unit's clock when the frame was made,
@@ -75,7 +75,7 @@ impl Rig {
             log: self.tester.log_state(self.now),
             not_kept: self.tester.log.not_kept,
             line: self.line_watch.state(),
-            clock_wrong_by_permille: self.line_watch.clock_wrong_by_permille(),
+            clock_wrong_by_permille: self.line_watch.rate.wrong_by_permille(),
             self_test: self.tester.self_test,
             unit_time: self.subscription.unit_time(),
         }

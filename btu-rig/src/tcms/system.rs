@@ -2,7 +2,7 @@
 
 mod driving;
 
-use protocol::message::{AtcToTcms, Outputs};
+use protocol::message::Outputs;
 use protocol::{Duration, Instant};
 
 use crate::train::{CarSet, MAX_CARS, TrainData, TrainInputs};
@@ -33,7 +33,7 @@ const LONGEST_STEP_S: f64 = 0.05;
 pub struct Tcms {
     /// Times and thresholds of the train's file.
     pub data: TcmsData,
-    atc: AtcLink,
+    pub atc: AtcLink,
     /// Sharing out of effort; a point mass has nothing to share it over.
     effort: Option<Effort>,
     full_load_kg: f64,
@@ -113,11 +113,6 @@ impl Tcms {
     pub fn unlatch(&mut self) {
         self.holding.reset();
         self.cab_change.leave();
-    }
-
-    /// Takes a frame of the unit.
-    pub fn receive(&mut self, now: Instant, frame: &AtcToTcms) {
-        self.atc.receive(now, frame);
     }
 
     /// Events since the last call, oldest first.

@@ -122,7 +122,7 @@ impl App {
         self.pages.poll(&mut page_context);
         self.frame.around(ui, &mut page_context);
         if page_context.units.chosen().waiting_run().is_some() && !page_context.settings.locked {
-            let goes_on = self.pages.goes_on(&page_context);
+            let goes_on = self.pages.procedures.goes_on(&page_context);
             Panel::top("lost").show(ui, |ui| self.frame.lost(ui, goes_on, &mut page_context));
         }
         if page_context.settings.locked {
@@ -145,8 +145,8 @@ impl App {
             }
             self.pages.show(page, ui, &mut page_context);
         });
-        let procedures = match self.frame.finds() {
-            true => self.pages.procedures(&page_context),
+        let procedures = match self.frame.find.is_open() {
+            true => self.pages.procedures.loaded(&page_context),
             false => &[],
         };
         self.frame.over(ui, procedures, &mut page_context);
@@ -156,7 +156,7 @@ impl App {
         }
         for to in std::mem::take(page_context.go_to) {
             if to == Destination::Setup {
-                self.frame.set_up();
+                self.frame.setup.open();
             }
             page_context.settings.page = self.pages.go_to(to, &mut page_context);
             ui.ctx().request_repaint();

@@ -15,7 +15,7 @@ use crate::kernel::{EventLog, RunCycle};
 impl Functions {
     pub(super) fn operate(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
         let was_ready = self.ato_outputs.ready;
-        let data = self.twc.data();
+        let data = self.twc.data.as_ref();
         let tachometers = self.atp.tachometers();
         let inputs = AtoInputs {
             mode: self.atp.sequence().mode,
@@ -29,7 +29,7 @@ impl Functions {
                 Some(RunningMode::Slow) if !around.guards.slow_running => RunningMode::Normal,
                 ordered => ordered.unwrap_or_default(),
             },
-            section: self.locator.section(),
+            section: self.locator.section.as_ref(),
             position_m: self.locator.position_m(),
             ahead_m: self.locator.ahead_m(),
             aligned_m: around.setup.config.doors.aligned_m,
@@ -84,7 +84,7 @@ impl Functions {
     /// Speed ATO goes by: of the wheel that markers calibrate; ATP keeps its own, safe speed.
     fn wheel_speed(&self) -> Speed {
         let tachometers = self.atp.tachometers();
-        let wheel = 1.0 + self.locator.wheel_correction();
+        let wheel = 1.0 + self.locator.wheel.correction();
         Speed::from_mps(tachometers.channel(tachometers.distance_channel).mps() * wheel)
     }
 

@@ -40,7 +40,7 @@ pub struct Exchange {
     armed_at: Option<Instant>,
     /// Why the unit refused or ended arming, as it said last.
     pub refusal: ArmRefusal,
-    failure: Option<Refusal>,
+    pub failure: Option<Refusal>,
     /// Why the unit ended the session without being asked to.
     ended: Option<ArmRefusal>,
     /// Results of the last self-test asked for, as far as they came.
@@ -122,11 +122,6 @@ impl Exchange {
         let current = self.current.as_ref().map(|current| &current.request);
         let next = current.or(self.queue.front());
         matches!(next, Some(Request::Disarm))
-    }
-
-    /// What failed and is not forgotten yet.
-    pub fn failure(&self) -> Option<&Refusal> {
-        self.failure.as_ref()
     }
 
     /// The bench goes on to something else.

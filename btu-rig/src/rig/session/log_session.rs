@@ -60,7 +60,7 @@ impl LogSession {
 
     /// Tells the unit the time.
     pub fn tell_time(&mut self, time: TimeOfDay) {
-        self.tester.tell_time(time);
+        self.tester.clock.tell(time);
     }
 
     /// Asks for what is due.
@@ -119,7 +119,7 @@ impl LogSession {
 
     /// Identity of the unit, once the unit has told it.
     pub fn identity(&self) -> Option<&Identity> {
-        self.tester.identity()
+        self.tester.identity.as_ref()
     }
 
     /// When the unit last reported its uptime, and what it was, ms.
@@ -129,7 +129,7 @@ impl LogSession {
 
     /// New entries of the unit's log, in order, each once.
     pub fn take_events(&mut self) -> Vec<UnitEvent> {
-        self.tester.take_events()
+        self.tester.log.take()
     }
 
     /// Whether the identity and all that the unit has logged or stored is read.
@@ -141,7 +141,7 @@ impl LogSession {
         };
         self.identity().is_some()
             && self.tester.events_at_contact.is_some()
-            && self.tester.time_settled()
+            && self.tester.clock.settled()
             && read
     }
 

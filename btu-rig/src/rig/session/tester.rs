@@ -9,13 +9,13 @@ use protocol::message::{
 use protocol::{Duration, Instant};
 
 use crate::procedure::link_trouble::{Changed, LinkTrouble, Property};
-use crate::procedure::{LogState, Refusal, UnitEvent};
+use crate::procedure::{LogState, Refusal};
 
 use super::exchange::Exchange;
 use super::log_reader::LogReader;
 use super::request::Request;
 use super::test_signals;
-use super::unit_clock::{TimeOfDay, UnitClock};
+use super::unit_clock::UnitClock;
 
 /// Period of the keep-alive: the unit disarms after one second without.
 const KEEP_ALIVE: Duration = Duration::from_ms(200);
@@ -33,7 +33,7 @@ pub struct Tester {
     speaks_since: Instant,
     keep_alive_due: Instant,
     identify_due: Instant,
-    identity: Option<Identity>,
+    pub identity: Option<Identity>,
     /// Identity of the unit when it was first asked.
     first: Option<Identity>,
     /// Differences of another unit that answered.
@@ -50,11 +50,11 @@ pub struct Tester {
     pub restarts: u32,
     /// The log says that the unit restarted by itself after it was started.
     restarted_itself: bool,
-    exchange: Exchange,
+    pub exchange: Exchange,
     pub log: LogReader,
     /// The log is not read: what is stored is, instead.
     holds_log: bool,
-    clock: UnitClock,
+    pub clock: UnitClock,
     /// The log was to be cleared: what is gone from it then is gone on purpose.
     clears_log: bool,
     /// Entries logged since contact that were gone before they could be read.
@@ -245,15 +245,10 @@ impl Tester {
     /// # Errors
     /// What the unit refused or did not answer, until it is forgotten.
     pub fn settled(&self) -> Result<bool, Refusal> {
-        match self.exchange.failure() {
+        match self.exchange.failure.as_ref() {
             Some(refusal) => Err(refusal.clone()),
             None => Ok(self.exchange.idle()),
         }
-    }
-
-    /// The bench goes on to something else: what failed before is reported.
-    pub fn forget_failure(&mut self) {
-        self.exchange.forget_failure();
     }
 
     /// Listening, not armed, nothing under way.
@@ -266,29 +261,9 @@ impl Tester {
         (!self.silent).then_some(self.speaks_since)
     }
 
-    /// Identity of the unit, once the unit has told it.
-    pub fn identity(&self) -> Option<&Identity> {
-        self.identity.as_ref()
-    }
-
     /// The log is not read, or from now on it is.
     pub fn hold_log(&mut self, holds: bool) {
         self.holds_log = holds;
-    }
-
-    /// Tells the unit the time, now and after each restart.
-    pub fn tell_time(&mut self, time: TimeOfDay) {
-        self.clock.tell(time);
-    }
-
-    /// Bench and unit both stood still for so long.
-    pub fn put_off_time(&mut self, pause: Duration) {
-        self.clock.put_off(pause);
-    }
-
-    /// The unit has the time, or does not take it.
-    pub fn time_settled(&self) -> bool {
-        self.clock.settled()
     }
 
     /// What the unit logged before it was first heard is not read.
@@ -305,11 +280,6 @@ impl Tester {
     pub fn restarted_itself(&self, now: Instant) -> Option<bool> {
         let read = self.logged.is_some() && self.log.state(now) == LogState::Read;
         read.then_some(self.restarted_itself)
-    }
-
-    /// Log entries not yet taken.
-    pub fn take_events(&mut self) -> Vec<UnitEvent> {
-        self.log.take()
     }
 
     /// What the last self-test asked for found, as far as it came.

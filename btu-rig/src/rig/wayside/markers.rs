@@ -18,7 +18,7 @@ pub struct Markers {
     /// Markers along the way, by position on the rig's own scale.
     along_m: [Option<f64>; 4],
     /// Distance of each marker from its place.
-    offsets_m: [f64; 4],
+    pub offsets_m: [f64; 4],
     /// Marker and age at the coming stamp, µs, and whether it was asked for instead of passed.
     pending: VecDeque<(u8, f64, bool)>,
     /// Marker entered last; 0 = none yet.
@@ -79,11 +79,6 @@ impl Markers {
             }
             _ => Err(Refusal(format!("no PSM{psm} lies along the way"))),
         }
-    }
-
-    /// Sets how far from its place in the track database each marker really lies.
-    pub fn set_offsets(&mut self, offsets_m: [f64; 4]) {
-        self.offsets_m = offsets_m;
     }
 
     /// Takes the markers along the way away.

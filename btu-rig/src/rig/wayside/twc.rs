@@ -49,14 +49,6 @@ impl Wayside {
         self.orders.set(None);
     }
 
-    pub fn set_data(&mut self, data: StationData) {
-        self.data = data;
-    }
-
-    pub fn set_condition(&mut self, condition: WaysideCondition) {
-        self.condition = condition;
-    }
-
     /// Sends the frames that are due, if any, to the train of this number.
     pub fn step(&mut self, now: Instant, train: u16, link: &mut Link, out: &mut Vec<u8>) {
         if now < self.next_due {
@@ -139,7 +131,7 @@ mod tests {
     fn corrupt_frames_are_refused_and_spare_their_neighbours() {
         let line = Line::from_toml(include_str!("../../../../scripts/lines/line8.toml")).unwrap();
         let mut wayside = Wayside::new(&line.sections[0], Random::new(3));
-        wayside.set_condition(WaysideCondition::Corrupt);
+        wayside.condition = WaysideCondition::Corrupt;
         let (mut bench, mut unit) = (Link::new(End::Bench), Link::new(End::Unit));
         let mut now = Instant::ZERO;
         for _ in 0..10_000 {

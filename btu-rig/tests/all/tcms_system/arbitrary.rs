@@ -180,7 +180,7 @@ proptest! {
             for _ in 0..*times {
                 now += Duration::from_ms(*ms);
                 if let Some(frame) = frame {
-                    tcms.receive(now, frame);
+                    tcms.atc.receive(now, frame);
                 }
                 let told = tcms.step(now, &inputs);
                 let view = &tcms.view;

@@ -99,7 +99,7 @@ impl Bench {
             if self.now.since(self.sent) >= CYCLE {
                 self.sent = self.now;
                 if let Some(order) = &self.order {
-                    self.tcms.receive(self.now, order);
+                    self.tcms.atc.receive(self.now, order);
                 }
             }
             self.follow();

@@ -64,7 +64,7 @@ pub struct TracePlot {
     pub lanes: Vec<Lane>,
     cursors: [Option<usize>; 2],
     pub close: bool,
-    behind: Option<OverlayTrace>,
+    pub behind: Option<OverlayTrace>,
     /// Views before each zoom, the latest last.
     before: Vec<Window>,
     /// Statistics of these rows, by lane; empty until asked for.
@@ -96,11 +96,6 @@ impl TracePlot {
 
     pub fn window(&self) -> Window {
         self.camera.window
-    }
-
-    /// The trace behind, if one is shown.
-    pub fn behind(&self) -> Option<&OverlayTrace> {
-        self.behind.as_ref()
     }
 
     /// Counts time or distance; false when the trace tells no distance. The same rows stay in view.

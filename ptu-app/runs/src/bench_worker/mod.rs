@@ -64,7 +64,7 @@ pub struct BenchWorker {
     pub live_state: Arc<LiveState>,
     events: Receiver<BenchEvent>,
     /// Stops the run that was ordered last.
-    stop: Stop,
+    pub stop: Stop,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -144,16 +144,6 @@ impl BenchWorker {
         self.live_state.clear_requests();
         self.stop = Stop::default();
         self.send(Order::Run(Box::new(order), self.stop.clone()));
-    }
-
-    /// Stops the run: the first press ends the step and goes on to clean-up, the second cuts that short.
-    pub fn stop_run(&self) {
-        self.stop.press();
-    }
-
-    /// How often the present run was asked to stop.
-    pub fn stop_presses(&self) -> u32 {
-        self.stop.presses()
     }
 
     /// The latest cycle and the rows before it; held for as short a time as possible.

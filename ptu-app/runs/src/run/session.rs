@@ -31,9 +31,9 @@ pub struct Session<L: UnitLink> {
     stop: Stop,
     recorder: Recorder,
     sample: Sample,
-    link_error: Option<LinkTrouble>,
+    pub link_error: Option<LinkTrouble>,
     /// Permitted lag of the bench behind the wall clock; `None` for a unit in virtual time.
-    max_lag: Option<Duration>,
+    pub max_lag: Option<Duration>,
     /// Largest lag beyond `max_lag` since it was last taken.
     stalled: Option<Duration>,
     in_step: InStep,
@@ -97,11 +97,6 @@ impl<L: UnitLink> Session<L> {
     pub fn with_max_lag(mut self, max_lag: Duration) -> Self {
         self.max_lag = Some(max_lag);
         self
-    }
-
-    /// Sets the lag of [`Self::with_max_lag`] once it is known how the unit is reached.
-    pub fn set_max_lag(&mut self, max_lag: Duration) {
-        self.max_lag = Some(max_lag);
     }
 
     /// Replaces the stop that ends runs on this session.
@@ -170,11 +165,6 @@ impl<L: UnitLink> Session<L> {
     /// Lag of the bench behind a unit that goes on by itself.
     fn behind(&self) -> Duration {
         self.max_lag.map_or(Duration::ZERO, |_| self.pace.behind())
-    }
-
-    /// Reason for which nothing can be sent or received any more; none if the link works.
-    pub fn link_failure(&self) -> Option<&LinkTrouble> {
-        self.link_error.as_ref()
     }
 
     /// Reason for which nothing can be judged, if there is one: the unit cannot be reached, another one

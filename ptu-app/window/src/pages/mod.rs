@@ -11,9 +11,6 @@ mod signals;
 mod statistics;
 mod traces;
 
-use std::sync::Arc;
-
-use btu_rig::procedure::Procedure;
 use eframe::egui::Ui;
 
 use procedures::Wanted;
@@ -28,7 +25,7 @@ pub use case::case_steps;
 pub struct Pages {
     case: case::CasePage,
     bench: bench::BenchPage,
-    procedures: procedures::ProceduresPage,
+    pub procedures: procedures::ProceduresPage,
     drive: drive::DrivePage,
     traces: traces::TracesPage,
     faults: faults::FaultsPage,
@@ -66,16 +63,6 @@ impl Pages {
         }
     }
 
-    /// The procedures of the chosen unit, once they are loaded.
-    pub fn procedures(&mut self, context: &PageContext<'_>) -> &[Arc<Procedure>] {
-        self.procedures.loaded(context)
-    }
-
-    /// A run that broke off can go on: the scripts are those it is of.
-    pub fn goes_on(&self, context: &PageContext<'_>) -> bool {
-        self.procedures.goes_on(context)
-    }
-
     /// Leads the person to a destination; returns the page to show.
     pub fn go_to(&mut self, to: Destination, context: &mut PageContext<'_>) -> Page {
         match to {
@@ -96,7 +83,7 @@ impl Pages {
                 Page::Faults
             }
             Destination::Life(serial) => {
-                self.statistics.show_life(&serial);
+                self.statistics.life.open(&serial);
                 Page::Statistics
             }
             Destination::Faults(of) => {

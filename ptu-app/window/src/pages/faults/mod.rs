@@ -143,7 +143,7 @@ impl FaultsPage {
             let units = history.faults.iter().map(|fault| &*fault.unit_serial);
             self.units.show(ui, context, &names(units));
             let saved = (&mut context.settings.faults, &mut self.question);
-            let now = self.filter.question(self.units.taken());
+            let now = self.filter.question(self.units.taken.as_deref());
             if let Some(asked) = saved_questions(ui, &SavedSaid::questions(words), saved, &now) {
                 self.units.choose(asked.unit.clone());
                 self.filter = Filter::asked(asked);

@@ -24,7 +24,7 @@ impl ProceduresPage {
                 unit.id,
                 phase == Phase::Running,
                 live_state.paused(),
-                unit.bench.stop_presses(),
+                unit.bench.stop.presses(),
             );
             let place = ActionPlace::new(ui, "run", state);
             if phase == Phase::Running {
@@ -99,13 +99,13 @@ fn running(ui: &mut Ui, context: &mut PageContext<'_>, place: &ActionPlace) {
     {
         live_state.single_step();
     }
-    let stop = if worker.stop_presses() == 0 {
+    let stop = if worker.stop.presses() == 0 {
         words.stop
     } else {
         words.stop_again
     };
     let stop = Face::new(Look::Danger, stop).icon(ICON_STOP);
     if place.clicked(&stop.show(ui)) {
-        worker.stop_run();
+        worker.stop.press();
     }
 }

@@ -36,7 +36,7 @@ pub struct StatisticsPage {
     /// Days to look back; none = all there is.
     days: Option<i64>,
     counted: FollowingResponse<Asked, Counted>,
-    life: life::LifeView,
+    pub life: life::LifeView,
     control: control::ControlChart,
     distances: distances::DistancesFile,
     /// Months are compared by what the trains ran in them.
@@ -160,15 +160,10 @@ impl StatisticsPage {
         }
     }
 
-    /// Shows the life of what has this serial number.
-    pub fn show_life(&mut self, serial: &str) {
-        self.life.open(serial);
-    }
-
     /// Asks again when the data, the span or the unit are others.
     fn keep_up(&mut self, context: &PageContext<'_>) {
         let asked = Asked {
-            unit: self.units.taken().map(str::to_owned),
+            unit: self.units.taken.as_deref().map(str::to_owned),
             days: self.days,
             distances: context.settings.distances.clone(),
         };

@@ -55,7 +55,7 @@ impl OverlayRequest {
                 scene.told(against, parting);
             }
         }
-        let Some(behind) = scene.behind() else {
+        let Some(behind) = scene.behind.as_ref() else {
             return;
         };
         let told = behind.parting.as_ref().map(|parting| parting.shift_rows);
@@ -126,7 +126,7 @@ impl OverlayRequest {
                 _ => context.words.common.loading,
             });
         }
-        if scene.behind().is_some() {
+        if scene.behind.as_ref().is_some() {
             offset(ui, scene, context);
             said(ui, scene, context);
         }
@@ -175,7 +175,7 @@ pub fn file_name(file: &Path) -> String {
 fn offset(ui: &mut Ui, scene: &mut TracePlot, context: &PageContext<'_>) {
     let words = &context.words.traces;
     let period_s = scene.view().data.period_us as f64 / 1e6;
-    let Some(shift_rows) = scene.behind().map(|behind| behind.shift_rows) else {
+    let Some(shift_rows) = scene.behind.as_ref().map(|behind| behind.shift_rows) else {
         return;
     };
     let label = ui.label(words.offset);
@@ -193,7 +193,10 @@ fn offset(ui: &mut Ui, scene: &mut TracePlot, context: &PageContext<'_>) {
 
 fn said(ui: &mut Ui, scene: &mut TracePlot, context: &mut PageContext<'_>) {
     let words = &context.words.traces;
-    let parting = scene.behind().and_then(|behind| behind.parting.as_ref());
+    let parting = scene
+        .behind
+        .as_ref()
+        .and_then(|behind| behind.parting.as_ref());
     let Some(parting) = parting else {
         ui.label(context.words.common.loading);
         return;

@@ -21,18 +21,13 @@ use ptu_runs::new_file::{NewFile, cannot_write};
 #[derive(Default)]
 pub struct Export {
     /// Path without its ending.
-    name: String,
+    pub name: String,
     /// The window's picture, the part of it wanted, and its pixels per point.
     picture: Option<(Receiver<Arc<ColorImage>>, Rect, f32)>,
     writing: Vec<Pending<PathBuf>>,
 }
 
 impl Export {
-    /// Takes the name for exports of another trace, which is open now.
-    pub fn name_after(&mut self, name: String) {
-        self.name = name;
-    }
-
     /// The menu that saves; `rect` is what the picture is of.
     pub fn bar(
         &mut self,

@@ -136,7 +136,7 @@ fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
     let when = clock::local(opened.view.data.t0_us);
     let own = format!("{}  {when}", opened.id.short());
     line(0.0, own, sheet.palette.accent);
-    if let Some(behind) = sheet.scene.behind() {
+    if let Some(behind) = sheet.scene.behind.as_ref() {
         let name = match &behind.overlay.against {
             OverlaySource::Twin => sheet.words.traces.good_twin.to_owned(),
             OverlaySource::File(file) => file_name(file),

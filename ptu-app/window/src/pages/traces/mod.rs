@@ -104,7 +104,7 @@ impl TracesPage {
             self.scene = None;
             match std::mem::take(&mut self.opening) {
                 Request::Ready((opened, name)) => {
-                    self.export.name_after(name);
+                    self.export.name = name;
                     self.behind = OverlayRequest::default();
                     self.scene = Some(TracePlot::new(Arc::new(opened), &context.settings.lanes));
                 }

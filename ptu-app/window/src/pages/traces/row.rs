@@ -63,7 +63,7 @@ impl Scratch {
     pub fn edges(&mut self, scene: &TracePlot, width: f32) {
         let columns = width.round().max(1.0) as usize;
         scene.axis.edges(scene.window(), columns, &mut self.own);
-        if let Some(behind) = scene.behind() {
+        if let Some(behind) = scene.behind.as_ref() {
             behind.axis.edges(scene.window(), columns, &mut self.behind);
         }
     }
@@ -144,7 +144,7 @@ impl Sheet<'_> {
                 _ => colour(number),
             };
             self.name(ui, lane, line, ink);
-            if let Some(behind) = self.scene.behind().filter(|_| lane.place.is_some()) {
+            if let Some(behind) = self.scene.behind.as_ref().filter(|_| lane.place.is_some()) {
                 self.shade(ui, behind, &lane.signal, rect);
             }
         }
@@ -175,7 +175,7 @@ impl Sheet<'_> {
 
     /// This signal in the trace behind.
     fn other(&self, signal: &str) -> Option<Source<'_>> {
-        let behind = self.scene.behind()?;
+        let behind = self.scene.behind.as_ref()?;
         let view = &behind.overlay.view;
         Some(Source {
             view,
@@ -297,7 +297,7 @@ impl Sheet<'_> {
                 .color(self.palette.quiet);
             ui.add(Label::new(text).selectable(false));
         }
-        let parting = self.scene.behind().and_then(|b| b.parting.as_ref());
+        let parting = self.scene.behind.as_ref().and_then(|b| b.parting.as_ref());
         if parting.is_some_and(|parting| parting.stretches.contains_key(&lane.signal)) {
             let text = format!("≠ {}", self.words.traces.deviates);
             let text = RichText::new(text).size(lane::TEXT).color(self.palette.bad);

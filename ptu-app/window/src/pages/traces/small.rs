@@ -49,7 +49,7 @@ impl SmallTrace {
 
     /// The good twin is drawn.
     pub fn has_twin(&self) -> bool {
-        self.scene.behind().is_some()
+        self.scene.behind.as_ref().is_some()
     }
 
     /// Paints it as wide as there is room; `name` says what it is.
