@@ -59,7 +59,8 @@ pub struct App {
     pages: Pages,
     go_to: Vec<Destination>,
     closing: bool,
-    closed: bool,
+    /// The window is closed: every run recorded, every unit disarmed.
+    pub closed: bool,
     /// The person knows that outputs were not confirmed safe.
     noted_not_safe: bool,
     /// The system asks the program to end.
@@ -145,7 +146,7 @@ impl App {
             }
             self.pages.show(page, ui, &mut page_context);
         });
-        let procedures = match self.frame.find.is_open() {
+        let procedures = match self.frame.find.open {
             true => self.pages.procedures.loaded(&page_context),
             false => &[],
         };
@@ -161,11 +162,6 @@ impl App {
             page_context.settings.page = self.pages.go_to(to, &mut page_context);
             ui.ctx().request_repaint();
         }
-    }
-
-    /// The window is closed: every run recorded, every unit disarmed.
-    pub fn is_closed(&self) -> bool {
-        self.closed
     }
 
     pub fn page(&self) -> Page {

@@ -234,7 +234,7 @@ fn link(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Ite
     let words = &words.frame;
     let share = unit.bench.live().link.share();
     let (look, icon, said) = match unit.phase() {
-        _ if unit.is_lost() => (Look::Warned, ICON_LINK_OFF, words.link_gone.to_owned()),
+        _ if unit.lost => (Look::Warned, ICON_LINK_OFF, words.link_gone.to_owned()),
         Phase::Offline => (Look::State, ICON_LINK_OFF, words.not_connected.to_owned()),
         Phase::Connecting => (Look::State, ICON_LINK, words.connecting.to_owned()),
         _ if share.is_none() => (Look::State, ICON_LINK, words.connected.to_owned()),

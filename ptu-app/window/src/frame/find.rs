@@ -32,7 +32,7 @@ const FAULTS: u32 = 500;
 /// Typed text, and the lists in which it is looked for.
 #[derive(Default)]
 pub struct Find {
-    open: bool,
+    pub open: bool,
     typed: String,
     /// The row that Enter takes.
     at: usize,
@@ -80,10 +80,6 @@ impl Find {
                 Ok((faults, PartNames::of(&paths.scripts)))
             }));
         }
-    }
-
-    pub fn is_open(&self) -> bool {
-        self.open
     }
 
     /// Draws it while it is open, with the steps of these procedures; does what was chosen.

@@ -52,7 +52,7 @@ impl Frame {
     pub fn keys(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
         keys::keys(ui.ctx(), context);
         let key = |key| ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, key));
-        if key(Key::K) && (self.find.is_open() || !dialog_is_open(ui.ctx())) {
+        if key(Key::K) && (self.find.open || !dialog_is_open(ui.ctx())) {
             self.find.toggle(context);
         }
         self.is_wide ^= key(Key::B);

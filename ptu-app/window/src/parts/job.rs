@@ -1,6 +1,6 @@
 //! Work that takes minutes, on a thread of its own: how far it is, a button that stops it, and what it came to.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use eframe::egui::{RichText, Ui};
 
@@ -10,6 +10,7 @@ use crate::{DataPaths, PageContext, Palette};
 use ptu_report::words::Words;
 use ptu_runs::bench_worker::Wake;
 use ptu_runs::failure::{Failure, Trouble};
+use ptu_runs::pool::held;
 use ptu_runs::stop::Stop;
 
 /// Result of work, in words.
@@ -51,7 +52,7 @@ pub struct Told {
 impl Told {
     /// Says how far the work is.
     pub fn say(&self, how_far: String) {
-        *self.said.lock().unwrap_or_else(PoisonError::into_inner) = how_far;
+        *held(&self.said) = how_far;
         if let Some(wake) = &self.wake {
             wake();
         }
@@ -109,8 +110,7 @@ impl Job {
             if stops && ui.button(words.memory.stop).clicked() {
                 self.told.stop.press_once();
             }
-            let said = self.told.said.lock();
-            ui.label(&*said.unwrap_or_else(PoisonError::into_inner));
+            ui.label(&*held(&self.told.said));
         });
     }
 

@@ -36,7 +36,7 @@ pub struct Unit {
     pub is_run_of_case: bool,
     pub(super) runs_ended: usize,
     /// The link to it is lost, which the person knows.
-    lost: bool,
+    pub lost: bool,
     /// The run broke off with the link, and nobody has ended it.
     waits: bool,
     /// The run is of another unit than the one connected now.
@@ -142,11 +142,6 @@ impl Unit {
     /// Present or last run, if the unit's case ordered it: a run that another page ordered says nothing of the case.
     pub fn run_of_case(&self) -> Option<&Progress> {
         self.run.as_ref().filter(|_| self.is_run_of_case)
-    }
-
-    /// The link to it was lost, and it was not reached again.
-    pub fn is_lost(&self) -> bool {
-        self.lost
     }
 
     /// The run that broke off with the link and can go on, and the place where it did.

@@ -398,7 +398,7 @@ fn a_window_closed_in_mid_run_closes_the_record_and_keeps_its_settings() {
         .events
         .push(ViewportEvent::Close);
     window.step();
-    window.until("the end", |window| window.app().is_closed());
+    window.until("the end", |window| window.app().closed);
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "aborted");
     assert_eq!(run["run"]["state"], "finished");

@@ -3,7 +3,7 @@
 
 mod form;
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use eframe::egui::{CentralPanel, ScrollArea, Ui};
 use egui_material_icons::icons::ICON_TRAIN;
@@ -17,6 +17,7 @@ use ptu_report::run::page::{Page, pages};
 use ptu_report::words::{Language, fill};
 use ptu_runs::drive::{Driven, drive_all};
 use ptu_runs::pool::cores;
+use ptu_runs::pool::held;
 
 /// Where the thread that drives puts what was driven.
 type Slot = Arc<Mutex<Option<Vec<Driven>>>>;
@@ -81,7 +82,7 @@ impl DrivePage {
         }
         self.offered.poll();
         if self.job.poll(context, context.words.drive.cannot_drive) {
-            let mut driven = self.driven.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut driven = held(&self.driven);
             let runs = driven.take().filter(|runs| !runs.is_empty());
             self.sheet = runs.map(|runs| Arc::new(Results::of_runs(runs)));
             (self.pages, self.language) = (Request::Idle, None);
@@ -116,7 +117,7 @@ impl DrivePage {
                 true => so_far(words.drive.stopped, runs.len()),
                 false => String::new(),
             };
-            *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(runs);
+            *held(&slot) = Some(runs);
             Ok(Done::all(text, Vec::new()))
         });
     }

@@ -4,7 +4,7 @@ mod generator;
 mod seen;
 mod source;
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use eframe::egui::{CentralPanel, ScrollArea, Ui};
 
@@ -16,6 +16,7 @@ use crate::parts::{Job, foot, form, segments};
 use crate::request::Request;
 use protocol::config::UnitConfig;
 use ptu_runs::failure::Trouble;
+use ptu_runs::pool::held;
 use ptu_runs::sound::{self, DeviceFound};
 
 /// Where a thread that reads or records puts how it looks now.
@@ -70,8 +71,7 @@ impl SignalsPage {
         }
         self.offered.poll();
         self.job.poll(context, context.words.signals.not_done);
-        let seen = self.seen.lock();
-        if let Some(seen) = seen.unwrap_or_else(PoisonError::into_inner).take() {
+        if let Some(seen) = held(&self.seen).take() {
             self.view.take(seen);
         }
     }
