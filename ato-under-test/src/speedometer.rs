@@ -27,7 +27,7 @@ pub struct Speedometer {
     metres_per_pulse: f64,
     edges: VecDeque<(Instant, u64)>,
     total: u64,
-    speed: Speed,
+    pub speed: Speed,
     history: [f64; JUMP_SCANS],
     at: usize,
 }
@@ -109,10 +109,6 @@ impl Speedometer {
         }
     }
 
-    pub fn speed(&self) -> Speed {
-        self.speed
-    }
-
     /// Acceleration or deceleration that a jump over the compared scans stands for, m/s², where it is more than a wheel that
     /// rolls can have at this adhesion.
     pub fn accel_beyond(jump_mps: f64, adhesion: f64) -> Option<f64> {
@@ -154,11 +150,11 @@ mod tests {
         for speed in [0.5, 3.3, 12.5, 22.2] {
             let mut meter = Speedometer::new(Duration::from_ms(100), METRES);
             drive(&mut meter, 1000, 100, speed);
-            let error = (meter.speed().mps() - speed).abs();
+            let error = (meter.speed.mps() - speed).abs();
             assert!(
                 error < speed * 1e-3,
                 "{speed} m/s measured as {}",
-                meter.speed().mps()
+                meter.speed.mps()
             );
         }
     }
@@ -172,8 +168,8 @@ mod tests {
             ..Pulses::default()
         };
         meter.step(&still(2090));
-        assert!(meter.speed().mps() < 0.4, "one pulse in 100 ms at most");
+        assert!(meter.speed.mps() < 0.4, "one pulse in 100 ms at most");
         meter.step(&still(3100));
-        assert_eq!(meter.speed(), Speed::ZERO);
+        assert_eq!(meter.speed, Speed::ZERO);
     }
 }

@@ -39,7 +39,8 @@ pub const fn rows_of(span: Duration) -> usize {
 /// The latest `ROWS` rows, oldest first.
 #[derive(Clone, Debug, Default)]
 pub struct Ring<const ROWS: usize> {
-    rows: VecDeque<Row>,
+    /// Rows, at most `ROWS`, one a cycle, oldest first.
+    pub rows: VecDeque<Row>,
 }
 
 impl<const ROWS: usize> Ring<ROWS> {
@@ -52,11 +53,6 @@ impl<const ROWS: usize> Ring<ROWS> {
             self.rows.pop_front();
         }
         self.rows.push_back(row);
-    }
-
-    /// Rows, at most `ROWS`, one a cycle, oldest first.
-    pub fn rows(&self) -> &VecDeque<Row> {
-        &self.rows
     }
 }
 
@@ -145,7 +141,7 @@ impl Recorder {
 
     /// All rows from `from` on; none without a row.
     pub fn cut(&self, from: Instant, trigger: Instant, partial: bool) -> Option<RecordedWindow> {
-        let rows = self.ring.rows();
+        let rows = &self.ring.rows;
         let rows: Vec<_> = rows.iter().filter(|row| row.at >= from).cloned().collect();
         let last = rows.len().checked_sub(1)?;
         let trigger_row = rows.iter().position(|row| row.at >= trigger);
@@ -209,7 +205,7 @@ mod tests {
     fn a_ring_keeps_the_latest_rows_of_one_time() {
         let mut ring = Ring::<3>::default();
         let times = |ring: &Ring<3>| {
-            ring.rows()
+            ring.rows
                 .iter()
                 .map(|row| row.at.as_us() / 1000)
                 .collect::<Vec<_>>()

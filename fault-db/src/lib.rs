@@ -45,7 +45,7 @@ pub use exchange::{
 };
 pub use files::databases::is_of_database;
 pub use files::regular_file::{open_regular_file, read_regular_file};
-pub use history::cases::ChangedFault;
+pub use history::cases::CaseFault;
 pub use history::conflicts::{ConflictingEvent, StateConflict};
 pub use history::dictionaries::DictionaryRecord;
 pub use history::insert::FaultStored;

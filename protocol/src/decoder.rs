@@ -16,7 +16,8 @@ pub struct Decoder {
     body: [u8; MAX_BODY],
     len: usize,
     state: State,
-    garbage: u64,
+    /// Bytes seen outside frames.
+    pub garbage: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,11 +97,6 @@ impl Decoder {
     /// Bytes taken and not yet looked at, at most [`MAX_PENDING`].
     pub fn pending_len(&self) -> usize {
         self.pending.len() - self.read
-    }
-
-    /// Bytes seen outside frames.
-    pub const fn garbage(&self) -> u64 {
-        self.garbage
     }
 
     /// Consumes pending bytes up to the flag that ends a frame.
@@ -193,6 +189,6 @@ mod tests {
         // Two of the body, twenty of the first push, ten before the flag: all but the frame that
         // the flag began, and what of it exceeds the longest body.
         let began = MAX_PENDING - 11;
-        assert_eq!(decoder.garbage(), (2 + 20 + 10 + began - MAX_BODY) as u64);
+        assert_eq!(decoder.garbage, (2 + 20 + 10 + began - MAX_BODY) as u64);
     }
 }

@@ -8,17 +8,19 @@ use crate::message::{AtoFailure, Channel, SelfTest};
 /// Entries a unit's log keeps: the oldest fall off.
 pub const LOG_ENTRIES: usize = 256;
 
-/// Severity of an event or a fault, least first. The database stores its [`label`](Severity::label).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
-    /// Part of normal operation; not a fault by itself.
-    Info,
-    /// Something is not as it should be; operation goes on.
-    Minor,
-    /// A function is lost or a brake was needed.
-    Major,
-    /// Safety relevant.
-    Critical,
+crate::labelled! {
+    /// Severity of an event or a fault, least first. The database stores its [`label`](Severity::label).
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Severity: label {
+        /// Part of normal operation; not a fault by itself.
+        Info = "info",
+        /// Something is not as it should be; operation goes on.
+        Minor = "minor",
+        /// A function is lost or a brake was needed.
+        Major = "major",
+        /// Safety relevant.
+        Critical = "critical",
+    }
 }
 
 impl Severity {
@@ -28,16 +30,6 @@ impl Severity {
     /// The severity of a fault by its word; `None` for any other word.
     pub fn of_fault(label: &str) -> Option<Self> {
         Self::OF_FAULTS.into_iter().find(|one| one.label() == label)
-    }
-
-    /// The word stored and shown.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Info => "info",
-            Self::Minor => "minor",
-            Self::Major => "major",
-            Self::Critical => "critical",
-        }
     }
 }
 

@@ -68,61 +68,31 @@ pub struct Header {
     pub stamp_ms: u32,
 }
 
-/// Reason for rejecting a frame. Each frame is counted under the first reason that applies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Reject {
-    /// Fewer bytes between two flags than header and FCS take.
-    TooShort,
-    /// More bytes between two flags than the longest frame has.
-    TooLong,
-    /// The FCS does not fit.
-    Checksum,
-    /// Another version of the wire.
-    Version,
-    /// No channel has this number, or it is none of this end.
-    Channel,
-    /// Nobody has this address, or the frame is not from and for those whom this end expects.
-    Address,
-    /// Aborted by its sender, or an escape that no sender may use.
-    Escape,
-    /// Old, repeated, out of order, or too far ahead.
-    Sequence,
-    /// The time stamp goes backward, or the frame is late.
-    Stamp,
-    /// The payload is no message of its channel.
-    Layout,
-}
-
-impl Reject {
-    /// All reasons in the order they are counted in.
-    pub const ALL: [Self; 10] = [
-        Self::TooShort,
-        Self::TooLong,
-        Self::Checksum,
-        Self::Version,
-        Self::Channel,
-        Self::Address,
-        Self::Escape,
-        Self::Sequence,
-        Self::Stamp,
-        Self::Layout,
-    ];
-
-    /// The word shown and stored.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::TooShort => "too_short",
-            Self::TooLong => "too_long",
-            Self::Checksum => "checksum",
-            Self::Version => "version",
-            Self::Channel => "channel",
-            Self::Address => "address",
-            Self::Escape => "escape",
-            Self::Sequence => "sequence",
-            Self::Stamp => "stamp",
-            Self::Layout => "layout",
-        }
+crate::labelled! {
+    /// Reason for rejecting a frame. Each frame is counted under the first reason that applies.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Reject: label {
+        /// Fewer bytes between two flags than header and FCS take.
+        TooShort = "too_short",
+        /// More bytes between two flags than the longest frame has.
+        TooLong = "too_long",
+        /// The FCS does not fit.
+        Checksum = "checksum",
+        /// Another version of the wire.
+        Version = "version",
+        /// No channel has this number, or it is none of this end.
+        Channel = "channel",
+        /// Nobody has this address, or the frame is not from and for those whom this end expects.
+        Address = "address",
+        /// Aborted by its sender, or an escape that no sender may use.
+        Escape = "escape",
+        /// Old, repeated, out of order, or too far ahead.
+        Sequence = "sequence",
+        /// The time stamp goes backward, or the frame is late.
+        Stamp = "stamp",
+        /// The payload is no message of its channel.
+        Layout = "layout",
     }
 }
 

@@ -20,6 +20,9 @@
 
 extern crate alloc;
 
+#[macro_use]
+mod labelled;
+
 mod backlog;
 pub mod config;
 mod decoder;

@@ -2,50 +2,30 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Outcome of a step, a measurement, a procedure or a run.
-///
-/// The database has a column type of the same five words: `fault-db` names no other crate, and
-/// `ptu_runs::stored` converts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// Every expectation held.
-    Passed,
-    /// The unit does not do what it should.
-    Failed,
-    /// The unit could not be tested; an error says nothing about the unit.
-    Error,
-    /// Not run, by choice or condition.
-    Skipped,
-    /// Verdict of a search that found no fault: all that was run passed, and that was not enough to accept the unit.
-    Inconclusive,
-    /// Stopped by the operator.
-    Aborted,
+crate::labelled! {
+    /// Outcome of a step, a measurement, a procedure or a run.
+    ///
+    /// The database has a column type of the same five words: `fault-db` names no other crate, and
+    /// `ptu_runs::stored` converts.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Verdict: label {
+        /// Every expectation held.
+        Passed = "passed",
+        /// The unit does not do what it should.
+        Failed = "failed",
+        /// The unit could not be tested; an error says nothing about the unit.
+        Error = "error",
+        /// Not run, by choice or condition.
+        Skipped = "skipped",
+        /// Verdict of a search that found no fault: all that was run passed, and that was not enough to accept the unit.
+        Inconclusive = "inconclusive",
+        /// Stopped by the operator.
+        Aborted = "aborted",
+    }
 }
 
 impl Verdict {
-    /// All, in order.
-    pub const ALL: [Self; 6] = [
-        Self::Passed,
-        Self::Failed,
-        Self::Error,
-        Self::Skipped,
-        Self::Inconclusive,
-        Self::Aborted,
-    ];
-
-    /// The word in files, JSON and on the command line.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Passed => "passed",
-            Self::Failed => "failed",
-            Self::Error => "error",
-            Self::Skipped => "skipped",
-            Self::Inconclusive => "inconclusive",
-            Self::Aborted => "aborted",
-        }
-    }
-
     /// The verdict over two steps or procedures: aborted, then failed, then error outrank passed.
     ///
     /// A check that failed outranks one that could not be made: a faulty unit causes both, and the

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use btu_rig::procedure::{Findings, Measurement, Procedure, ResultKind, RunEvent, Verdict};
 use fault_db::StepKind;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use protocol::{display_text, lru};
 
 use crate::operator::HOW_TO_ANSWER;
@@ -16,9 +16,9 @@ use ptu_report::limits::{limits_text, short};
 use ptu_report::words::{Words, fill};
 use ptu_runs::failure::{Failure, RunTrouble};
 use ptu_runs::run::{LinePrinter, Listener, RunPlan, SessionEvent, steps_of};
-use ptu_runs::stdio;
 use ptu_runs::table::{cell, padded};
 use ptu_runs::terminal::{self, Style};
+use ptu_runs::{progress, stdio};
 
 /// Interval at which the bar's clock moves while nothing happens.
 const TICK: Duration = Duration::from_millis(250);
@@ -97,10 +97,10 @@ impl Console {
 fn bar(steps: u64, detail: Detail) -> Option<ProgressBar> {
     (detail != Detail::Quiet && stdio::draws()).then(|| {
         let terminal = &Words::shown().terminal;
-        let bar = ProgressBar::new(steps).with_message(terminal.bringing_up);
+        let form = format!("{{bar:30}} {}", terminal.step_count);
+        let bar = progress::bar(steps, &form).with_message(terminal.bringing_up);
         bar.enable_steady_tick(TICK);
-        let style = ProgressStyle::with_template(&format!("{{bar:30}} {}", terminal.step_count));
-        bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        bar
     })
 }
 

@@ -78,7 +78,8 @@ pub struct Jog {
     phase: Phase,
     tries: u8,
     backward: bool,
-    gave_up: bool,
+    /// Jogging has given the stop point up.
+    pub gave_up: bool,
     may_go: bool,
     brakes: bool,
     setpoint: Setpoint,
@@ -188,11 +189,6 @@ impl Jog {
     /// A try has begun in this cycle.
     pub fn begins(&self) -> bool {
         self.phase == Phase::Goes(0, false)
-    }
-
-    /// Jogging has given the stop point up.
-    pub fn gave_up(&self) -> bool {
-        self.gave_up
     }
 
     /// Acceleration that is asked for at least, whatever the track costs, m/s².

@@ -110,7 +110,8 @@ pub struct AtoOutputs {
 /// Automatic operation of one unit, stepped once a cycle.
 #[derive(Clone, Debug)]
 pub struct Ato {
-    state: AtoState,
+    /// Operating state.
+    pub state: AtoState,
     failure: AtoFailure,
     monitor: Monitor,
     observer: Observer,
@@ -362,12 +363,7 @@ impl Ato {
 
     /// Stands after a run away from the stop point, and jogging has given up.
     pub fn gave_up(&self) -> bool {
-        self.jog.gave_up()
-    }
-
-    /// Operating state.
-    pub fn state(&self) -> AtoState {
-        self.state
+        self.jog.gave_up
     }
 }
 

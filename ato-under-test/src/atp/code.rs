@@ -34,7 +34,7 @@ const SELDOM: usize = 2;
 /// back after it must be steady for the hold time.
 #[derive(Clone, Debug)]
 pub struct CodeDecoder {
-    code: Code,
+    pub code: Code,
     /// When the code in force was confirmed last.
     confirmed: Instant,
     candidate: Code,
@@ -185,10 +185,6 @@ impl CodeDecoder {
                 libm::round(signal.rate_hz * 100.0) as i32,
             );
         }
-    }
-
-    pub fn code(&self) -> Code {
-        self.code
     }
 
     /// The code of the table that is in force.

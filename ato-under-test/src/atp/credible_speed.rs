@@ -78,7 +78,8 @@ pub struct CredibleSpeed {
     cut: bool,
     told: Edge,
     clock_told: Edge,
-    clock_fast: f64,
+    /// Share by which speeds are too low, because the clock is fast.
+    pub clock_fast: f64,
 }
 
 impl CredibleSpeed {
@@ -230,11 +231,6 @@ impl CredibleSpeed {
     pub fn doubted(&self) -> Option<Speed> {
         let doubted_mps = self.doubted_mps?;
         Some(Speed::from_mps(doubted_mps.max(self.told_mps)))
-    }
-
-    /// Share by which speeds are too low, because the clock is fast.
-    pub fn clock_fast(&self) -> f64 {
-        self.clock_fast
     }
 
     /// Power is cut: it moves nothing.

@@ -23,7 +23,7 @@ const SIDES: [(Outputs, TrainLines, TrainLines); 2] = [
 pub struct DoorLines {
     lines: TrainLines,
     /// The train tells of doors by side, or has told of them before.
-    by_side: bool,
+    pub by_side: bool,
 }
 
 impl DoorLines {
@@ -37,11 +37,6 @@ impl DoorLines {
     /// All doors are proved closed, and by side closed and locked.
     pub fn closed(self) -> bool {
         self.lines.contains(TrainLines::DOORS_CLOSED) && self.open() == DoorSide::None
-    }
-
-    /// The train has lines for each side.
-    pub fn by_side(self) -> bool {
-        self.by_side
     }
 
     /// Sides on which doors are not proved closed and locked. One line for all doors tells of no side.
@@ -60,7 +55,7 @@ impl DoorLines {
     /// of all doors; `DoorSide::None` where that line alone is wrong, or the train tells of sides no more. `None`
     /// while the lines agree.
     pub fn contradiction(self) -> Option<DoorSide> {
-        if !self.by_side() {
+        if !self.by_side {
             return None;
         }
         let locked_open = self
@@ -73,7 +68,7 @@ impl DoorLines {
 
     fn sides(self, is: impl Fn(Outputs, TrainLines, TrainLines) -> bool) -> DoorSide {
         let [left, right] = SIDES.map(|(enable, closed, locked)| is(enable, closed, locked));
-        side_of(self.by_side() && left, self.by_side() && right)
+        side_of(self.by_side && left, self.by_side && right)
     }
 }
 

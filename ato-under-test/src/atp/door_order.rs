@@ -14,7 +14,8 @@ const FOLLOWS: Duration = Duration::from_ms(200);
 
 #[derive(Clone, Debug, Default)]
 pub struct DoorOrders {
-    passed: Outputs,
+    /// The contacts that order doors to open.
+    pub passed: Outputs,
     beyond: OnDelay,
     reported: Edge,
 }
@@ -31,11 +32,6 @@ impl DoorOrders {
         if self.reported.rises(lasts) {
             log.push(now, Event::DoorOrderRefused, i32::from(refused));
         }
-    }
-
-    /// The contacts that order doors to open.
-    pub fn passed(&self) -> Outputs {
-        self.passed
     }
 }
 
@@ -73,7 +69,7 @@ mod tests {
                 for ms in (0..=200).step_by(10) {
                     let now = Instant::from_ms(ms);
                     orders.step(now, ordered, enables(enabled), &mut log);
-                    let passed = orders.passed();
+                    let passed = orders.passed;
                     let both = ordered.code() & enabled.code();
                     assert_eq!(passed.contains(Outputs::OPEN_LEFT), both & 1 != 0);
                     assert_eq!(passed.contains(Outputs::OPEN_RIGHT), both & 2 != 0);

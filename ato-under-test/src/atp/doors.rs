@@ -46,7 +46,7 @@ pub struct Doors {
     tripped: Edge,
     unaligned: OnDelay,
     refused: Edge,
-    enable: Outputs,
+    pub enable: Outputs,
     not_enabled: OnDelay,
     /// Sides open in the last scan; unknown before the first.
     open: Option<u8>,
@@ -163,10 +163,6 @@ impl Doors {
     pub fn hold(&self) -> bool {
         self.holds
     }
-
-    pub fn enable(&self) -> Outputs {
-        self.enable
-    }
 }
 
 #[cfg(test)]
@@ -277,12 +273,12 @@ mod tests {
             !train.has(RIGHT_OPEN, DoorSide::None),
             "data of the next section"
         );
-        assert_eq!(train.doors.enable(), Outputs::DOOR_ENABLE_RIGHT);
+        assert_eq!(train.doors.enable, Outputs::DOOR_ENABLE_RIGHT);
         assert_eq!(train.logged(), []);
         assert!(train.has(RIGHT_OPEN.intersection(LEFT_OPEN), DoorSide::None));
         assert_eq!(train.logged(), [(242, 1)], "the other side");
         assert!(!train.has(PROVED, DoorSide::None));
-        assert_eq!(train.doors.enable(), Outputs::empty());
+        assert_eq!(train.doors.enable, Outputs::empty());
         assert!(train.has(RIGHT_OPEN, DoorSide::None), "opened again");
     }
 
@@ -331,7 +327,7 @@ mod tests {
             let (mut doors, mut log) = (Doors::default(), EventLog::default());
             let inputs = at_platform(PROVED, side);
             doors.step(Instant::ZERO, inputs, &CONFIG, &mut log);
-            assert_eq!(doors.enable(), enabled, "{side:?}");
+            assert_eq!(doors.enable, enabled, "{side:?}");
         }
     }
 }

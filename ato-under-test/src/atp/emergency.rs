@@ -30,7 +30,7 @@ pub struct BrakeInputs {
 
 #[derive(Clone, Debug)]
 pub struct EmergencyBrake {
-    cause: EbCause,
+    pub cause: EbCause,
     acknowledge: Edge,
     /// Acknowledged at standstill, when the last pulse was not long enough ago: it counts as long as it is given.
     awaits_stillness: bool,
@@ -115,9 +115,5 @@ impl EmergencyBrake {
 
     pub fn applied(&self) -> bool {
         self.cause != EbCause::None
-    }
-
-    pub fn cause(&self) -> EbCause {
-        self.cause
     }
 }

@@ -44,11 +44,12 @@ pub struct JogGuard {
     back_m: Option<f64>,
     not_asked: OnDelay,
     /// The permission has ended in this scan.
-    ended: bool,
+    pub ended: bool,
     /// Way forward since the wheels stood, by each tachometer, m.
     forward_m: [f64; 2],
     too_fast: OnDelay,
-    brakes: bool,
+    /// The service brake is asked for.
+    pub brakes: bool,
     refused: bool,
     refusal_lasts: OnDelay,
     refusal_reported: Edge,
@@ -140,16 +141,6 @@ impl JogGuard {
     /// Way backward that is permitted beside the tolerance of rollback, m.
     pub fn back_m(&self) -> f64 {
         self.back_m.unwrap_or_default()
-    }
-
-    /// The permission has ended in this scan: the way run under it is no rollback.
-    pub fn ended(&self) -> bool {
-        self.ended
-    }
-
-    /// The service brake is asked for.
-    pub fn brakes(&self) -> bool {
-        self.brakes
     }
 
     /// ATO orders backward and may not.
@@ -264,13 +255,13 @@ mod tests {
         };
         train.run(900, none);
         assert_eq!(train.guard.back_m(), 1.0);
-        assert!(!train.guard.ended());
+        assert!(!train.guard.ended);
         while train.guard.back_m() > 0.0 {
             train.run(10, none);
         }
-        assert!(train.guard.ended());
+        assert!(train.guard.ended);
         train.run(10, none);
-        assert!(!train.guard.ended());
+        assert!(!train.guard.ended);
     }
 
     #[test]
@@ -283,15 +274,15 @@ mod tests {
             };
             train.run(100, JOG);
             train.run(2_000, at(4.9));
-            assert!(!train.guard.brakes());
+            assert!(!train.guard.brakes);
             train.run(290, at(5.2));
-            assert!(!train.guard.brakes());
+            assert!(!train.guard.brakes);
             train.run(30, at(5.2));
-            assert!(train.guard.brakes());
+            assert!(train.guard.brakes);
             train.run(500, at(1.5));
-            assert!(train.guard.brakes());
+            assert!(train.guard.brakes);
             train.run(20, JOG);
-            assert!(!train.guard.brakes());
+            assert!(!train.guard.brakes);
         }
     }
 
@@ -320,6 +311,6 @@ mod tests {
         };
         assert!(!train.run(2_000, fast));
         assert_eq!(train.guard.back_m(), f64::INFINITY);
-        assert!(!train.guard.brakes() && !train.guard.refuses());
+        assert!(!train.guard.brakes && !train.guard.refuses());
     }
 }

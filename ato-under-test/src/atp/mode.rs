@@ -75,7 +75,7 @@ pub struct ModeInputs {
 
 #[derive(Clone, Debug)]
 pub struct ModeSequence {
-    mode: Mode,
+    pub mode: Mode,
     start: Edge,
     acknowledge: Edge,
     chosen: OnDelay,
@@ -87,10 +87,10 @@ pub struct ModeSequence {
     /// The next run needs a departure of its own.
     departs_anew: bool,
     /// The line has ended a run on the way: the train is stopped.
-    stops: bool,
+    pub stops: bool,
     /// Position of the mode switch in the cycle before.
     switch: ModeSwitch,
-    refusals: Refusals,
+    pub refusals: Refusals,
 }
 
 impl ModeSequence {
@@ -218,15 +218,6 @@ impl ModeSequence {
         self.began
     }
 
-    pub fn mode(&self) -> Mode {
-        self.mode
-    }
-
-    /// The service brake stops a train whose run the line, a door or the cab has ended.
-    pub fn stops(&self) -> bool {
-        self.stops
-    }
-
     /// ATO has failed in a run, or could not go on with it, and it is not acknowledged.
     pub fn failed(&self) -> bool {
         !self.failed.is_empty()
@@ -235,10 +226,6 @@ impl ModeSequence {
     /// TCMS did not let the run go on.
     pub fn forbidden(&self) -> bool {
         self.failed.contains(Refusals::TCMS_NOT_READY)
-    }
-
-    pub fn refusals(&self) -> Refusals {
-        self.refusals
     }
 
     /// The switch is at driverless and no run is under way: no lever drives such a train.

@@ -9,22 +9,17 @@ use super::{Atp, Code, CodeDecoder, EmergencyBrake, ModeSequence, Tachometers};
 impl Atp {
     /// States that the output contacts should have.
     pub fn outputs(&self, healthy: bool) -> Outputs {
-        let mut outputs = self.doors.enable() | self.door_orders.passed();
-        let code_valid = matches!(self.decoder.code(), Code::Known(_));
+        let mut outputs = self.doors.enable | self.door_orders.passed;
+        let code_valid = matches!(self.decoder.code, Code::Known(_));
         outputs.set(Outputs::EB_RELAY, !self.brake.applied());
         outputs.set(Outputs::FSB, self.fsb_cause != FsbCause::None);
         outputs.set(Outputs::POWER_CUT, self.power_cut());
-        let alarm = self.overspeed.alarm || self.proceeds.warns();
+        let alarm = self.overspeed.alarm || self.proceeds.warns;
         outputs.set(Outputs::ALARM, alarm);
         outputs.set(Outputs::CODE_VALID, code_valid);
-        outputs.set(Outputs::STANDSTILL, self.tachometers.standstill());
+        outputs.set(Outputs::STANDSTILL, self.tachometers.standstill);
         outputs.set(Outputs::HEALTHY, healthy);
         outputs
-    }
-
-    /// The mode switch comes to rest at no position: no position counts.
-    pub fn switch_chatters(&self) -> bool {
-        self.switch.chatters()
     }
 
     /// Cab at automatic or driverless.
@@ -46,11 +41,6 @@ impl Atp {
         self.doors_open
     }
 
-    /// Sets the way that a pulse stands for, m.
-    pub fn set_pulse(&mut self, pulse_m: f64) {
-        self.tachometers.set_pulse(pulse_m);
-    }
-
     pub fn tachometers(&self) -> &Tachometers {
         &self.tachometers
     }
@@ -68,7 +58,7 @@ impl Atp {
     }
 
     pub fn enabled(&self) -> DoorSide {
-        enabled_sides(self.doors.enable())
+        enabled_sides(self.doors.enable)
     }
 
     /// ATO may order doors to close. One contact closes all doors, so none may be open on a side that is not
@@ -77,11 +67,6 @@ impl Atp {
         let enabled = self.enabled();
         // Codes of sides are sets of bits.
         enabled != DoorSide::None && self.doors_open.code() & !enabled.code() == 0
-    }
-
-    /// Doors are open on a side that is not enabled.
-    pub fn forced(&self) -> bool {
-        self.doors.hold()
     }
 
     /// Cause of the full service brake.

@@ -29,7 +29,7 @@ pub struct StopAndProceed {
     /// Since when, and the limit.
     proceeds: Option<(Instant, Speed)>,
     brakes: Edge,
-    warns: bool,
+    pub warns: bool,
 }
 
 impl StopAndProceed {
@@ -61,10 +61,6 @@ impl StopAndProceed {
     /// Limit after an acknowledged stop.
     pub fn limit(&self) -> Option<Speed> {
         self.proceeds.map(|(_, limit)| limit)
-    }
-
-    pub fn warns(&self) -> bool {
-        self.warns
     }
 }
 
@@ -171,10 +167,10 @@ mod tests {
         let mut sounded = 0;
         while now < Instant::from_ms(30_000) {
             one.step(now, ACKNOWLEDGED, Some(&config()), &mut log);
-            if one.warns() && !before {
+            if one.warns && !before {
                 begun.push(now.since(Instant::from_ms(3000)).as_ms());
             }
-            before = one.warns();
+            before = one.warns;
             sounded += u64::from(before) * SCAN.as_ms();
             now += SCAN;
         }

@@ -29,18 +29,20 @@ pub struct Tachometers {
     opposed: OnDelay,
     faulty: bool,
     slow: OnDelay,
-    standstill: bool,
+    pub standstill: bool,
     silent: OnDelay,
-    still: bool,
+    /// No wheel has made more than a lone pulse for the time of standstill.
+    pub still: bool,
     last_pulse: Instant,
     /// Way by each channel at a speed that counts as standing, since the wheels last stood still, m.
     crept_m: [f64; 2],
     /// The greater change of speed that no adhesion explains, m/s².
-    loose_mps2: Option<f64>,
+    pub loose_mps2: Option<f64>,
     /// Way by each channel in this scan, m, backward negative.
-    ways_m: [f64; 2],
-    distance_channel: usize,
-    credible: CredibleSpeed,
+    pub ways_m: [f64; 2],
+    /// The channel that counts the distance, 0 or 1.
+    pub distance_channel: usize,
+    pub credible: CredibleSpeed,
     /// Share by which the train is faster than its wheels tell.
     farther: f64,
 }
@@ -118,14 +120,14 @@ impl Tachometers {
         }
         self.compare(now, inputs, config, log);
         // By channel 1, by channel 2 when only that turns.
-        let first_dead = self.meters[0].speed() < DEAD_BELOW && self.meters[1].speed() > DEAD_BELOW;
+        let first_dead = self.meters[0].speed < DEAD_BELOW && self.meters[1].speed > DEAD_BELOW;
         self.distance_channel = usize::from(first_dead);
         let silent = inputs.pulses.iter().all(|pulses| pulses.count == 0);
         let evidence = SpeedEvidence {
             tested: inputs.test_speed.contains(&true),
             ..evidence
         };
-        let speeds = [0, 1].map(|i| self.meters[i].speed());
+        let speeds = [0, 1].map(|i| self.meters[i].speed);
         self.credible
             .step(now, speeds, !silent, evidence, &config.tacho, log);
         let told = evidence.tcms_moves(&config.tacho) && !evidence.tested && !evidence.unguarded;
@@ -151,7 +153,7 @@ impl Tachometers {
 
     fn compare(&mut self, now: Instant, inputs: &Inputs, config: &UnitConfig, log: &mut EventLog) {
         let tacho = &config.tacho;
-        let (one, two) = (self.meters[0].speed(), self.meters[1].speed());
+        let (one, two) = (self.meters[0].speed, self.meters[1].speed);
         let difference = one.difference(two);
         let span = Duration::from_ms(u64::from(tacho.difference_ms));
         let differ = self
@@ -183,8 +185,8 @@ impl Tachometers {
 
     /// The greater of the two.
     fn measured(&self) -> Speed {
-        let greater = self.meters[0].speed().max(self.meters[1].speed());
-        Speed::from_mps(greater.mps() * (1.0 + self.farther) * (1.0 + self.credible.clock_fast()))
+        let greater = self.meters[0].speed.max(self.meters[1].speed);
+        Speed::from_mps(greater.mps() * (1.0 + self.farther) * (1.0 + self.credible.clock_fast))
     }
 
     /// The safe speed: the greater of the two, or what the train may still have where they are not believed.
@@ -193,14 +195,9 @@ impl Tachometers {
             .max(self.credible.doubted().unwrap_or(Speed::ZERO))
     }
 
-    /// Power moves nothing: it is cut.
-    pub fn cuts_power(&self) -> bool {
-        self.credible.cuts_power()
-    }
-
     /// Speed of channel 0 or 1.
     pub fn channel(&self, i: usize) -> Speed {
-        self.meters[i].speed()
+        self.meters[i].speed
     }
 
     /// The channels cannot both be right, or neither is believed.
@@ -208,29 +205,10 @@ impl Tachometers {
         self.faulty || self.credible.doubted().is_some()
     }
 
-    pub fn standstill(&self) -> bool {
-        self.standstill
-    }
-
-    /// No wheel has made more than a lone pulse for the time of standstill.
-    pub fn still(&self) -> bool {
-        self.still
-    }
-
     /// The train does what no standing one does: it is faster, or creeps farther without a stop.
     pub fn moves(&self, config: &UnitConfig) -> bool {
         let far = |way_m: &f64| libm::fabs(*way_m) > config.tacho.creep_m;
         self.speed().kmh() > config.tacho.standstill_kmh || self.crept_m.iter().any(far)
-    }
-
-    /// The greater change of speed of a wheel in this scan that no adhesion explains, m/s²: it spins or slides.
-    pub fn loose_mps2(&self) -> Option<f64> {
-        self.loose_mps2
-    }
-
-    /// The channel that counts the distance, 0 or 1.
-    pub fn distance_channel(&self) -> usize {
-        self.distance_channel
     }
 
     /// Distance run in this scan, m, backward negative.
@@ -241,11 +219,6 @@ impl Tachometers {
     /// The greater way in this scan, m.
     pub fn farthest_m(&self) -> f64 {
         libm::fabs(self.ways_m[0]).max(libm::fabs(self.ways_m[1]))
-    }
-
-    /// Way by each channel in this scan, m, backward negative.
-    pub fn ways_m(&self) -> [f64; 2] {
-        self.ways_m
     }
 }
 

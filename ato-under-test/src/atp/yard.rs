@@ -16,7 +16,8 @@ use crate::kernel::EventLog;
 pub struct Yard {
     /// The code table has codes for the yard.
     has_codes: bool,
-    ended: bool,
+    /// The code counts, although the mode switch is at yard.
+    pub ended: bool,
 }
 
 impl Yard {
@@ -48,11 +49,6 @@ impl Yard {
             log.push(now, Event::YardEnded, 0);
         }
     }
-
-    /// The code counts, although the mode switch is at yard.
-    pub fn ended(&self) -> bool {
-        self.ended
-    }
 }
 
 #[cfg(test)]
@@ -79,7 +75,7 @@ mod tests {
             (Mode::Manual, Some(OfYard), false),
         ] {
             yard.step(Instant::ZERO, mode, code, false, &mut log);
-            assert_eq!(yard.ended(), ended, "{mode:?} {code:?}");
+            assert_eq!(yard.ended, ended, "{mode:?} {code:?}");
         }
         assert_eq!(
             log.entries().at_or_after(0).map(|entry| entry.code),
@@ -100,7 +96,7 @@ mod tests {
             (Some(Line), true, true),
         ] {
             yard.step(Instant::ZERO, Mode::Yard, code, stops, &mut log);
-            assert_eq!(yard.ended(), ended, "{code:?} {stops}");
+            assert_eq!(yard.ended, ended, "{code:?} {stops}");
         }
     }
 }

@@ -16,11 +16,12 @@ pub struct IoImage {
     stamp_ms: u32,
     sampled_at: Instant,
     heard: Option<Instant>,
-    alive: bool,
+    pub alive: bool,
     timeout: Duration,
-    clock_rate: f64,
+    /// Rate of the clock that times the inputs.
+    pub clock_rate: f64,
     crosstalk: Option<(Crosstalk, Instant)>,
-    sampled: Option<Sampled>,
+    pub sampled: Option<Sampled>,
 }
 
 impl IoImage {
@@ -37,16 +38,6 @@ impl IoImage {
             crosstalk: None,
             sampled: None,
         }
-    }
-
-    /// Sets how fast the clock runs that times the inputs.
-    pub fn set_clock_rate(&mut self, rate: f64) {
-        self.clock_rate = rate;
-    }
-
-    /// Rate of the clock that times the inputs.
-    pub fn clock_rate(&self) -> f64 {
-        self.clock_rate
     }
 
     /// Takes a frame sampled at the sender's `stamp_ms`, and what the receivers made of the waveforms that came with it.
@@ -93,15 +84,6 @@ impl IoImage {
     /// The last frame and its sampling time, while the harness is alive.
     pub fn input(&self) -> Option<(&IoInput, Instant)> {
         self.latest.as_ref().map(|input| (input, self.sampled_at))
-    }
-
-    /// Result of the receivers, where code, pulses and marker came as waveforms.
-    pub fn sampled(&self) -> Option<&Sampled> {
-        self.sampled.as_ref()
-    }
-
-    pub fn alive(&self) -> bool {
-        self.alive
     }
 
     /// Frames have come at least once since power-up.

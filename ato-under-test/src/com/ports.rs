@@ -25,7 +25,7 @@ pub struct Ports {
     maintenance: Link,
     track_loop: Link,
     /// Where a tester was heard last: it is spoken to there.
-    tester_at: Port,
+    pub tester_at: Port,
     /// Bytes to be sent on the maintenance port.
     to_maintenance: Vec<u8>,
 }
@@ -66,16 +66,6 @@ impl Ports {
             .find_map(|port| Some((port, self.link_mut(port).poll(now)?)))
     }
 
-    /// Where a tester was heard last.
-    pub fn tester_at(&self) -> Port {
-        self.tester_at
-    }
-
-    /// A tester was heard at `port`.
-    pub fn hear_tester(&mut self, port: Port) {
-        self.tester_at = port;
-    }
-
     /// Sends to the partner of the message's channel; frames for the harness are appended to `out`.
     pub fn send(&mut self, now: Instant, message: &Message, out: &mut Vec<u8>) {
         if message.channel() == Channel::Ptu && self.tester_at == Port::Maintenance {
@@ -98,12 +88,12 @@ impl Ports {
 
     /// Frames rejected on all ports, for any reason.
     pub fn rejected_total(&self) -> u64 {
-        self.sum(|link| link.counters().rejected_total())
+        self.sum(|link| link.counters.rejected_total())
     }
 
     /// Frames rejected on a channel, on all ports.
     pub fn rejected_on(&self, channel: Channel) -> u64 {
-        self.sum(|link| link.counters().rejected_on(channel))
+        self.sum(|link| link.counters.rejected_on(channel))
     }
 
     fn sum(&self, count: impl Fn(&Link) -> u64) -> u64 {

@@ -16,11 +16,12 @@ const HINDERS: TcmsToAtcBits = TcmsToAtcBits::POWERING_CUT
 /// Latest report of TCMS.
 #[derive(Debug)]
 pub struct TcmsLink {
-    last: TcmsToAtc,
+    /// The last frame that made sense.
+    pub last: TcmsToAtc,
     heard: Option<Instant>,
     counter_moved: Option<Instant>,
-    pace: Pace,
-    alive: bool,
+    pub pace: Pace,
+    pub alive: bool,
     reported: Option<bool>,
     timeout: Duration,
     most_load_kg: f64,
@@ -66,10 +67,6 @@ impl TcmsLink {
         at.is_some_and(|at| now.since(at) < self.timeout)
     }
 
-    pub fn alive(&self) -> bool {
-        self.alive
-    }
-
     /// Frames come, and it is only their alive counter that stands.
     pub fn stands(&self, now: Instant) -> bool {
         !self.alive && self.fresh(self.heard, now)
@@ -83,11 +80,6 @@ impl TcmsLink {
         }
         self.reported = Some(self.alive);
         before.map(|_| self.alive)
-    }
-
-    /// The last frame that made sense.
-    pub fn last(&self) -> &TcmsToAtc {
-        &self.last
     }
 
     /// Passenger load last reported, kg.
@@ -121,11 +113,6 @@ impl TcmsLink {
     pub fn speed(&self) -> Option<Speed> {
         let tells = self.says(TcmsToAtcBits::TELLS_SPEED);
         tells.then(|| Speed::from_cms(self.last.speed_cms))
-    }
-
-    /// Share by which the unit's clock is faster than TCMS's; 0 of one that is not.
-    pub fn clock_ahead(&self) -> f64 {
-        self.pace.clock_ahead()
     }
 
     /// TCMS reads the head control relay of the unit's cab as dropped.
@@ -197,7 +184,7 @@ mod tests {
             let frame = with(bad, |it| it.alive = ms as u8);
             assert!(!link.take(Instant::from_ms(10 * ms), frame));
             link.step(Instant::from_ms(10 * ms));
-            assert_eq!(link.alive(), ms < 50);
+            assert_eq!(link.alive, ms < 50);
         }
         assert_eq!((link.load_kg(), link.given()), (160e3, None));
         assert!(!link.ready() && !link.stands(Instant::from_ms(1000)));
@@ -212,7 +199,7 @@ mod tests {
             link.take(Instant::from_ms(ms), FRAME);
             link.step(Instant::from_ms(ms));
         }
-        assert!(!link.alive() && link.stands(Instant::from_ms(1000)));
+        assert!(!link.alive && link.stands(Instant::from_ms(1000)));
         assert!(!link.stands(Instant::from_ms(1500)));
     }
 

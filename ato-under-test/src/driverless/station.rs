@@ -74,8 +74,9 @@ pub struct Station {
     /// Doors have been open at this stop, or could not be opened.
     served: bool,
     /// Sides ordered to open.
-    opens: DoorSide,
-    waits: bool,
+    pub opens: DoorSide,
+    /// Departure has to wait for the doors, and the train is held.
+    pub waits: bool,
     leaves: OnDelay,
     acknowledge: Edge,
 }
@@ -179,19 +180,9 @@ impl Station {
         }
     }
 
-    /// Sides that it orders to open.
-    pub fn opens(&self) -> DoorSide {
-        self.opens
-    }
-
     /// The station stop orders all doors to close.
     pub fn closes(&self) -> bool {
         matches!(self.state, State::Closing { .. })
-    }
-
-    /// Departure has to wait for the doors, and the train is held.
-    pub fn waits(&self) -> bool {
-        self.waits
     }
 }
 

@@ -53,10 +53,12 @@ pub struct LogRing {
     first_block: usize,
     /// Turn of each block; `None`: no header that checks.
     turns: Vec<Option<u32>>,
-    next: u32,
+    /// Number the next entry gets.
+    pub next: u32,
     /// Whether the block that `next` will lie in has its header.
     begun: bool,
-    last_power_up: u32,
+    /// Power-up count of the newest entry; 0 if there is none.
+    pub last_power_up: u32,
 }
 
 impl LogRing {
@@ -123,20 +125,10 @@ impl LogRing {
         Ok(0)
     }
 
-    /// Number the next entry gets.
-    pub fn next(&self) -> u32 {
-        self.next
-    }
-
     /// Number of the oldest entry that is kept; [`next`](Self::next) if there is none.
     pub fn oldest(&self) -> u32 {
         let oldest = self.turns.iter().flatten().min();
         oldest.map_or(self.next, |turn| (turn * SLOTS).min(self.next))
-    }
-
-    /// Power-up count of the newest entry; 0 if there is none.
-    pub fn last_power_up(&self) -> u32 {
-        self.last_power_up
     }
 
     /// The next entry will be the first of a block.

@@ -93,24 +93,24 @@ impl FrontEnd {
         for (i, sensor) in self.sensors.iter_mut().enumerate() {
             let place = [Place::SpeedSensor1, Place::SpeedSensor2][i];
             let sensed = sensor.read(
-                input.map(|(frame, at)| raw_pulses(frame, at, i, image.clock_rate())),
+                input.map(|(frame, at)| raw_pulses(frame, at, i, image.clock_rate)),
                 place,
                 faults,
             );
             train_pulses[i] = sensed;
-            if !image.alive() {
+            if !image.alive {
                 train_pulses[i].sampled_at = now;
             }
             pulses[i] = test_pulses[i].unwrap_or(train_pulses[i]);
         }
-        let turned = self.sensors.iter().map(PulseSensor::turned).max();
+        let turned = self.sensors.iter().map(|sensor| sensor.turned).max();
         faults.roll(f64::from(turned.unwrap_or(0)) * self.metres_per_pulse);
         let frame = input
-            .filter(|_| image.alive())
+            .filter(|_| image.alive)
             .map(|(frame, _)| *frame)
             .unwrap_or_default();
         let mut own = in_antenna(frame.carrier_hz, frame.code_rate_chz, frame.level_mv);
-        if let Some(sampled) = image.sampled() {
+        if let Some(sampled) = image.sampled.as_ref() {
             (own.heard_for, own.lags) = (sampled.heard_for, sampled.lags);
         }
         let track = self.separate(
@@ -120,13 +120,13 @@ impl FrontEnd {
                 .map(|second| in_antenna(second.carrier_hz, second.code_rate_chz, second.level_mv)),
             faults,
         );
-        let is_wave = image.sampled().is_some();
+        let is_wave = image.sampled.as_ref().is_some();
         let received = self.receive((track, is_wave), board.code(), built_in, faults);
-        let marker_age = image.sampled().map(|sampled| sampled.marker_age);
+        let marker_age = image.sampled.as_ref().map(|sampled| sampled.marker_age);
         let frame_of_marker = input.map(|(frame, _)| (frame, marker_age));
         let (marker, from_board) = self.marker(now, frame_of_marker, board, faults);
         let tested = Inputs {
-            alive: image.alive(),
+            alive: image.alive,
             signal: match built_in {
                 Some(_) => AntennaSignal::default(),
                 None => received.signal,

@@ -17,12 +17,15 @@ pub struct RelayWatch {
     welded: OnDelay,
     open: OnDelay,
     due: OnDelay,
-    line_due: bool,
+    /// The line must be energised: the relay is, and the line is fed, for as long as it may take to follow.
+    pub line_due: bool,
     /// The line was due since the relay was energised.
     followed: bool,
     fell: OnDelay,
-    line_fell: bool,
-    sound: bool,
+    /// The line has followed the relay, which is energised still, and is dead now.
+    pub line_fell: bool,
+    /// The relay has followed ever since power-up; one failure is not forgotten before the next.
+    pub sound: bool,
     feedback: Duration,
 }
 
@@ -70,20 +73,5 @@ impl RelayWatch {
             };
             log.push(now, event, 0);
         }
-    }
-
-    /// The line must be energised: the relay is, and the line is fed, for as long as it may take to follow.
-    pub fn line_due(&self) -> bool {
-        self.line_due
-    }
-
-    /// The line has followed the relay, which is energised still, and is dead now.
-    pub fn line_fell(&self) -> bool {
-        self.line_fell
-    }
-
-    /// The relay has followed ever since power-up; one failure is not forgotten before the next.
-    pub fn sound(&self) -> bool {
-        self.sound
     }
 }

@@ -11,7 +11,8 @@ pub struct PulseSensor {
     /// Fraction of a pulse not emitted yet, for a sensor that gives too many or too few.
     owed: f64,
     last: Pulses,
-    turned: u32,
+    /// Pulses the wheel has made in this scan, whatever the sensor gives of them.
+    pub turned: u32,
 }
 
 impl PulseSensor {
@@ -56,10 +57,5 @@ impl PulseSensor {
         }
         self.last = pulses;
         pulses
-    }
-
-    /// Pulses the wheel has made in this scan, whatever the sensor gives of them.
-    pub fn turned(&self) -> u32 {
-        self.turned
     }
 }

@@ -21,7 +21,8 @@ pub enum Supply {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PowerAndClock {
-    down: bool,
+    /// Without voltage nothing is taken.
+    pub down: bool,
     down_until: Instant,
     last: Instant,
     own: Instant,
@@ -52,11 +53,6 @@ impl PowerAndClock {
             (true, false) => Supply::Back,
             (false, false) => Supply::Up,
         }
-    }
-
-    /// Without voltage nothing is taken.
-    pub fn down(&self) -> bool {
-        self.down
     }
 
     /// The unit's own time for the true time since power-up.

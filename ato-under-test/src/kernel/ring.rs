@@ -7,7 +7,8 @@ use alloc::collections::VecDeque;
 #[derive(Debug)]
 pub struct Ring<T, const N: usize> {
     entries: VecDeque<T>,
-    next_index: u32,
+    /// Index the next entry will get.
+    pub next_index: u32,
 }
 
 impl<T, const N: usize> Default for Ring<T, N> {
@@ -38,11 +39,6 @@ impl<T, const N: usize> Ring<T, N> {
 
     pub fn newest(&self) -> Option<&T> {
         self.entries.back()
-    }
-
-    /// Index the next entry will get.
-    pub fn next_index(&self) -> u32 {
-        self.next_index
     }
 
     /// Oldest index kept; the next one when there is none.

@@ -26,7 +26,7 @@ pub struct RunCycle {
 
 #[derive(Debug, Default)]
 pub struct RunRecord {
-    rows: Ring<RunRow, RUN_ROWS>,
+    pub rows: Ring<RunRow, RUN_ROWS>,
     run: u16,
     state: AtoState,
     markers: u8,
@@ -45,7 +45,7 @@ impl RunRecord {
             return;
         }
         let row = RunRow {
-            index: self.rows.next_index(),
+            index: self.rows.next_index,
             run: self.run,
             at_ms: now.stamp_ms(),
             position_cm: libm::round(cycle.position_m * 100.0) as i32,
@@ -59,10 +59,6 @@ impl RunRecord {
             return;
         }
         self.rows.push(row);
-    }
-
-    pub fn rows(&self) -> &Ring<RunRow, RUN_ROWS> {
-        &self.rows
     }
 }
 
@@ -92,18 +88,18 @@ mod tests {
     fn runs_are_numbered_and_old_rows_fall_off() {
         let mut record = RunRecord::default();
         record.step(Instant::ZERO, false, cycle(0, AtoState::Stop));
-        assert!(record.rows().at_or_after(0).is_none(), "nothing but runs");
+        assert!(record.rows.at_or_after(0).is_none(), "nothing but runs");
         for run in 1..=2 {
             record.step(Instant::ZERO, true, cycle(0, AtoState::Start));
             for _ in 0..RUN_ROWS - 1 {
                 record.step(Instant::ZERO, true, cycle(500, AtoState::Run));
             }
             record.step(Instant::ZERO, false, cycle(0, AtoState::Stop));
-            let rows = record.rows().next_index() - record.rows().oldest_index();
+            let rows = record.rows.next_index - record.rows.oldest_index();
             assert_eq!(rows as usize, RUN_ROWS);
-            assert_eq!(record.rows().at_or_after(0).map(|row| row.run), Some(run));
+            assert_eq!(record.rows.at_or_after(0).map(|row| row.run), Some(run));
         }
-        assert_eq!(record.rows().oldest_index() as usize, RUN_ROWS);
+        assert_eq!(record.rows.oldest_index() as usize, RUN_ROWS);
     }
 
     #[test]
@@ -112,12 +108,12 @@ mod tests {
         for _ in 0..100 {
             record.step(Instant::ZERO, true, cycle(0, AtoState::Start));
         }
-        assert_eq!(record.rows().next_index(), 1);
+        assert_eq!(record.rows.next_index, 1);
         let mut moving = cycle(500, AtoState::Run);
         moving.marker = (2, 1);
         record.step(Instant::ZERO, true, moving);
         record.step(Instant::ZERO, true, moving);
-        let markers = [1, 2].map(|i| record.rows().at_or_after(i).map(|row| row.marker));
+        let markers = [1, 2].map(|i| record.rows.at_or_after(i).map(|row| row.marker));
         assert_eq!(markers, [Some(2), Some(0)]);
     }
 }

@@ -102,7 +102,7 @@ pub fn serve(arguments: &Arguments) -> Result<(), Failure> {
         _ if arguments.lock_step => Wire::open_lock_step()?,
         _ => Wire::open(&PortAddress::Pty)?,
     };
-    stdio::place(wire.name())?;
+    stdio::place(&wire.name)?;
     stdio::note(&format!(
         "unit {} with configuration {} is up",
         setup.serial, setup.config.name

@@ -41,8 +41,8 @@ pub struct Locator {
     /// Tolerance of the stop point, m.
     aligned_m: f64,
     odometer: Odometer,
-    wheel: WheelCalibration,
-    section: Option<Section>,
+    pub wheel: WheelCalibration,
+    pub section: Option<Section>,
     fix: PositionFix,
     /// Number the next pulse should have; pulses of test markers count, too.
     expected: u8,
@@ -73,9 +73,11 @@ pub struct Locator {
     /// Share by which the wheels run farther than they tell, as markers proved before others contradicted them.
     proved_farther: f64,
     /// Way that the marker of this scan ends, if it was believed and the wheels rolled.
-    span: Option<MarkerSpan>,
-    last_marker: u8,
-    count: u8,
+    pub span: Option<MarkerSpan>,
+    /// Last marker detected, 0 = none.
+    pub last_marker: u8,
+    /// Markers detected, wrapping.
+    pub count: u8,
 }
 
 impl Locator {
@@ -299,11 +301,6 @@ impl Locator {
         }
     }
 
-    /// The way that this scan's marker ends.
-    pub fn span(&self) -> Option<MarkerSpan> {
-        self.span
-    }
-
     /// Stopped within tolerance of the stop point, by the last marker and by the way from the marker before.
     pub fn aligned(&self) -> bool {
         let within = |distance_m: f64| libm::fabs(distance_m) <= self.aligned_m;
@@ -325,19 +322,10 @@ impl Locator {
             .map(|section| section.stop_m - self.position_m())
     }
 
-    /// Correction of the odometer's distance, as a share.
-    pub fn wheel_correction(&self) -> f64 {
-        self.wheel.correction()
-    }
-
     /// Share by which markers prove that the wheels run farther than is measured; 0 within what wheels may differ by.
     pub fn runs_farther(&self) -> f64 {
         let proved = self.wheel.impossible().unwrap_or_default();
         proved.max(self.proved_farther)
-    }
-
-    pub fn section(&self) -> Option<&Section> {
-        self.section.as_ref()
     }
 
     /// Position, m.
@@ -353,7 +341,7 @@ impl Locator {
 
     fn wheels(&self) -> Wheels {
         Wheels {
-            scale: 1.0 + self.wheel_correction(),
+            scale: 1.0 + self.wheel.correction(),
             // 4σ: a marker that is not believed costs more than one that is.
             uncertainty: 2.0 * self.wheel.uncertainty(),
             slid_m: self.slid_m,
@@ -372,19 +360,9 @@ impl Locator {
         unsure_m.max(self.early_m)
     }
 
-    /// Last marker detected, 0 = none.
-    pub fn last_marker(&self) -> u8 {
-        self.last_marker
-    }
-
     /// Goes on with the count of another instance.
     pub fn count_on_from(&mut self, other: &Self) {
         self.count = other.count;
-    }
-
-    /// Markers detected, wrapping.
-    pub fn count(&self) -> u8 {
-        self.count
     }
 }
 

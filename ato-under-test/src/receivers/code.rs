@@ -165,7 +165,7 @@ impl CodeReceiver {
         let slowest_s = (PERIODS / reception.rates_hz.0).min(SHARE_OF_SLOW * reception.detect_s);
         let window_s = (SHARE_OF_DETECTION * reception.detect_s).clamp(SHORTEST_S, longest_s);
         let window_s = window_s.max(slowest_s);
-        let window = libm::roundf(window_s * downmix.envelope_hz()) as usize / 4 * 4;
+        let window = libm::roundf(window_s * downmix.envelope_hz) as usize / 4 * 4;
         Self {
             downmix,
             // A longer window tells rates apart that are nearer to each other.
@@ -181,7 +181,7 @@ impl CodeReceiver {
 
     /// Time that the window holds, s: whoever hears a code has had it for about so long.
     pub fn window_s(&self) -> f32 {
-        self.window as f32 / self.downmix.envelope_hz()
+        self.window as f32 / self.downmix.envelope_hz
     }
 
     /// Takes a sample, mV.
@@ -286,7 +286,7 @@ impl CodeReceiver {
 
     /// Brings the window to the frequency and the phase of its carrier.
     pub(super) fn on_carrier(&self) -> OnCarrier {
-        let value_hz = self.downmix.envelope_hz();
+        let value_hz = self.downmix.envelope_hz;
         let mut turned = Phasor::default();
         for (before, value) in self.values().zip(self.values().skip(1)) {
             turned = turned.plus(value.times_conj(before));

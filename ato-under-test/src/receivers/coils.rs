@@ -53,7 +53,8 @@ pub struct Sampled {
 pub struct Coils {
     codes: Vec<(CodeReceiver, Vec<f32>)>,
     twc: FskReceiver,
-    twc_bytes: Vec<u8>,
+    /// Bytes received by TWC since they were forgotten last.
+    pub twc_bytes: Vec<u8>,
     markers: MarkerReceiver,
     sensors: [SensorInput; 2],
     /// Line A of each in this scan: both lines of a sample are looked at together.
@@ -192,9 +193,9 @@ impl Coils {
             let [one, two] = &self.sensors;
             let sample_us = 1e6 / SAMPLE_HZ;
             let age_us = |since: f32| (since * sample_us).min(f32::from(u16::MAX)) as u16;
-            (input.tacho1_count, input.tacho1_edge_us) = (one.count(), age_us(one.since()));
-            (input.tacho2_count, input.tacho2_edge_us) = (two.count(), age_us(two.since()));
-            input.tacho_backward = u8::from(one.backward()) | u8::from(two.backward()) << 1;
+            (input.tacho1_count, input.tacho1_edge_us) = (one.count, age_us(one.since));
+            (input.tacho2_count, input.tacho2_edge_us) = (two.count, age_us(two.since));
+            input.tacho_backward = u8::from(one.backward) | u8::from(two.backward) << 1;
         }
         let age = (self.marker.2 / SAMPLE_HZ * 1e6) as u64;
         (input.marker, input.marker_edges) = (self.marker.0, self.marker.1);
@@ -223,11 +224,6 @@ impl Coils {
             _ => None,
         };
         self.heard
-    }
-
-    /// Bytes received by TWC since they were forgotten last.
-    pub fn twc_bytes(&self) -> &[u8] {
-        &self.twc_bytes
     }
 
     /// Forgets the bytes received by TWC.

@@ -76,7 +76,8 @@ pub struct Downmix {
     line: Vec<Phasor>,
     place: usize,
     taps: Vec<f32>,
-    envelope_hz: f32,
+    /// Rate of the values it gives, Hz.
+    pub envelope_hz: f32,
 }
 
 impl Downmix {
@@ -105,11 +106,6 @@ impl Downmix {
             taps: low_pass(pass_hz / sample_hz, length),
             envelope_hz: sample_hz / by as f32,
         }
-    }
-
-    /// Rate of the values it gives, Hz.
-    pub fn envelope_hz(&self) -> f32 {
-        self.envelope_hz
     }
 
     /// Takes a sample, mV; gives the complex amplitude of the carrier from time to time.

@@ -80,7 +80,7 @@ impl Demodulator {
             2.0 * tones.apart_hz + tones.bit_rate,
             values.max(3),
         );
-        let value_hz = downmix.envelope_hz();
+        let value_hz = downmix.envelope_hz;
         let length = libm::roundf(value_hz / tones.bit_rate) as usize;
         Self {
             turn: Phasor::at(TAU * tones.apart_hz / value_hz),
@@ -95,7 +95,7 @@ impl Demodulator {
 
     /// Values for each bit.
     pub fn values_per_bit(&self, bit_rate: f32) -> f32 {
-        self.downmix.envelope_hz() / bit_rate
+        self.downmix.envelope_hz / bit_rate
     }
 
     /// Takes a sample, mV; gives what the last bit length was.

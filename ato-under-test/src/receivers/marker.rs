@@ -117,7 +117,7 @@ impl MarkerReceiver {
                 }
                 return None;
             }
-            let value_hz = self.tones[0].envelope_hz();
+            let value_hz = self.tones[0].envelope_hz;
             let (passed, is_bell) = passage.passed(1.0 / value_hz);
             let off_hz = passage.turned.angle() / core::f32::consts::TAU * value_hz;
             let is_marker = passage.count >= FEWEST

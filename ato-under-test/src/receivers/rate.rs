@@ -56,7 +56,7 @@ impl CodeReceiver {
     /// since a jump of the phase looks like another rate, and shows in the middle half.
     fn offset_of_rate(&self, on: &OnCarrier, whole: Tone) -> Option<(f32, [bool; 2])> {
         let half = self.window / 2;
-        let half_s = half as f32 / self.downmix.envelope_hz();
+        let half_s = half as f32 / self.downmix.envelope_hz;
         let few = whole.rate_hz * half_s < FEW_PERIODS;
         let steps = if few { STEPS } else { 0 };
         let mut halves = [whole; 3];
@@ -89,7 +89,7 @@ impl CodeReceiver {
 
     /// Mean of a part of the window beside a tone.
     fn mean_beside(&self, on: &OnCarrier, tone: Tone, from: usize, to: usize) -> f32 {
-        let step = TAU * tone.rate_hz / self.downmix.envelope_hz();
+        let step = TAU * tone.rate_hz / self.downmix.envelope_hz;
         let (mut at, turn) = (
             Phasor::at(tone.angle + step * from as f32),
             Phasor::at(step),
@@ -111,7 +111,7 @@ impl CodeReceiver {
         from: usize,
         to: usize,
     ) -> Tone {
-        let step = TAU * rate_hz / self.downmix.envelope_hz();
+        let step = TAU * rate_hz / self.downmix.envelope_hz;
         let (mut at, turn) = (Phasor::at(-step * from as f32), Phasor::at(-step));
         let mut sum = Phasor::default();
         for (value, w) in on.values[from..to].iter().zip(hann(to - from)) {

@@ -36,7 +36,7 @@ impl CodeReceiver {
         let power = power_around(&on.values[..self.window], mean(&on));
         let unexplained = power - on.noise - one.power() / OF_SQUARE_WAVE + on.beside;
         // The third harmonic of the slower one may lie near the faster one.
-        let step = TAU / self.downmix.envelope_hz();
+        let step = TAU / self.downmix.envelope_hz;
         let without_third = |of: &OnCarrier, rate: f32| {
             let (mut rest, slow) = (OnCarrier { ..*of }, tone(of, rate));
             for (place, value) in rest.values[..self.window].iter_mut().enumerate() {

@@ -8,10 +8,12 @@ const HYSTERESIS_MV: f32 = 100.0;
 pub struct SensorInput {
     a: Line,
     b: Line,
-    count: u16,
-    backward: bool,
+    /// Pulses so far, wrapping.
+    pub count: u16,
+    /// B was high at the last pulse: the wheel turns backward.
+    pub backward: bool,
     /// Samples since the last pulse.
-    since: f32,
+    pub since: f32,
 }
 
 /// One line.
@@ -54,16 +56,6 @@ impl SensorInput {
         }
     }
 
-    /// Pulses so far, wrapping.
-    pub fn count(&self) -> u16 {
-        self.count
-    }
-
-    /// Samples since the last one.
-    pub fn since(&self) -> f32 {
-        self.since
-    }
-
     /// Samples since line B was zero last, at the sample at which it became high.
     pub fn since_b(&self) -> f32 {
         self.b.zero
@@ -72,10 +64,5 @@ impl SensorInput {
     /// Which lines are high.
     pub fn high(&self) -> [bool; 2] {
         [self.a.high, self.b.high]
-    }
-
-    /// B was high at the last pulse: the wheel turns backward.
-    pub fn backward(&self) -> bool {
-        self.backward
     }
 }

@@ -55,7 +55,7 @@ impl CodeReceiver {
         }
         let read = self.rate(&on, mean_hz, rates_hz);
         let code = read.and_then(|(tone, rate_hz, [is_whole, goes_on])| {
-            let over_s = TURNS_OVER as f32 / self.downmix.envelope_hz();
+            let over_s = TURNS_OVER as f32 / self.downmix.envelope_hz;
             let angle = PI * rate_hz * over_s;
             let depth = tone.amplitude / (4.0 / PI * shift_hz * libm::sinf(angle) / angle);
             let share = tone.power() / power;
@@ -89,13 +89,13 @@ impl CodeReceiver {
             }
         }
         let [from, to] = edges;
-        let rate_hz = self.downmix.envelope_hz() / 2.0 / (to - from) as f32;
+        let rate_hz = self.downmix.envelope_hz / 2.0 / (to - from) as f32;
         (from > 0 && rate_hz < SLOW / self.window_s()).then_some(rate_hz)
     }
 
     /// The frequency of the carrier over the window, Hz from its mean.
     fn frequency(&self) -> OnCarrier {
-        let value_hz = self.downmix.envelope_hz();
+        let value_hz = self.downmix.envelope_hz;
         let turned = |over: usize| {
             let pairs = self.values().zip(self.values().skip(over));
             pairs.map(|(before, value)| value.times_conj(before))

@@ -36,7 +36,7 @@ impl CodeReceiver {
         (tone, rate_hz): (Tone, f32),
         share_on: f32,
     ) -> Option<[f32; 2]> {
-        let value_hz = self.downmix.envelope_hz();
+        let value_hz = self.downmix.envelope_hz;
         let turn = rate_hz / value_hz;
         let amplitude = tone.amplitude * PI / 2.0 / libm::sinf(PI * share_on);
         let edge = (EDGE_S * rate_hz).min(MOST_TURNS);

@@ -49,7 +49,7 @@ impl PortAddress {
 }
 
 pub struct Wire {
-    name: String,
+    pub name: String,
     end: FarEnd,
 }
 
@@ -106,10 +106,6 @@ impl Wire {
             name,
             end: FarEnd::Pty(pty),
         })
-    }
-
-    pub fn name(&self) -> &str {
-        &self.name
     }
 
     /// Attends to who comes and goes; true when another tester has the wire from now on. This program is

@@ -31,12 +31,12 @@ pub struct TestBoard {
     code: Option<AntennaSignal>,
     speed: Option<SpeedGenerator>,
     marker: Option<u8>,
-    modem: TestModem,
+    pub modem: TestModem,
     defects: Defects,
     /// Speed pulses made since power-up, wrapping.
-    pulses: u16,
+    pub pulses: u16,
     /// Marker pulses made since power-up, wrapping.
-    markers: u8,
+    pub markers: u8,
 }
 
 impl TestBoard {
@@ -169,16 +169,6 @@ impl TestBoard {
         self.speed.as_ref().map(SpeedGenerator::measured)
     }
 
-    /// Speed pulses that left the board since power-up, wrapping.
-    pub fn pulses(&self) -> u16 {
-        self.pulses
-    }
-
-    /// Marker pulses that left the board since power-up, wrapping.
-    pub fn markers(&self) -> u8 {
-        self.markers
-    }
-
     pub fn signals(&self) -> TestSignals {
         let mut signals = TestSignals::empty();
         signals.set(TestSignals::CODE, self.code.is_some());
@@ -208,13 +198,5 @@ impl TestBoard {
             .filter(|_| !faults.loses(Place::TestMarker))?;
         self.markers = self.markers.wrapping_add(1);
         Some(marker)
-    }
-
-    pub fn modem(&self) -> &TestModem {
-        &self.modem
-    }
-
-    pub fn modem_mut(&mut self) -> &mut TestModem {
-        &mut self.modem
     }
 }

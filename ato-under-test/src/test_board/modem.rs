@@ -12,7 +12,8 @@ const PERIOD: Duration = Duration::from_ms(250);
 pub struct TestModem {
     sending: Option<Sending>,
     next_seq: u16,
-    answers: u16,
+    /// Answers heard since power-up, wrapping.
+    pub answers: u16,
     last: TwcTrain,
 }
 
@@ -60,11 +61,6 @@ impl TestModem {
         }
     }
 
-    /// Answers heard since power-up, wrapping.
-    pub fn answers(&self) -> u16 {
-        self.answers
-    }
-
     /// The last answer heard; all 0 before the first.
     pub fn last_answer(&self) -> &TwcTrain {
         &self.last
@@ -86,7 +82,7 @@ mod tests {
     fn only_answers_to_the_data_being_sent_count() {
         let mut modem = TestModem::default();
         modem.hear(answer(0));
-        assert_eq!(modem.answers(), 0, "nothing was sent");
+        assert_eq!(modem.answers, 0, "nothing was sent");
         let data = TwcWayside::default();
         modem.send(Instant::ZERO, data);
         assert_eq!(modem.take(Instant::ZERO), Some((0, data)));
@@ -95,12 +91,12 @@ mod tests {
         for seq in [0, 1, 2] {
             modem.hear(answer(seq));
         }
-        assert_eq!(modem.answers(), 2, "2 has not been sent");
+        assert_eq!(modem.answers, 2, "2 has not been sent");
         modem.send(Instant::from_ms(300), data);
         modem.hear(answer(1));
-        assert_eq!(modem.answers(), 2, "that was to other data");
+        assert_eq!(modem.answers, 2, "that was to other data");
         modem.stop();
         modem.hear(answer(1));
-        assert_eq!(modem.answers(), 2);
+        assert_eq!(modem.answers, 2);
     }
 }

@@ -76,6 +76,6 @@ impl SpeedGenerator {
 
     /// Speed of the pulses that left it, measured by their edges.
     pub fn measured(&self) -> Speed {
-        self.counter.speed()
+        self.counter.speed
     }
 }

@@ -54,21 +54,23 @@ pub type TrainNumber = u16;
 pub struct Twc {
     timeout: Duration,
     heard: Option<Instant>,
-    up: bool,
+    pub up: bool,
     /// The last data that were not refused.
-    data: Option<TwcWayside>,
+    pub data: Option<TwcWayside>,
     /// The last frame was not refused.
-    valid: bool,
+    pub valid: bool,
     refusal_reported: Option<(Event, i32)>,
     ordered: Option<Ordered>,
     /// Event of the last refused orders, with its parameter.
     orders_refusal: Option<(Event, i32)>,
     /// Train that data were for last, and when.
     other_train: Option<(u16, Instant)>,
-    received: u16,
+    /// Frames for this train since power-up, wrapping.
+    pub received: u16,
     others: u16,
     refused: u16,
-    answers: u16,
+    /// Answers made to the loop since power-up, wrapping.
+    pub answers: u16,
 }
 
 impl Twc {
@@ -200,30 +202,6 @@ impl Twc {
             speed_cms: train.speed.to_cms(),
         }
     }
-
-    pub fn up(&self) -> bool {
-        self.up
-    }
-
-    /// The last station data heard match the track database.
-    pub fn valid(&self) -> bool {
-        self.valid
-    }
-
-    /// The last station data that were not refused, while there is communication.
-    pub fn data(&self) -> Option<&TwcWayside> {
-        self.data.as_ref()
-    }
-
-    /// Answers made to the loop since power-up, wrapping.
-    pub fn answers(&self) -> u16 {
-        self.answers
-    }
-
-    /// Frames for this train since power-up, wrapping.
-    pub fn received(&self) -> u16 {
-        self.received
-    }
 }
 
 #[cfg(test)]
@@ -284,18 +262,18 @@ mod tests {
     fn data_for_another_train_change_nothing_and_keep_no_communication_up() {
         let mut bench = Bench::new();
         bench.take(bench.data(OWN), OWN);
-        assert!(bench.twc.valid());
+        assert!(bench.twc.valid);
         for _ in 0..8 {
             bench.take(bench.data(9999), OWN);
         }
-        assert!(!bench.twc.up() && bench.twc.data().is_none());
+        assert!(!bench.twc.up && bench.twc.data.as_ref().is_none());
         assert_eq!(
             bench.logged(Event::TwcOtherTrain),
             1,
             "once while they come"
         );
         assert_eq!(bench.logged(Event::TwcLost), 1);
-        assert_eq!((bench.twc.received(), bench.twc.others), (1, 8));
+        assert_eq!((bench.twc.received, bench.twc.others), (1, 8));
     }
 
     #[test]
@@ -315,7 +293,7 @@ mod tests {
     fn a_unit_without_a_number_takes_data_for_any_train() {
         let mut bench = Bench::new();
         bench.take(bench.data(9999), 0);
-        assert!(bench.twc.valid());
+        assert!(bench.twc.valid);
     }
 
     /// A refusal is logged once, and what was taken before stays in force.
@@ -330,8 +308,8 @@ mod tests {
             ..bench.data(OWN)
         };
         (0..4).for_each(|_| bench.take(wrong, OWN));
-        assert!(bench.twc.up() && !bench.twc.valid());
-        assert_eq!(bench.twc.data(), Some(&bench.data(OWN)));
+        assert!(bench.twc.up && !bench.twc.valid);
+        assert_eq!(bench.twc.data.as_ref(), Some(&bench.data(OWN)));
         assert_eq!(bench.logged(Event::TwcWrongNext), 1);
         assert_eq!(bench.twc.refused, 4);
     }

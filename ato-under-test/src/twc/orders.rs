@@ -37,7 +37,7 @@ impl Twc {
             return None;
         }
         self.received = self.received.wrapping_add(1);
-        let route = self.data().map(|data| data.route);
+        let route = self.data.as_ref().map(|data| data.route);
         let refusal = contradiction(orders, route, line, config, guards);
         if let Some((event, parameter)) = refusal {
             self.refused = self.refused.wrapping_add(1);

@@ -33,10 +33,10 @@ impl Unit {
     /// Latches received inputs and answers requests of the tester.
     pub(super) fn receive_frames(&mut self, now: Instant, out: &mut Vec<u8>) {
         while let Some((port, Received { header, message })) = self.ports.poll(now) {
-            if header.channel == Channel::Ptu && port != self.ports.tester_at() {
+            if header.channel == Channel::Ptu && port != self.ports.tester_at {
                 // What was asked at the other port is answered there.
                 self.send_replies(now, out);
-                self.ports.hear_tester(port);
+                self.ports.tester_at = port;
             }
             match message {
                 Message::CoilSamples(samples) => {
@@ -96,7 +96,7 @@ impl Unit {
     /// Receives the tones of the loop as frames, like any others.
     fn hear_loop(&mut self) {
         if let Some(coils) = &mut self.coils {
-            self.ports.link_mut(Port::Loop).push(coils.twc_bytes());
+            self.ports.link_mut(Port::Loop).push(&coils.twc_bytes);
             coils.forget_twc_bytes();
         }
     }
@@ -173,7 +173,7 @@ impl Unit {
         data: TwcWayside,
         out: &mut Vec<u8>,
     ) {
-        if sender.is_test() != self.board.modem().sends() {
+        if sender.is_test() != self.board.modem.sends() {
             return;
         }
         let Setup { line, .. } = &self.setup;
@@ -210,7 +210,7 @@ impl Unit {
                 self.send_through(Place::FskTransmitter, now, &answer.into(), out);
             }
             StationSender::TestModem(_) if !self.faults.loses(Place::FskTransmitter) => {
-                self.board.modem_mut().hear(answer);
+                self.board.modem.hear(answer);
             }
             StationSender::TestModem(_) => {}
         }
@@ -258,7 +258,7 @@ impl Unit {
             started: self.self_tester.finished(),
             key_on: lines.contains(TrainLines::MAINTENANCE_KEY),
             standing: !self.guards.arm_standstill
-                || tachometers.standstill() && !tachometers.faulty(),
+                || tachometers.standstill && !tachometers.faulty(),
             doors_closed: self.functions.atp.doors_closed(),
             brakes_applied: self.brakes_proved(),
         }

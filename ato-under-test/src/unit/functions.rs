@@ -97,8 +97,8 @@ impl Functions {
         self.relocated = false;
         let between_loops = self.between_loops(around);
         self.twc.step(now, between_loops, log);
-        if let Some(data) = self.twc.data().filter(|_| self.twc.valid()) {
-            let standstill = self.atp.tachometers().standstill();
+        if let Some(data) = self.twc.data.as_ref().filter(|_| self.twc.valid) {
+            let standstill = self.atp.tachometers().standstill;
             let line = &around.setup.line;
             let section = line.section(data.section).filter(|_| around.guards.station);
             let elsewhere =
@@ -109,11 +109,11 @@ impl Functions {
             self.relocated = self.locator.locate(data, line, standstill);
         }
         let by_signal = matches!(
-            self.atp.sequence().mode(),
+            self.atp.sequence().mode,
             Mode::Manual | Mode::Automatic | Mode::AutomaticRun
         );
         // A cab that is left, and taken up again, may stand elsewhere, or face the other way.
-        let stands = self.atp.tachometers().standstill() && self.atp.sequence().mode() != Mode::Off;
+        let stands = self.atp.tachometers().standstill && self.atp.sequence().mode != Mode::Off;
         self.locator
             .keep_place((by_signal || stands) && around.guards.station);
         self.serve_station(now, around, log);
@@ -132,12 +132,13 @@ impl Functions {
             at_platform: self.at_platform(),
             door_side: self
                 .twc
-                .data()
+                .data
+                .as_ref()
                 .map(|data| data.door_side)
                 .unwrap_or_default(),
             door_order: self.door_order(around.faults),
-            twc_up: self.twc.up(),
-            tcms_up: around.tcms.alive(),
+            twc_up: self.twc.up,
+            tcms_up: around.tcms.alive,
             ato_ready: self.ato_outputs.ready,
             guards: around.guards,
             line_open: self.line_open(around) && around.guards.line,
@@ -149,7 +150,7 @@ impl Functions {
                 false => 0.0,
             },
             tcms_speed: around.tcms.speed(),
-            clock_ahead: around.tcms.clock_ahead(),
+            clock_ahead: around.tcms.pace.clock_ahead(),
             tcms_holds: around.tcms.overrides(),
             ato_powers: self.ato_outputs.effort > 0,
             jogs_backward: self.ato_outputs.jogs_backward,
@@ -165,8 +166,8 @@ impl Functions {
             speed: self.atp.tachometers().speed(),
             limit: self.atp.limit(),
             position_m: self.locator.position_m(),
-            mode: self.atp.sequence().mode(),
-            eb_cause: self.atp.brake().cause(),
+            mode: self.atp.sequence().mode,
+            eb_cause: self.atp.brake().cause,
         });
         self.atp
             .scan(now, &self.inputs, context, &around.setup.config, log);
@@ -174,14 +175,14 @@ impl Functions {
 
     fn locate(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
         let tachometers = self.atp.tachometers();
-        let channel = tachometers.distance_channel();
+        let channel = tachometers.distance_channel;
         let pulses = &self.inputs.pulses[channel];
         let movement = Movement {
             moved_m: tachometers.moved_m(),
             edge_age_s: pulses.sampled_at.since(pulses.edge_at).as_secs(),
             speed_mps: tachometers.channel(channel).mps(),
-            standstill: tachometers.standstill(),
-            driven: self.atp.sequence().mode() == Mode::AutomaticRun,
+            standstill: tachometers.standstill,
+            driven: self.atp.sequence().mode == Mode::AutomaticRun,
         };
         let works = around.guards.marker_debounce;
         let config = &around.setup.config.marker;
@@ -203,31 +204,31 @@ impl Functions {
     ) {
         let tachometers = self.atp.tachometers();
         let motion = WheelMotion {
-            ways_m: tachometers.ways_m(),
+            ways_m: tachometers.ways_m,
             speeds: [0, 1].map(|channel| tachometers.channel(channel)),
-            loose_mps2: tachometers.loose_mps2(),
+            loose_mps2: tachometers.loose_mps2,
         };
         self.tacho_compare.step(now, &motion, config, log);
         if let Some(pulse) = marker {
-            let span = self.locator.span();
+            let span = self.locator.span;
             self.tacho_compare
                 .pass_marker(now, pulse.marker, span, config, log);
         }
     }
 
     pub fn aligned(&self) -> bool {
-        self.atp.tachometers().standstill() && self.locator.aligned()
+        self.atp.tachometers().standstill && self.locator.aligned()
     }
 
     /// Whether the train is on the arrival station's loop, with valid station data.
     pub(super) fn at_platform(&self) -> bool {
-        let on_loop = self.twc.data().zip(self.locator.section());
-        self.twc.valid() && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
+        let on_loop = self.twc.data.as_ref().zip(self.locator.section.as_ref());
+        self.twc.valid && on_loop.is_some_and(|(data, section)| data.loop_id == section.to_loop)
     }
 
     /// No loop lies where the train is, by data of its section.
     fn between_loops(&self, around: &Surroundings<'_>) -> bool {
-        let here = self.locator.section().zip(self.twc.data());
+        let here = self.locator.section.as_ref().zip(self.twc.data.as_ref());
         around.guards.loop_places
             && here.is_some_and(|(section, data)| {
                 let own = data.section == section.section || data.station == section.to_station;
@@ -242,10 +243,10 @@ impl Functions {
     pub fn train_state(&self) -> TrainState {
         let tachometers = self.atp.tachometers();
         TrainState {
-            mode: self.atp.sequence().mode(),
+            mode: self.atp.sequence().mode,
             doors_closed: self.atp.doors_closed(),
             aligned: self.aligned(),
-            standstill: tachometers.standstill(),
+            standstill: tachometers.standstill,
             speed: tachometers.speed(),
         }
     }
@@ -258,8 +259,8 @@ impl Functions {
         let active = self.inputs.alive && self.inputs.lines.contains(TrainLines::HCR);
         let inputs = StationInputs {
             driverless: self.driverless() && active && around.self_tester.finished(),
-            standstill: self.atp.tachometers().standstill(),
-            running: self.atp.sequence().mode() == Mode::AutomaticRun,
+            standstill: self.atp.tachometers().standstill,
+            running: self.atp.sequence().mode == Mode::AutomaticRun,
             enabled: self.atp.enabled(),
             open: self.atp.doors_open(),
             closed: self.atp.doors_closed(),
@@ -273,8 +274,8 @@ impl Functions {
 
     /// Sides on which ATO orders doors to open.
     fn door_order(&self, faults: &Faults) -> DoorSide {
-        match (self.station.opens(), faults.at(Place::DoorOrder)) {
-            (DoorSide::None, _) | (_, None) => self.station.opens(),
+        match (self.station.opens, faults.at(Place::DoorOrder)) {
+            (DoorSide::None, _) | (_, None) => self.station.opens,
             (side, Some(Effect::Offset { by })) => {
                 let code = libm::round(f64::from(side.code()) + by) as u8;
                 DoorSide::from_code(code)
@@ -285,8 +286,8 @@ impl Functions {
 
     /// Station data that are valid and of the place where the train stands.
     pub(super) fn station_data(&self) -> Option<&TwcWayside> {
-        let refused = !self.twc.valid() || self.elsewhere.value();
-        self.twc.data().filter(|_| !refused)
+        let refused = !self.twc.valid || self.elsewhere.value();
+        self.twc.data.as_ref().filter(|_| !refused)
     }
 
     /// Departure in valid station data, given or withheld; `None` = no data, or no run may begin.
@@ -299,24 +300,24 @@ impl Functions {
     /// driver moves the controller.
     pub fn holds(&self) -> bool {
         let left_alone = self.atp.sequence().failed()
-            && self.atp.tachometers().standstill()
+            && self.atp.tachometers().standstill
             && self.inputs.controller == 0;
-        self.ato_outputs.holding_brake || self.station.waits() || left_alone || self.cabs.holds()
+        self.ato_outputs.holding_brake || self.station.waits || left_alone || self.cabs.holds()
     }
 
     fn mode_inputs(&self, around: &Surroundings<'_>) -> ModeInputs {
         let lines = self.inputs.lines;
         let heard = self.departure(around);
-        let standstill = self.atp.tachometers().standstill();
-        let code = matches!(self.atp.decoder().code(), Code::Known(_));
+        let standstill = self.atp.tachometers().standstill;
+        let code = matches!(self.atp.decoder().code, Code::Known(_));
         let switch = self.inputs.mode_switch;
         let mut lacking = Refusals::empty();
         lacking.set(Refusals::NOT_STANDSTILL, !standstill);
         let unproved = !around.guards.departure;
         let open = !self.atp.doors_closed() || around.tcms.reads_doors_open();
         lacking.set(Refusals::DOORS_OPEN, !unproved && open);
-        lacking.set(Refusals::DOOR_SEQUENCE, !unproved && self.station.waits());
-        lacking.set(Refusals::NO_TWC, !self.twc.up());
+        lacking.set(Refusals::DOOR_SEQUENCE, !unproved && self.station.waits);
+        lacking.set(Refusals::NO_TWC, !self.twc.up);
         lacking.set(Refusals::STATION_INVALID, self.station_data().is_none());
         lacking.set(Refusals::NO_CODE, !code);
         lacking.set(
@@ -344,7 +345,7 @@ impl Functions {
         ModeInputs {
             ready: around.self_tester.finished() && self.inputs.alive && !asleep,
             cab_active: lines.contains(TrainLines::HCR) || given_up,
-            switch: if self.inputs.alive && !self.atp.switch_chatters() {
+            switch: if self.inputs.alive && !self.atp.switch.chatters() {
                 switch
             } else {
                 ModeSwitch::Off
@@ -361,7 +362,7 @@ impl Functions {
             gave_up: self.ato.gave_up(),
             line_open: line_open && !self.atp.brake().applied(),
             line_fell: around.line_fell,
-            forced: self.atp.forced(),
+            forced: self.atp.doors.hold(),
         }
     }
 

@@ -159,7 +159,7 @@ impl Unit {
 
     /// Takes bytes that came at a port; they are acted on in the next scan.
     pub fn receive_at(&mut self, port: Port, bytes: &[u8]) {
-        if !self.power.down() {
+        if !self.power.down {
             self.ports.link_mut(port).push(bytes);
         }
     }
@@ -181,7 +181,7 @@ impl Unit {
 
     /// Frames accepted at a port since power-up, on all its channels.
     pub fn frames_accepted(&self, port: Port) -> u64 {
-        self.ports.link(port).counters().accepted_total()
+        self.ports.link(port).counters.accepted_total()
     }
 
     /// One scan, every 10 ms; frames for the harness are appended to `out`, those for the maintenance port wait
@@ -197,7 +197,7 @@ impl Unit {
         self.guards = Guards::of(&self.faults);
         let clock_rate = self.faults.gain(Place::Clock);
         let now = self.power.own(now, clock_rate);
-        self.image.set_clock_rate(clock_rate);
+        self.image.clock_rate = clock_rate;
         if let Some(coils) = &mut self.coils {
             let unselective = self.faults.dead(Place::CodeSeparation);
             coils.suffer(atp_gain(&self.faults), unselective);
@@ -253,7 +253,7 @@ impl Unit {
         if self.scanned.receiver_taken {
             self.functions.atp.forget_code();
         }
-        if self.board.modem().sends() {
+        if self.board.modem.sends() {
             self.functions.twc.forget();
         }
     }
@@ -320,7 +320,7 @@ impl Unit {
             tra: &self.tra,
             faults: &self.faults,
             guards: self.guards,
-            line_fell: self.relay_watch.line_fell(),
+            line_fell: self.relay_watch.line_fell,
             ever_heard: self.image.ever_heard(),
             barred: false,
         };
@@ -347,8 +347,8 @@ impl Unit {
             outputs: self.contacts,
             limit_cms: tested.atp.limit().to_cms(),
             speed_cms: tested.atp.tachometers().speed().to_cms(),
-            marker: tested.locator.last_marker(),
-            marker_count: tested.locator.count(),
+            marker: tested.locator.last_marker,
+            marker_count: tested.locator.count,
         };
         self.ports.send(now, &output.into(), out);
     }

@@ -35,8 +35,8 @@ pub fn status(unit: &Unit) -> Message {
     let board_code = unit.board.code().unwrap_or_default();
     Status {
         bits: status_bits(unit),
-        mode: sequence.mode(),
-        refusals: sequence.refusals(),
+        mode: sequence.mode,
+        refusals: sequence.refusals,
         code_index: code_index(unit),
         eb_cause: eb_cause(unit),
         fsb_cause: tested.atp.fsb_cause(),
@@ -47,21 +47,21 @@ pub fn status(unit: &Unit) -> Message {
         position_cm: libm::round(tested.locator.position_m() * 100.0) as i32,
         events: unit.log.next_index(),
         rejected_frames: unit.ports.rejected_total() as u16,
-        twc_received: tested.twc.received(),
+        twc_received: tested.twc.received,
         self_test: unit.self_tester.failed(),
         test_signals: unit.board.signals(),
         test_carrier_hz: libm::round(board_code.carrier_hz) as u16,
         test_code_rate_chz: libm::round(board_code.rate_hz * 100.0) as u16,
         test_level_mv: libm::round(board_code.level_mv) as u16,
         test_speed_cms: unit.board.speed().unwrap_or_default().to_cms(),
-        ato_state: tested.ato.state(),
-        wheel_correction_10ppm: libm::round(tested.locator.wheel_correction() * 1e5) as i16,
+        ato_state: tested.ato.state,
+        wheel_correction_10ppm: libm::round(tested.locator.wheel.correction() * 1e5) as i16,
     }
     .into()
 }
 
 fn code_index(unit: &Unit) -> u8 {
-    match unit.tested().atp.decoder().code() {
+    match unit.tested().atp.decoder().code {
         Code::Known(index) => index,
         Code::None | Code::AbsoluteStop => NO_CODE,
     }
@@ -72,17 +72,17 @@ fn code_index(unit: &Unit) -> u8 {
 pub fn train_state(unit: &Unit, now: Instant) -> TrainState {
     let (train, tested) = (&unit.functions, unit.tested());
     let speeds = [0, 1].map(|channel| train.atp.tachometers().channel(channel).to_cms());
-    let tcms = unit.tcms.last();
-    let station = tested.twc.data().copied().unwrap_or_default();
+    let tcms = &unit.tcms.last;
+    let station = tested.twc.data.as_ref().copied().unwrap_or_default();
     let (effort, mode) = unit.commands(now);
-    let modem = unit.board.modem();
+    let modem = &unit.board.modem;
     let test_answer = modem.last_answer();
     TrainState {
         held: 0,
         outputs: unit.contacts,
         asked: unit.asked(),
         mode,
-        asked_mode: tested.atp.sequence().mode(),
+        asked_mode: tested.atp.sequence().mode,
         effort,
         asked_effort: tested.ato_outputs.effort,
         code_index: code_index(unit),
@@ -95,8 +95,8 @@ pub fn train_state(unit: &Unit, now: Instant) -> TrainState {
         lines: train.inputs.lines,
         mode_switch: train.inputs.mode_switch,
         controller: train.inputs.controller,
-        marker: tested.locator.last_marker(),
-        marker_count: tested.locator.count(),
+        marker: tested.locator.last_marker,
+        marker_count: tested.locator.count,
         marker_at_ms: unit.marker_at.1,
         tcms_bits: tcms.bits,
         tcms_effort: tcms.effort,
@@ -105,12 +105,12 @@ pub fn train_state(unit: &Unit, now: Instant) -> TrainState {
         twc_section: station.section,
         twc_loop: station.loop_id,
         twc_train_number: station.train_number,
-        twc_answers: train.twc.answers(),
-        test_answers: modem.answers(),
+        twc_answers: train.twc.answers,
+        test_answers: modem.answers,
         test_answer_station: test_answer.station,
         test_answer_train: test_answer.train_number,
-        test_pulses: unit.board.pulses(),
-        test_markers: unit.board.markers(),
+        test_pulses: unit.board.pulses,
+        test_markers: unit.board.markers,
     }
 }
 
@@ -124,14 +124,14 @@ fn status_bits(unit: &Unit) -> StatusBits {
     let tested = unit.tested();
     let mut bits = StatusBits::empty();
     bits.set(StatusBits::ARMED, unit.maintenance.armed());
-    bits.set(StatusBits::TWC_OK, tested.twc.up());
-    bits.set(StatusBits::TCMS_OK, unit.tcms.alive());
-    bits.set(StatusBits::STATION_VALID, tested.twc.valid());
+    bits.set(StatusBits::TWC_OK, tested.twc.up);
+    bits.set(StatusBits::TCMS_OK, unit.tcms.alive);
+    bits.set(StatusBits::STATION_VALID, tested.twc.valid);
     bits.set(StatusBits::ALIGNED, tested.aligned());
     bits.set(StatusBits::TRA_OK, unit.tra.ok());
     bits.set(StatusBits::ATO_READY, tested.ato_outputs.ready);
     bits.set(StatusBits::STARTED, unit.self_tester.finished());
-    bits.set(StatusBits::INPUTS_OK, unit.image.alive());
+    bits.set(StatusBits::INPUTS_OK, unit.image.alive);
     bits
 }
 

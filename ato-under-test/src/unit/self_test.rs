@@ -37,7 +37,7 @@ impl Unit {
         let seen = SelfTestInputs {
             code_heard: heard == Some(Code::Known(0)),
             tra_answers: inputs.tra_answers,
-            line_due: self.relay_watch.line_due(),
+            line_due: self.relay_watch.line_due,
             line_energised: inputs.lines.contains(TrainLines::EB_LOOP),
             modem_hears: self.self_tester.tests() && self.loop_back(),
             twc_cpu_hands_on: self.self_tester.tests() && self.hands_on_test_data(now),

@@ -75,15 +75,15 @@ impl StateReport {
 impl Unit {
     /// Sends the state at the end of a scan if it is due; `cycle`: `Status` is sent in this scan.
     pub(super) fn tell_train_state(&mut self, now: Instant, cycle: bool, out: &mut Vec<u8>) {
-        if self.tested().locator.count() != self.marker_at.0 {
-            self.marker_at = (self.tested().locator.count(), now.stamp_ms());
+        if self.tested().locator.count != self.marker_at.0 {
+            self.marker_at = (self.tested().locator.count, now.stamp_ms());
         }
         let Some(changes) = self.maintenance.subscribed(now) else {
             self.state_report = StateReport::default();
             return;
         };
         let mut state = report::train_state(self, now);
-        let dated = Dated::of(&state, self.tested().twc.received());
+        let dated = Dated::of(&state, self.tested().twc.received);
         if let Some(held) = self.state_report.step(dated, changes, cycle) {
             state.held = held;
             self.ports.send(now, &Message::from(state), out);

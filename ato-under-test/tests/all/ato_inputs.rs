@@ -208,7 +208,7 @@ proptest! {
             step(&mut ato, &departing(), &unit);
         }
         step(&mut ato, &Drawn { speed_mps: 0.5, ..good.clone() }, &unit);
-        prop_assert_eq!(ato.state(), AtoState::Run);
+        prop_assert_eq!(ato.state, AtoState::Run);
         let mut absurd = good.clone();
         match which {
             0 => absurd.speed_mps = bad,

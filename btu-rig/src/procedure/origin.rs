@@ -13,7 +13,7 @@ pub struct Origin {
     /// Each as a script writes it, for instance `S3 eq. 4` or `default: half the stop tolerance`.
     sources: BTreeSet<String>,
     /// A number among them has no source.
-    lacks: bool,
+    pub lacks: bool,
 }
 
 impl Origin {
@@ -54,11 +54,6 @@ impl Origin {
     /// Adds a source of the limit, such as a change by the bench.
     pub fn add(&mut self, source: String) {
         self.sources.insert(source);
-    }
-
-    /// Whether a number has no source.
-    pub fn lacks(&self) -> bool {
-        self.lacks
     }
 
     /// The sources in one line; `None` without any.
@@ -177,11 +172,11 @@ mod tests {
     fn a_number_without_a_source_is_seen_until_one_is_given() {
         let mut sum = Origin::of("configuration a.b_ms");
         sum.join(&Origin::lacking());
-        assert!(sum.lacks());
+        assert!(sum.lacks);
         sum.fill(&[]);
-        assert!(sum.lacks(), "nothing was given");
+        assert!(sum.lacks, "nothing was given");
         sum.fill(&["default: slack".into()]);
-        assert!(!sum.lacks());
+        assert!(!sum.lacks);
         sum.fill(&["default: of the file".into()]);
         let text = sum.text();
         assert_eq!(

@@ -355,8 +355,8 @@ impl Procedure {
     /// Each limit that names no source: where it stands, and that it has none.
     pub fn without_source(&self) -> Vec<String> {
         let of_step = |step: &Step| {
-            let expected = step.origin.lacks().then(|| "what it expects".to_owned());
-            let measured = step.measures.iter().filter(|m| m.origin.lacks());
+            let expected = step.origin.lacks.then(|| "what it expects".to_owned());
+            let measured = step.measures.iter().filter(|m| m.origin.lacks);
             let measured = measured.map(|m| format!("measurement \"{}\"", m.name));
             let said = |what| {
                 let (path, line, name) = (&self.path, step.line, &step.name);

@@ -67,69 +67,39 @@ pub struct StepResult {
     pub measurements: Vec<Measurement>,
 }
 
-/// Where something failed that is no step of the procedure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outside {
-    /// While the unit was brought up, or settled between two procedures.
-    BringUp,
-    /// In the actions before the first step.
-    SetUp,
-    /// In the actions after the last step.
-    CleanUp,
-    /// While outputs were made safe.
-    SafeOutputs,
-    /// The unit logged an event that no step provoked, while no step was under way.
-    UnprovokedEvent,
-    /// The unit says that its self-test failed.
-    SelfTest,
-    /// The unit's log could not be read to its end, or held more than is kept.
-    UnitLog,
-    /// The link to the unit or the tester itself, while no step was under way.
-    Bench,
-    /// The operator's stop, while no step was under way.
-    Stop,
-    /// The procedure was due and not begun.
-    NotBegun,
-    /// The procedure or the run as a whole.
-    Whole,
+protocol::labelled! {
+    /// Where something failed that is no step of the procedure.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Outside: name {
+        /// While the unit was brought up, or settled between two procedures.
+        BringUp = "bring-up",
+        /// In the actions before the first step.
+        SetUp = "set-up",
+        /// In the actions after the last step.
+        CleanUp = "clean-up",
+        /// While outputs were made safe.
+        SafeOutputs = "safe outputs",
+        /// The unit logged an event that no step provoked, while no step was under way.
+        UnprovokedEvent = "unprovoked event",
+        /// The unit says that its self-test failed.
+        SelfTest = "self-test",
+        /// The unit's log could not be read to its end, or held more than is kept.
+        UnitLog = "unit log",
+        /// The link to the unit or the tester itself, while no step was under way.
+        Bench = "bench",
+        /// The operator's stop, while no step was under way.
+        Stop = "stop",
+        /// The procedure was due and not begun.
+        NotBegun = "not begun",
+        /// The procedure or the run as a whole.
+        Whole = "as a whole",
+    }
 }
 
 impl Outside {
-    /// Every place.
-    pub const ALL: [Self; 11] = [
-        Self::BringUp,
-        Self::SetUp,
-        Self::CleanUp,
-        Self::SafeOutputs,
-        Self::UnprovokedEvent,
-        Self::SelfTest,
-        Self::UnitLog,
-        Self::Bench,
-        Self::Stop,
-        Self::NotBegun,
-        Self::Whole,
-    ];
-
     /// The place of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|place| place.name() == name)
-    }
-
-    /// Name of the place, stored and shown where a step has the name of the script.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::BringUp => "bring-up",
-            Self::SetUp => "set-up",
-            Self::CleanUp => "clean-up",
-            Self::SafeOutputs => "safe outputs",
-            Self::UnprovokedEvent => "unprovoked event",
-            Self::SelfTest => "self-test",
-            Self::UnitLog => "unit log",
-            Self::Bench => "bench",
-            Self::Stop => "stop",
-            Self::NotBegun => "not begun",
-            Self::Whole => "as a whole",
-        }
     }
 }
 

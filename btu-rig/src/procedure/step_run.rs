@@ -30,7 +30,7 @@ const LOG_WITHIN: Duration = Duration::from_ms(60_000);
 
 #[derive(Debug)]
 pub(super) struct StepRun {
-    started: Instant,
+    pub(super) started: Instant,
     actions: ActionRun,
     actions_done: Option<Instant>,
     expectations: Vec<ExpectationRun>,
@@ -101,10 +101,6 @@ impl StepRun {
     /// An answer of the operator is waited for.
     pub(super) fn asks(&self, step: &Step) -> bool {
         self.actions.asks(&step.actions)
-    }
-
-    pub(super) fn started(&self) -> Instant {
-        self.started
     }
 
     /// Takes note of an event of the unit.

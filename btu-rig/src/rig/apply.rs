@@ -42,7 +42,7 @@ impl Rig {
             self.rest_quiescent();
         }
         self.quiescent = false;
-        self.tester.forget_failure();
+        self.tester.exchange.forget_failure();
         match *stimulus {
             Stimulus::Code {
                 carrier_hz,
@@ -120,9 +120,9 @@ impl Rig {
                 self.markers.move_one(psm, by_m)?;
             }
             Stimulus::MarkersAlong { section } => self.lay_section(section)?,
-            Stimulus::Station(data) => self.wayside.set_data(data),
+            Stimulus::Station(data) => self.wayside.data = data,
             Stimulus::Orders(orders) => self.wayside.orders.set(orders),
-            Stimulus::Wayside(condition) => self.wayside.set_condition(condition),
+            Stimulus::Wayside(condition) => self.wayside.condition = condition,
             _ => return self.apply_desk(now, stimulus),
         }
         Ok(())
@@ -144,12 +144,13 @@ impl Rig {
             Stimulus::DoorLine { line, on } => self.desk.line_said[line as usize] = on,
             Stimulus::Hcr { on } => self.desk.hcr = on,
             Stimulus::MaintenanceKey { on } => self.desk.maintenance_key = on,
-            Stimulus::TrainNumber { number } => self.desk.key_in(now, number),
+            Stimulus::TrainNumber { number } => self.desk.number.key_in(now, number),
             Stimulus::WheelDiameter { diameter_mm } => {
                 let most_mm = U16_MAX / 10.0;
                 let diameter_mm = in_range("wheel diameter", diameter_mm, 0.0, most_mm, "mm")?;
                 self.desk
-                    .key_in_wheel(now, (diameter_mm * 10.0).round() as u16);
+                    .wheel
+                    .key_in(now, (diameter_mm * 10.0).round() as u16);
             }
             Stimulus::ModeSwitch(position) => self.desk.mode_switch = position,
             Stimulus::Controller { lever } => self.desk.lever = lever,
@@ -159,7 +160,7 @@ impl Rig {
                     .transpose()?;
             }
             Stimulus::ControllerContacts { contacts } => self.desk.contacts = contacts,
-            Stimulus::Switch { switch, on } => self.desk.switch(switch, on),
+            Stimulus::Switch { switch, on } => self.desk.switches.set(switch, on),
             Stimulus::CutOut { what, car, on } => {
                 let place = self.place_of(car, what == CutOut::Inverter)?;
                 self.desk.cut_out(what, place, on);
@@ -178,7 +179,7 @@ impl Rig {
             Stimulus::Tcms(condition) => self.tcms_port.condition = condition,
             Stimulus::AtoEnable { on } => self.tcms_port.ato_enable = on,
             Stimulus::Load { passengers_kg } => {
-                let full_kg = self.train.full_load_kg();
+                let full_kg = self.train.full_load_kg;
                 self.tcms_port.load_kg = in_range("load", passengers_kg, 0.0, full_kg, "kg")?;
             }
             _ => return self.apply_ptu(now, stimulus),
@@ -188,7 +189,7 @@ impl Rig {
 
     /// Stimuli that go through the unit's TEST board.
     fn apply_ptu(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
-        let session = self.tester.session();
+        let session = self.tester.session;
         let request = match *stimulus {
             Stimulus::PtuArm => Request::Arm {
                 refusal_fails: true,
@@ -248,7 +249,7 @@ impl Rig {
             }
             TachoCondition::Good | TachoCondition::Dead | TachoCondition::Reversed => {}
         }
-        let distance_m = self.wheel.axle().distance_m;
+        let distance_m = self.wheel.axle.distance_m;
         let tacho = usize::from(channel)
             .checked_sub(1)
             .and_then(|i| self.tachos.get_mut(i));
@@ -347,7 +348,7 @@ impl Rig {
         if self.codes_along {
             self.check_codes(section)?;
         }
-        let position_m = self.wheel.motion().position_m;
+        let position_m = self.wheel.motion.position_m;
         self.markers.lay(section, position_m);
         self.track = Some(Track::new(section.clone(), position_m));
         Ok(())

@@ -35,9 +35,12 @@ pub trait UnitLink {
 /// A rig with its unit. Time is virtual; over a port the caller paces the ticks.
 #[derive(Debug)]
 pub struct Bench<L> {
-    rig: Rig,
-    link: L,
-    now: Instant,
+    /// The rig, to be looked at: sample, events, tester session.
+    pub rig: Rig,
+    /// The unit's side.
+    pub link: L,
+    /// Time of the last tick.
+    pub now: Instant,
     to_unit: Vec<u8>,
     from_unit: Vec<u8>,
 }
@@ -69,30 +72,5 @@ impl<L: UnitLink> Bench<L> {
         self.rig.receive(self.now, &self.from_unit);
         // A tester that is turned away gets the reason, and then the connection is closed.
         exchanged.map_err(|broken| self.rig.turned_away().unwrap_or(broken))
-    }
-
-    /// Time of the last tick.
-    pub fn now(&self) -> Instant {
-        self.now
-    }
-
-    /// The rig, to be looked at: sample, events, tester session.
-    pub fn rig(&self) -> &Rig {
-        &self.rig
-    }
-
-    /// The rig, to be driven.
-    pub fn rig_mut(&mut self) -> &mut Rig {
-        &mut self.rig
-    }
-
-    /// The unit's side.
-    pub fn link(&self) -> &L {
-        &self.link
-    }
-
-    /// The unit's side, to be changed.
-    pub fn link_mut(&mut self) -> &mut L {
-        &mut self.link
     }
 }

@@ -16,7 +16,7 @@ impl Rig {
 
     /// How the unit is reached, once that is known.
     pub fn connection(&self) -> Option<Connection> {
-        self.harness.found().map(|harness| match harness {
+        self.harness.found.map(|harness| match harness {
             true => Connection::Btu,
             false => Connection::Ptu,
         })
@@ -24,7 +24,7 @@ impl Rig {
 
     /// Whether it is known which signals the unit reports.
     pub fn knows_what_is_told(&self) -> bool {
-        self.harness.found().is_some() && self.subscription.settled()
+        self.harness.found.is_some() && self.subscription.settled()
     }
 
     /// Why a procedure cannot be run on this connection, if so: it needs the harness, or what this unit does not

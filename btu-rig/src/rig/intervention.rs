@@ -9,7 +9,7 @@ impl Rig {
     /// can be judged: it was started again, or ended the session by itself. On a bench there is no other tester. A unit that
     /// restarts by itself says so in its log, which is read first.
     pub fn take_intervention(&mut self) -> Option<Finding> {
-        let restarts = self.tester.restarts();
+        let restarts = self.tester.restarts;
         let told = self.tester.restarted_itself(self.now);
         let new = told.filter(|_| self.restarts_told != restarts);
         let restarted = new == Some(false);

@@ -19,7 +19,7 @@ impl Rig {
         self.desk.line_said = Default::default();
         self.door_gear = DoorGear::default();
         self.tcms_port.reset();
-        self.wayside.set_condition(WaysideCondition::Good);
+        self.wayside.condition = WaysideCondition::Good;
         self.tester.make_safe(now);
         self.making_safe = true;
         self.finish_making_safe();
@@ -50,7 +50,7 @@ impl Rig {
         self.track = None;
         self.desk.reset(self.now);
         self.wayside.reset(&self.line.sections[0]);
-        let distance_m = self.wheel.axle().distance_m;
+        let distance_m = self.wheel.axle.distance_m;
         for tacho in &mut self.tachos {
             tacho.set_condition(TachoCondition::Good, distance_m);
         }

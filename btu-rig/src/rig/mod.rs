@@ -231,10 +231,10 @@ impl Rig {
     pub fn step(&mut self, now: Instant, out: &mut Vec<u8>) {
         self.now = now;
         self.watch.step(now);
-        if self.wayside.condition() == WaysideCondition::Corrupt {
+        if self.wayside.condition == WaysideCondition::Corrupt {
             self.line_watch.note_on_purpose(now);
         }
-        self.line_watch.step(now, self.link.counters());
+        self.line_watch.step(now, &self.link.counters);
         self.latest.step(now, self.harness.is_there());
         if self.quiescent {
             // The unit may ask for the holding brake a little longer: the next procedure knows nothing
@@ -251,16 +251,16 @@ impl Rig {
         self.follow_codes();
         self.antenna.step();
         for tacho in &mut self.tachos {
-            tacho.step(self.wheel.axle());
+            tacho.step(&self.wheel.axle);
         }
-        self.markers.step(self.wheel.motion());
+        self.markers.step(&self.wheel.motion);
         self.finish_making_safe();
 
         if self.harness.is_there() {
             self.play_train(now, out);
         }
         self.tester.step(now, &mut self.link, out);
-        if self.harness.found().is_some() && self.tester.speaks_since().is_some() {
+        if self.harness.found.is_some() && self.tester.speaks_since().is_some() {
             let changes = !self.harness.is_there();
             self.subscription.step(now, changes, &mut self.link, out);
         }
@@ -286,9 +286,9 @@ impl Rig {
             let in_coils = InCoils {
                 codes: self.antenna.arriving(),
                 twc: &self.in_loop,
-                motion: self.wheel.motion(),
+                motion: &self.wheel.motion,
                 markers: &mut self.markers.along(),
-                asked_marker: self.markers.asked(),
+                asked_marker: self.markers.asked,
             };
             coils.send(now, &mut input, in_coils, &mut self.link, out);
             self.in_loop.clear();
@@ -299,7 +299,7 @@ impl Rig {
             doors_closed: self.desk.doors_proved(),
             hcr: self.desk.hcr_energised(),
         };
-        if let Some(message) = self.tcms_port.step(now, self.tcms.view(), seen) {
+        if let Some(message) = self.tcms_port.step(now, &self.tcms.view, seen) {
             self.link.send(now, &message.into(), out);
         }
         let in_loop = if by_wave[1] { &mut self.in_loop } else { out };
@@ -321,7 +321,7 @@ impl Rig {
     /// Bench and unit both stood still for so long, which is no time for either.
     pub fn note_pause(&mut self, now: Instant, pause: Duration) {
         self.note_stalled(now);
-        self.tester.put_off_time(pause);
+        self.tester.clock.put_off(pause);
     }
 
     /// What the unit logged before it was first heard is not read.
@@ -331,7 +331,7 @@ impl Rig {
 
     /// Tells the unit the time, now and after each restart.
     pub fn tell_time(&mut self, time: TimeOfDay) {
-        self.tester.tell_time(time);
+        self.tester.clock.tell(time);
     }
 
     /// The wheels do what was last asked of them: speed reached, or distance run.
@@ -342,19 +342,19 @@ impl Rig {
     /// What the unit's inputs see at `now`.
     fn io_input(&self, now: Instant) -> IoInput {
         let [one, two] = &self.tachos;
-        let backward = self.wheel.backward();
+        let backward = self.wheel.backward;
         IoInput {
             carrier_hz: self.antenna.carrier_hz(),
             code_rate_chz: self.antenna.rate_chz(),
             level_mv: self.antenna.level_mv(),
-            tacho1_count: one.count(),
+            tacho1_count: one.count,
             tacho1_edge_us: one.age_us(),
-            tacho2_count: two.count(),
+            tacho2_count: two.count,
             tacho2_edge_us: two.age_us(),
             tacho_backward: u8::from(one.tells_backward(backward))
                 | u8::from(two.tells_backward(backward)) << 1,
-            marker: self.markers.last(),
-            marker_edges: self.markers.edges(),
+            marker: self.markers.last,
+            marker_edges: self.markers.edges,
             marker_edge_us: self.markers.age_us(),
             lines: self.desk.lines(now),
             mode_switch: self.desk.mode_switch,

@@ -18,7 +18,7 @@ impl Rig {
                 .on_frame(now, received.header.channel, stamp_ms);
             self.harness.note_frame(now, received.header.channel);
             self.watch
-                .note_frame(received.header.channel, self.link.counters());
+                .note_frame(received.header.channel, &self.link.counters);
             let harness = self.harness.is_there();
             match &received.message {
                 Message::IoOutput(_)
@@ -32,7 +32,7 @@ impl Rig {
                 }
                 Message::AtcToTcms(command) => {
                     if !self.tcms_port.silent() {
-                        self.tcms.receive(now, command);
+                        self.tcms.atc.receive(now, command);
                     }
                     self.latest.on_tcms(now, command);
                 }
@@ -47,7 +47,7 @@ impl Rig {
                 Message::Taken(taken) => self.watch.note_taken(*taken),
                 Message::TrainState(state) => {
                     self.latest.on_train_state(now, state, harness);
-                    let counters = self.link.counters();
+                    let counters = &self.link.counters;
                     self.subscription.on_state(stamp_ms, state, counters);
                     if !harness {
                         // The next one is for the next scan, so that each scan's sample has one stamp.
@@ -60,9 +60,9 @@ impl Rig {
     }
 
     fn on_tester(&mut self, now: Instant, stamp_ms: u32, message: &Message) {
-        let restarts = self.tester.restarts();
+        let restarts = self.tester.restarts;
         self.tester.receive(now, message);
-        if self.tester.restarts() != restarts {
+        if self.tester.restarts != restarts {
             self.line_watch.note_restart(now);
             self.subscription.restart();
         }

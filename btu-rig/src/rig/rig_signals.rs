@@ -15,7 +15,7 @@ impl Rig {
             return;
         }
         self.latest.note_lines(self.desk.lines(self.now));
-        let data = self.wayside.data();
+        let data = &self.wayside.data;
         let sample = &mut self.latest.sample;
         for (signal, value) in [
             (Signal::CarrierHz, f64::from(self.antenna.carrier_hz())),
@@ -26,13 +26,13 @@ impl Rig {
             (Signal::LevelMv, f64::from(self.antenna.level_mv())),
             (Signal::CrosstalkMv, f64::from(self.antenna.second_mv())),
             (Signal::TrainSpeed, self.wheel.speed().kmh()),
-            (Signal::TrainPosition, self.wheel.motion().position_m),
+            (Signal::TrainPosition, self.wheel.motion.position_m),
             (Signal::TrainAccel, self.speeds.accel_mps2()),
             (Signal::TrainJerk, self.speeds.jerk_mps3()),
-            (Signal::Tacho1, condition_index(self.tachos[0].condition())),
-            (Signal::Tacho2, condition_index(self.tachos[1].condition())),
-            (Signal::MarkerCoil, f64::from(self.markers.last())),
-            (Signal::Wayside, wayside_index(self.wayside.condition())),
+            (Signal::Tacho1, condition_index(self.tachos[0].condition)),
+            (Signal::Tacho2, condition_index(self.tachos[1].condition)),
+            (Signal::MarkerCoil, f64::from(self.markers.last)),
+            (Signal::Wayside, wayside_index(self.wayside.condition)),
             (Signal::WaysideStation, f64::from(data.station)),
             (Signal::WaysideLoop, f64::from(data.loop_id)),
             (Signal::WaysideDoorSide, f64::from(data.door_side.code())),
@@ -48,12 +48,12 @@ impl Rig {
         ] {
             sample.set(signal, value);
         }
-        if let Some(answered) = self.wayside.orders.answered() {
+        if let Some(answered) = self.wayside.orders.answered {
             sample.set_bit(Signal::OrdersAnswered, answered);
         }
         match &self.track {
             Some(track) => {
-                let to_stop_m = track.to_stop_m(self.wheel.motion().position_m);
+                let to_stop_m = track.to_stop_m(self.wheel.motion.position_m);
                 sample.set(Signal::ToStop, to_stop_m);
             }
             None => sample.forget(Signal::ToStop),

@@ -31,9 +31,9 @@ impl Rig {
     /// Changes how train and track differ from what the unit is configured for, from now on.
     pub fn set_conditions(&mut self, conditions: Conditions) {
         self.train.set_conditions(&conditions);
-        self.markers.set_offsets(conditions.marker_offsets_m);
+        self.markers.offsets_m = conditions.marker_offsets_m;
         let pulse_m = self.metres_per_pulse * conditions.wheel_factor;
-        let distance_m = self.wheel.axle().distance_m;
+        let distance_m = self.wheel.axle.distance_m;
         for tacho in &mut self.tachos {
             tacho.set_metres_per_pulse(pulse_m, distance_m);
         }
@@ -51,14 +51,14 @@ impl Rig {
 
     /// Passengers aboard unless a procedure says otherwise, kg; what the train cannot carry stays behind.
     pub fn set_usual_load(&mut self, passengers_kg: f64) {
-        let load_kg = passengers_kg.clamp(0.0, self.train.full_load_kg());
+        let load_kg = passengers_kg.clamp(0.0, self.train.full_load_kg);
         self.tcms_port.usual_load_kg = load_kg;
         self.tcms_port.load_kg = load_kg;
     }
 
     /// What the train really does at the scan's end.
     pub fn truth(&self) -> TrueMotion {
-        let motion = self.wheel.motion();
+        let motion = &self.wheel.motion;
         let track = self.track.as_ref();
         let state = &self.train_state;
         TrueMotion {
@@ -105,7 +105,7 @@ impl Rig {
             self.cars = weight_shares(&self.train_data, inputs.load_kg);
         }
         if let Some(track) = self.track.as_ref().filter(|_| self.train_driven) {
-            let head_m = self.wheel.motion().position_m;
+            let head_m = self.wheel.motion.position_m;
             let under = track.under(head_m, &self.cars);
             inputs.gradient_permille = under.gradient_permille;
             inputs.curvature_per_m = under.curvature_per_m;

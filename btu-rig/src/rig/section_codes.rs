@@ -11,7 +11,7 @@ impl Rig {
     /// Lets the antenna follow the section's codes, or keep what it has.
     pub(super) fn set_codes_along(&mut self, on: bool) -> Result<(), Refusal> {
         if let Some(track) = self.track.as_ref().filter(|_| on) {
-            self.check_codes(track.section())?;
+            self.check_codes(&track.section)?;
         }
         self.codes_along = on;
         self.code_put_in = None;
@@ -44,7 +44,7 @@ impl Rig {
         let Some(track) = self.track.as_ref().filter(|_| self.codes_along) else {
             return;
         };
-        let Some(name) = track.speed_code(self.wheel.motion().position_m) else {
+        let Some(name) = track.speed_code(self.wheel.motion.position_m) else {
             return;
         };
         let place = find_code(&self.codes, name);

@@ -55,11 +55,11 @@ impl Rig {
             self.tcms_port.fault = self.faults.tcms;
         }
         let equipment = self.train_driven.then(|| self.train.equipment());
-        let refused = self.link.counters().rejected_on(Channel::Tcms);
+        let refused = self.link.counters.rejected_on(Channel::Tcms);
         let desk = &self.desk;
-        let on = |switch| desk.is_on(switch);
+        let on = |switch| desk.switches.on(switch);
         let inputs = TcmsInputs {
-            cabs: desk.cabs(self.tcms.data()),
+            cabs: desk.cabs(&self.tcms.data),
             doors_closed: desk.doors_proved(),
             main_reservoir_low: desk.main_reservoir_low(),
             eb_cut_out: on(TrainSwitch::EbCutOut),
@@ -77,12 +77,12 @@ impl Rig {
         let mut orders = self.tcms.step(self.now, &inputs);
         orders.regeneration_refused = !on(TrainSwitch::Regeneration);
         self.log_tcms();
-        let view = self.tcms.view();
+        let view = &self.tcms.view;
         // Making safe has given the train back to the unit's cab.
         let changes = !self.quiescent && !self.faults.cabs_stay;
         match view.cab_order.filter(|_| changes) {
             Some(CabOrder::GiveUp) => self.desk.hcr = false,
-            Some(CabOrder::TakeUp) => self.desk.switch(TrainSwitch::OtherCab, true),
+            Some(CabOrder::TakeUp) => self.desk.switches.set(TrainSwitch::OtherCab, true),
             None => {}
         }
         let line = view.line;
@@ -120,7 +120,7 @@ impl Rig {
 
     /// Records what TCMS does: bits each scan, efforts once in a cycle, as rows have them.
     pub(super) fn record_tcms(&mut self) {
-        let view = self.tcms.view();
+        let view = &self.tcms.view;
         let sample = &mut self.latest.sample;
         record_words(sample, view);
         let alive = self.tcms_port.alive(self.now);

@@ -17,7 +17,7 @@ impl Rig {
     /// New entries of the unit's log in the order of their indices, each once, and of TCMS's. Indices
     /// of the unit begin from the start when it is started again.
     pub fn take_events(&mut self) -> Vec<UnitEvent> {
-        let mut events = self.tester.take_events();
+        let mut events = self.tester.log.take();
         events.append(&mut self.tcms_events);
         events
     }
@@ -25,23 +25,23 @@ impl Rig {
     /// Entries the log had when the unit was first heard: those with a lower index are older than
     /// this bench's work. 0 after a restart of the unit, `None` before it is heard.
     pub fn events_at_contact(&self) -> Option<u32> {
-        self.tester.events_at_contact()
+        self.tester.events_at_contact
     }
 
     /// Every event the unit says it has logged has been read.
     pub fn log_up_to_date(&self) -> bool {
-        self.tester.log().up_to_date()
+        self.tester.log.up_to_date()
     }
 
     /// Log entries that were overwritten or cleared in the unit before they could be read, and those of
     /// TCMS that were not taken in time.
     pub fn events_overwritten(&self) -> u64 {
-        self.tester.log().overwritten() + self.tcms_dropped + u64::from(self.tcms.events_lost())
+        self.tester.log.overwritten + self.tcms_dropped + u64::from(self.tcms.events_lost())
     }
 
     /// Identity of the unit, once the unit has told it.
     pub fn identity(&self) -> Option<&Identity> {
-        self.tester.identity()
+        self.tester.identity.as_ref()
     }
 
     /// Time at which the last frame of the unit came, and the unit's clock when the frame was made,
@@ -52,7 +52,7 @@ impl Rig {
 
     /// Times the unit was started again since it was first heard.
     pub fn unit_restarts(&self) -> u32 {
-        self.tester.restarts()
+        self.tester.restarts
     }
 
     /// Trouble because of which nothing can be judged, after a time allowed for first contact: of the
@@ -73,10 +73,10 @@ impl Rig {
     pub fn evidence(&self) -> Evidence {
         Evidence {
             log: self.tester.log_state(self.now),
-            not_kept: self.tester.log().not_kept(),
+            not_kept: self.tester.log.not_kept,
             line: self.line_watch.state(),
-            clock_wrong_by_permille: self.line_watch.clock_wrong_by_permille(),
-            self_test: self.tester.self_test(),
+            clock_wrong_by_permille: self.line_watch.rate.wrong_by_permille(),
+            self_test: self.tester.self_test,
             unit_time: self.subscription.unit_time(),
         }
     }
@@ -103,6 +103,6 @@ impl Rig {
 
     /// Frames taken and refused by the rig.
     pub fn counters(&self) -> &Counters {
-        self.link.counters()
+        &self.link.counters
     }
 }

@@ -34,71 +34,41 @@ pub enum WaysideCondition {
     Corrupt,
 }
 
-/// Doors of one side.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum DoorState {
-    /// At least one is open.
-    Open,
-    /// All are closed, at least one is not locked.
-    Unlocked,
-    /// All are closed and locked.
-    #[default]
-    Locked,
+protocol::labelled! {
+    /// Doors of one side.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum DoorState: label {
+        /// At least one is open.
+        Open = "open",
+        /// All are closed, at least one is not locked.
+        Unlocked = "closed, not locked",
+        /// All are closed and locked.
+        #[default]
+        Locked = "closed",
+    }
 }
 
-/// A door train line, as it ends at the unit's terminals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum DoorLine {
-    /// Through the closed contacts of all doors.
-    All,
-    LeftClosed,
-    LeftLocked,
-    RightClosed,
-    RightLocked,
-    /// Says that the train reports doors by side.
-    BySide,
+protocol::labelled! {
+    /// A door train line, as it ends at the unit's terminals.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum DoorLine: label {
+        /// Through the closed contacts of all doors.
+        All = "all",
+        LeftClosed = "left_closed",
+        LeftLocked = "left_locked",
+        RightClosed = "right_closed",
+        RightLocked = "right_locked",
+        /// Says that the train reports doors by side.
+        BySide = "by_side",
+    }
 }
 
 impl DoorLine {
-    /// Names in scripts, in the order of the variants.
-    pub const LABELS: &'static [&'static str] = &[
-        "all",
-        "left_closed",
-        "left_locked",
-        "right_closed",
-        "right_locked",
-        "by_side",
-    ];
-    /// All, in the same order.
-    pub const ALL: [Self; 6] = [
-        Self::All,
-        Self::LeftClosed,
-        Self::LeftLocked,
-        Self::RightClosed,
-        Self::RightLocked,
-        Self::BySide,
-    ];
-
-    /// The line called `label`.
+    /// The line that scripts call so.
     pub fn from_label(label: &str) -> Option<Self> {
-        let place = Self::LABELS.iter().position(|known| *known == label)?;
-        Some(Self::ALL[place])
-    }
-
-    pub const fn label(self) -> &'static str {
-        Self::LABELS[self as usize]
-    }
-}
-
-impl DoorState {
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Open => "open",
-            Self::Unlocked => "closed, not locked",
-            Self::Locked => "closed",
-        }
+        Self::ALL.into_iter().find(|line| line.label() == label)
     }
 }
 
@@ -114,72 +84,47 @@ pub enum TcmsCondition {
     Stale,
 }
 
-/// A switch, contact or valve of the train that is on or off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TrainSwitch {
-    /// Head control relay of the other cab.
-    OtherCab,
-    /// Dead man held down.
-    DeadMan,
-    /// Emergency push button of the first cab, the one the unit is in.
-    Button1,
-    /// Emergency push button of the other cab.
-    Button2,
-    /// Emergency brake cut out.
-    EbCutOut,
-    /// Main reservoir pressure low.
-    MainReservoirLow,
-    SecurityBrake,
-    ParkingBrake,
-    /// Button for release of the brakes by force.
-    ForcedRelease,
-    /// Driverless initialisation or turn-back.
-    TurnBack,
-    /// The line takes regenerated power.
-    Regeneration,
-}
-
-impl TrainSwitch {
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::OtherCab => "head control relay of the other cab",
-            Self::DeadMan => "dead man held",
-            Self::Button1 => "emergency button of the first cab",
-            Self::Button2 => "emergency button of the other cab",
-            Self::EbCutOut => "emergency brake cut-out",
-            Self::MainReservoirLow => "main reservoir low",
-            Self::SecurityBrake => "security brake",
-            Self::ParkingBrake => "parking brake",
-            Self::ForcedRelease => "forced release",
-            Self::TurnBack => "driverless turn-back",
-            Self::Regeneration => "line takes regenerated power",
-        }
+protocol::labelled! {
+    /// A switch, contact or valve of the train that is on or off.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum TrainSwitch: label {
+        /// Head control relay of the other cab.
+        OtherCab = "head control relay of the other cab",
+        /// Dead man held down.
+        DeadMan = "dead man held",
+        /// Emergency push button of the first cab, the one the unit is in.
+        Button1 = "emergency button of the first cab",
+        /// Emergency push button of the other cab.
+        Button2 = "emergency button of the other cab",
+        /// Emergency brake cut out.
+        EbCutOut = "emergency brake cut-out",
+        /// Main reservoir pressure low.
+        MainReservoirLow = "main reservoir low",
+        SecurityBrake = "security brake",
+        ParkingBrake = "parking brake",
+        /// Button for release of the brakes by force.
+        ForcedRelease = "forced release",
+        /// Driverless initialisation or turn-back.
+        TurnBack = "driverless turn-back",
+        /// The line takes regenerated power.
+        Regeneration = "line takes regenerated power",
     }
 }
 
-/// Failure of a car's equipment that a bench makes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CarFailure {
-    /// The inverter does nothing and does not answer.
-    InverterSilent,
-    /// The brake control unit does nothing and does not answer.
-    BrakeUnitSilent,
-    /// The brake cylinders get no pressure of the service brake.
-    CylinderEmpty,
-    /// The brake cylinders keep the pressure they have.
-    BrakeStuck,
-}
-
-impl CarFailure {
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::InverterSilent => "inverter silent",
-            Self::BrakeUnitSilent => "brake control unit silent",
-            Self::CylinderEmpty => "brake cylinders empty",
-            Self::BrakeStuck => "brake stuck",
-        }
+protocol::labelled! {
+    /// Failure of a car's equipment that a bench makes.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum CarFailure: label {
+        /// The inverter does nothing and does not answer.
+        InverterSilent = "inverter silent",
+        /// The brake control unit does nothing and does not answer.
+        BrakeUnitSilent = "brake control unit silent",
+        /// The brake cylinders get no pressure of the service brake.
+        CylinderEmpty = "brake cylinders empty",
+        /// The brake cylinders keep the pressure they have.
+        BrakeStuck = "brake stuck",
     }
 }
 

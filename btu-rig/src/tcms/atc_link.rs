@@ -31,8 +31,10 @@ pub struct AtoOrder {
 pub struct AtcLink {
     timeout: Duration,
     heard: Option<(Instant, AtcToTcms)>,
-    silent: bool,
-    contradictions: u32,
+    /// No frames for too long.
+    pub silent: bool,
+    /// Times the unit began to contradict itself.
+    pub contradictions: u32,
     contradicts: bool,
 }
 
@@ -89,16 +91,6 @@ impl AtcLink {
             change_of_cabs: bits.contains(AtcToTcmsBits::CHANGE_OF_CABS),
             put_away: bits.contains(AtcToTcmsBits::PUT_AWAY),
         }
-    }
-
-    /// No frames for too long.
-    pub fn silent(&self) -> bool {
-        self.silent
-    }
-
-    /// Times the unit began to contradict itself.
-    pub fn contradictions(&self) -> u32 {
-        self.contradictions
     }
 
     /// Effort last ordered, for the event.

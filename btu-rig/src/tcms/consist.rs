@@ -52,10 +52,14 @@ pub struct Consist {
     pub air_n: PerCar,
     /// Greatest traction of each car at the present load, N: TE_w times the greatest (S3).
     pub power_n: PerCar,
-    full_inertia_kg: f64,
-    service_mps2: f64,
-    power_mps2: f64,
-    load_kg: f64,
+    /// Braking mass of the full train, kg.
+    pub full_inertia_kg: f64,
+    /// Full service brake, m/s².
+    pub service_mps2: f64,
+    /// Full power, m/s², of the train's braking mass.
+    pub power_mps2: f64,
+    /// Passengers it is weighed with, kg.
+    pub load_kg: f64,
 }
 
 impl Consist {
@@ -94,7 +98,7 @@ impl Consist {
         let full_kg: f64 = self.data.cars.iter().map(|car| car.full_load_kg).sum();
         // `max` also takes what is not a number for an empty train.
         let share = (load_kg.max(0.0) / full_kg.max(1.0)).min(1.0);
-        let service_mps2 = self.service_mps2();
+        let service_mps2 = self.service_mps2;
         for pair in &mut self.pairs {
             pair.inertia_kg = 0.0;
         }
@@ -116,21 +120,6 @@ impl Consist {
         }
     }
 
-    /// Passengers it is weighed with, kg.
-    pub fn load_kg(&self) -> f64 {
-        self.load_kg
-    }
-
-    /// Full service brake, m/s².
-    pub fn service_mps2(&self) -> f64 {
-        self.service_mps2
-    }
-
-    /// Full power, m/s², of the train's braking mass.
-    pub fn power_mps2(&self) -> f64 {
-        self.power_mps2
-    }
-
     /// Effort of each car's air brake beyond its greatest service brake, N: its emergency brake gives it, at the
     /// present load.
     pub fn more_air_n(&self) -> PerCar {
@@ -138,14 +127,9 @@ impl Consist {
         std::array::from_fn(|car| (self.full_service_n[car] * emergency - self.air_n[car]).max(0.0))
     }
 
-    /// Braking mass of the full train, kg.
-    pub fn full_inertia_kg(&self) -> f64 {
-        self.full_inertia_kg
-    }
-
     /// Greatest braking effort of the full train, N [S3 eq. 4-1, without its rounding].
     pub fn full_brake_n(&self) -> f64 {
-        self.full_inertia_kg() * self.service_mps2()
+        self.full_inertia_kg * self.service_mps2
     }
 
     /// Greatest traction of one motor car of the full train, N.

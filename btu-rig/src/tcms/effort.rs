@@ -86,7 +86,7 @@ impl Effort {
             departs: false,
             sharing: Sharing::new(&consist, CarSet::NONE, CarSet::NONE),
             shared_for: SharingInputs {
-                load_kg: consist.load_kg(),
+                load_kg: consist.load_kg,
                 no_electric: CarSet::NONE,
                 no_air: CarSet::NONE,
             },
@@ -111,7 +111,7 @@ impl Effort {
 
     /// Air brake each car should have by now, N, by what it was asked for and the times it takes.
     pub fn air_due_n(&self) -> &PerCar {
-        self.air_due.effort_n()
+        &self.air_due.effort_n
     }
 
     /// One scan's demands. Without equipment, inverters give what they are asked for.
@@ -120,7 +120,7 @@ impl Effort {
         let mut demands = Demands::default();
         let brake_mps2 = (-self.effort_mps2).max(self.held_mps2);
         if self.effort_mps2 > 0.0 {
-            let share = self.effort_mps2 / self.consist.power_mps2();
+            let share = self.effort_mps2 / self.consist.power_mps2;
             demands.motor_n = powering(&self.consist, share, order.speed_mps, order.inverters_out);
         }
         if brake_mps2 > 0.0 {
@@ -162,12 +162,12 @@ impl Effort {
         // Speed goes down by what is braked: gradients and resistance change little in this time.
         let ahead_mps = order.speed_mps - brake_mps2 * self.air_later_s;
         let brakes = self.sharing.braking(&BrakingInputs {
-            share: brake_mps2 / self.consist.service_mps2(),
+            share: brake_mps2 / self.consist.service_mps2,
             pattern: braking::pattern(&self.consist, order.speed_mps),
             pattern_ahead: braking::pattern(&self.consist, ahead_mps),
             // S3 eq. 8: DBE1 − EFM, less what is only on its way.
             inverters: equipment.map(|equipment| Inverters {
-                due_n: self.motors_due.effort_n(),
+                due_n: &self.motors_due.effort_n,
                 electric_n: &equipment.electric_n,
             }),
         });
@@ -181,7 +181,7 @@ impl Effort {
     /// Recalculates the shares when load or cut-outs have changed.
     fn share_between(&mut self, no_electric: CarSet, no_air: CarSet) {
         let wanted = SharingInputs {
-            load_kg: self.consist.load_kg(),
+            load_kg: self.consist.load_kg,
             no_electric,
             no_air,
         };
@@ -200,9 +200,9 @@ impl Effort {
             order.share.clamp(-1.0, 1.0)
         };
         let full = if share < 0.0 {
-            self.consist.service_mps2()
+            self.consist.service_mps2
         } else {
-            self.consist.power_mps2()
+            self.consist.power_mps2
         };
         // What cuts powering, the emergency brake's contacts among it, takes it off without a ramp; only
         // brakes then build up by the jerk limit.
@@ -214,7 +214,7 @@ impl Effort {
         let rise = self.rise_at_departure(step, dt_s, order.holding, equipment);
         self.effort_mps2 += change.clamp(-step, rise);
         if order.holding {
-            let held = self.consist.data.service_brake.holding_share * self.consist.service_mps2();
+            let held = self.consist.data.service_brake.holding_share * self.consist.service_mps2;
             self.held_mps2 = self.held_mps2.max(-self.effort_mps2).min(held);
             self.held_mps2 += (held - self.held_mps2).clamp(0.0, step);
         } else {

@@ -30,7 +30,7 @@ pub(super) struct Scan<'a> {
 pub(super) struct Report {
     events: Vec<TcmsEvent>,
     /// Events that were not taken in time.
-    lost: u32,
+    pub lost: u32,
     found: EquipmentFailures,
     regeneration: CarSet,
     /// All inverters have cut out together: the line takes nothing.
@@ -65,11 +65,6 @@ impl Report {
 
     pub fn take(&mut self) -> Vec<TcmsEvent> {
         std::mem::take(&mut self.events)
-    }
-
-    /// Events lost because they were not taken in time.
-    pub fn lost(&self) -> u32 {
-        self.lost
     }
 
     /// Logs what began in this scan.
@@ -165,7 +160,7 @@ impl Report {
 
     /// The link to the unit.
     fn link(&mut self, now: Instant, scan: &Scan<'_>) {
-        let contradictions = scan.atc.contradictions();
+        let contradictions = scan.atc.contradictions;
         if contradictions != self.contradictions {
             self.contradictions = contradictions;
             self.note(Event::AtoOrderContradicts, i32::from(scan.atc.effort()));
@@ -176,7 +171,7 @@ impl Report {
             self.note(Event::AtcFramesRefused, parameter);
         }
         // Silence before the unit was first heard is a unit that is not switched on yet.
-        let silent = scan.atc.silent();
+        let silent = scan.atc.silent;
         match (self.silent, silent) {
             (Some(false), true) => self.note(Event::AtcSilent, 0),
             (Some(true), false) => self.note(Event::AtcRestored, 0),

@@ -2,7 +2,7 @@
 
 mod driving;
 
-use protocol::message::{AtcToTcms, Outputs};
+use protocol::message::Outputs;
 use protocol::{Duration, Instant};
 
 use crate::train::{CarSet, MAX_CARS, TrainData, TrainInputs};
@@ -31,8 +31,9 @@ const LONGEST_STEP_S: f64 = 0.05;
 /// Train control and monitoring system of one train, stepped every 20 ms of virtual time.
 #[derive(Clone, Debug)]
 pub struct Tcms {
-    data: TcmsData,
-    atc: AtcLink,
+    /// Times and thresholds of the train's file.
+    pub data: TcmsData,
+    pub atc: AtcLink,
     /// Sharing out of effort; a point mass has nothing to share it over.
     effort: Option<Effort>,
     full_load_kg: f64,
@@ -49,7 +50,8 @@ pub struct Tcms {
     full_service_otherwise: bool,
     /// When it was stepped last.
     stepped: Option<Instant>,
-    view: TcmsView,
+    /// Result of the last scan.
+    pub view: TcmsView,
     report: Report,
 }
 
@@ -96,11 +98,6 @@ impl Tcms {
         }
     }
 
-    /// Times and thresholds of the train's file.
-    pub fn data(&self) -> &TcmsData {
-        &self.data
-    }
-
     /// No effort, nothing found and nothing latched, as when the train is newly put on the track. A
     /// holding brake that is asked for is on again in the next scan; one by hand has to last its time again.
     pub fn rest(&mut self) {
@@ -118,16 +115,6 @@ impl Tcms {
         self.cab_change.leave();
     }
 
-    /// Takes a frame of the unit.
-    pub fn receive(&mut self, now: Instant, frame: &AtcToTcms) {
-        self.atc.receive(now, frame);
-    }
-
-    /// Result of the last scan.
-    pub fn view(&self) -> &TcmsView {
-        &self.view
-    }
-
     /// Events since the last call, oldest first.
     pub fn take_events(&mut self) -> Vec<TcmsEvent> {
         self.report.take()
@@ -135,7 +122,7 @@ impl Tcms {
 
     /// Events lost because they were not taken in time.
     pub fn events_lost(&self) -> u32 {
-        self.report.lost()
+        self.report.lost
     }
 
     /// One scan; returns the demands on the train.
@@ -220,7 +207,7 @@ impl Tcms {
             load_kg.clamp(0.0, self.full_load_kg)
         };
         if let Some(effort) = &mut self.effort
-            && effort.consist.load_kg() != load_kg
+            && effort.consist.load_kg != load_kg
         {
             effort.consist.weigh(load_kg);
             self.monitor.weigh(effort.consist.full_service_n);

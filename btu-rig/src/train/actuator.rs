@@ -40,7 +40,8 @@ pub(crate) struct Actuators {
     /// Demands on their way, oldest at `next`.
     line: Vec<PerCar>,
     next: usize,
-    effort_n: PerCar,
+    /// Effort at the end of the last step.
+    pub effort_n: PerCar,
 }
 
 impl Actuators {
@@ -66,11 +67,6 @@ impl Actuators {
     pub fn reset(&mut self) {
         self.line.fill([0.0; MAX_CARS]);
         self.effort_n = [0.0; MAX_CARS];
-    }
-
-    /// Effort at the end of the last step.
-    pub fn effort_n(&self) -> &PerCar {
-        &self.effort_n
     }
 
     /// One step toward the demand of a dead time ago.

@@ -47,7 +47,7 @@ pub(super) struct Formation {
     /// Meaning of the last step's inputs for reports.
     cut_out: CutOut,
     efforts: Efforts,
-    velocity_mps: f64,
+    pub velocity_mps: f64,
     accel_mps2: f64,
     seconds: f64,
 }
@@ -136,10 +136,6 @@ impl Formation {
         self.seconds = 0.0;
     }
 
-    pub fn velocity_mps(&self) -> f64 {
-        self.velocity_mps
-    }
-
     pub fn set_faults(&mut self, faults: EquipmentFaults) {
         self.sound = faults == EquipmentFaults::default();
         self.faults = faults;
@@ -160,7 +156,7 @@ impl Formation {
             brake_units_silent: self.faults.brake_units_dead,
             other_brakes: self.cut_out.others,
         };
-        if self.wheels.disturbed() {
+        if self.wheels.disturbed {
             for i in 0..MAX_CARS {
                 equipment.axle_mps[i] = self.wheels.rim_mps(i).map_or(speed_mps, f64::abs);
                 equipment.traction_n[i] *= self.wheels.left(i);
@@ -266,13 +262,13 @@ impl Formation {
             self.air.step(dt_s, &air_n);
         }
         let emergency = self.emergency.step(dt_s, inputs.emergency);
-        let mut cylinders_n = *self.air.effort_n();
+        let mut cylinders_n = self.air.effort_n;
         if emergency > 0.0 || !self.sound {
             self.fill_cylinders(&mut cylinders_n, emergency, inputs);
         }
         self.cylinders_n = cylinders_n;
         let factor = self.conditions.brake_factor;
-        let motor_n = self.motors.effort_n();
+        let motor_n = &self.motors.effort_n;
         let efforts = &mut self.efforts;
         for i in 0..MAX_CARS {
             efforts.traction_n[i] = motor_n[i].max(0.0);

@@ -15,7 +15,7 @@ pub(super) struct Ideal {
     brake_factor: f64,
     gradient_offset_permille: f64,
     disturbance: Disturbance,
-    velocity_mps: f64,
+    pub(super) velocity_mps: f64,
     seconds: f64,
     /// Efforts of the last step, N: traction and brake.
     efforts_n: (f64, f64),
@@ -75,10 +75,6 @@ impl Ideal {
         self.velocity_mps = velocity_mps;
         self.seconds = 0.0;
         self.efforts_n = (0.0, 0.0);
-    }
-
-    pub(super) fn velocity_mps(&self) -> f64 {
-        self.velocity_mps
     }
 
     /// One car with the whole train's effort.
@@ -194,7 +190,7 @@ mod tests {
         }
         let (accel, r, t) = (0.6 * 3.0 / 3.6, 0.001, f64::from(steps) * DT);
         let speed = accel / r * (1.0 - (-r * t).exp());
-        assert!((train.velocity_mps() - speed).abs() < 1e-10);
+        assert!((train.velocity_mps - speed).abs() < 1e-10);
         let expected = accel / r * (t - (1.0 - (-r * t).exp()) / r);
         assert!((distance - expected).abs() < 1e-6, "{distance} {expected}");
     }
@@ -209,7 +205,7 @@ mod tests {
             let state = train.step(DT, &demand(-1.0));
             distance += state.pieces[0].distance_m();
         }
-        assert_eq!(train.velocity_mps(), 0.0);
+        assert_eq!(train.velocity_mps, 0.0);
         assert!((distance - 50.0 * 3.6 / 3.5).abs() < 1e-6, "{distance}");
     }
 
@@ -234,7 +230,7 @@ mod tests {
                 200 | 400 => 10.0,
                 _ => continue,
             };
-            assert!((train.velocity_mps() - expected).abs() < 1e-5, "{step}");
+            assert!((train.velocity_mps - expected).abs() < 1e-5, "{step}");
         }
     }
 
@@ -257,7 +253,7 @@ mod tests {
                 ..TrainInputs::default()
             };
             let state = train.step(DT, &inputs);
-            let lost_mps = 20.0 - train.velocity_mps();
+            let lost_mps = 20.0 - train.velocity_mps;
             assert!(
                 (lost_mps / DT - share * 3.5 / 3.6).abs() < 1e-9,
                 "{inputs:?}"
@@ -274,9 +270,9 @@ mod tests {
         };
         let mut level = train(|_| (), &Conditions::default());
         level.step(DT, &downhill);
-        assert_eq!(level.velocity_mps(), 0.0);
+        assert_eq!(level.velocity_mps, 0.0);
         let mut rolls = train(|d| d.gradients = true, &Conditions::default());
         rolls.step(DT, &downhill);
-        assert!(rolls.velocity_mps() > 0.0);
+        assert!(rolls.velocity_mps > 0.0);
     }
 }

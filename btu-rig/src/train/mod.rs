@@ -115,7 +115,8 @@ pub struct TrainState {
 #[derive(Clone, Debug)]
 pub struct Train {
     model: Model,
-    full_load_kg: f64,
+    /// Passengers it can carry, kg.
+    pub full_load_kg: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -156,14 +157,9 @@ impl Train {
     /// Speed of the train, m/s, forward positive.
     pub fn velocity_mps(&self) -> f64 {
         match &self.model {
-            Model::Ideal(train) => train.velocity_mps(),
-            Model::Cars(train) => train.velocity_mps(),
+            Model::Ideal(train) => train.velocity_mps,
+            Model::Cars(train) => train.velocity_mps,
         }
-    }
-
-    /// Passengers it can carry, kg.
-    pub fn full_load_kg(&self) -> f64 {
-        self.full_load_kg
     }
 
     /// Lets equipment fail, or be sound again. A point mass has none.

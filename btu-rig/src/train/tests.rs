@@ -61,7 +61,7 @@ impl TrainRun {
     }
 
     fn order(&mut self) {
-        if self.effort.consist.load_kg() != self.inputs.load_kg {
+        if self.effort.consist.load_kg != self.inputs.load_kg {
             self.effort.consist.weigh(self.inputs.load_kg);
         }
         let order = Order {

@@ -54,7 +54,7 @@ pub(super) struct WheelSets {
     weight_n: PerCar,
     inertia_kg: f64,
     /// A car slips or slides, or is still kept below its effort.
-    disturbed: bool,
+    pub disturbed: bool,
     breaks_away: [bool; MAX_CARS],
     /// Speed of the rims of cars that slip or slide, m/s, forward positive.
     rim_mps: PerCar,
@@ -100,11 +100,6 @@ impl WheelSets {
     /// A car slips or slides.
     pub fn sliding(&self) -> bool {
         self.disturbed && self.breaks_away.contains(&true)
-    }
-
-    /// A car slips or slides, or the protection still keeps effort off it.
-    pub fn disturbed(&self) -> bool {
-        self.disturbed
     }
 
     /// Speed of a car's rims if it slips or slides.

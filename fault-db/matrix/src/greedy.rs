@@ -64,7 +64,9 @@ pub(super) fn grow(problem: &Problem<'_>, rollout: Rollout) -> GrownTree {
         let Some(&best) = ranked.first() else {
             continue;
         };
-        if !problem.is_crisp() && (nodes.len() >= MAX_NOISY_NODES || grower.work > NOISY_WORK) {
+        if !problem.matrix.is_crisp()
+            && (nodes.len() >= MAX_NOISY_NODES || grower.work > NOISY_WORK)
+        {
             nodes[node] = Node::Leaf(problem.leaf(&belief, true));
             continue;
         }
@@ -146,7 +148,7 @@ impl<'a> Grower<'a> {
     fn new(problem: &'a Problem<'a>) -> Self {
         let groups = 0..problem.len();
         let (mut fails, mut noise) = (Vec::new(), Vec::new());
-        if problem.is_crisp() {
+        if problem.matrix.is_crisp() {
             fails.extend(groups.map(|group| {
                 let mut bits = Bits::none(problem.tests.len());
                 for (test, cell) in problem.row(group).iter().enumerate() {
@@ -169,7 +171,7 @@ impl<'a> Grower<'a> {
                 .filter(|test| problem.is_worded(*test))
                 .collect(),
             work: 0,
-            rollout_left: match problem.is_crisp() {
+            rollout_left: match problem.matrix.is_crisp() {
                 true => CRISP_ROLLOUT,
                 false => NOISY_ROLLOUT,
             },
@@ -183,13 +185,13 @@ impl<'a> Grower<'a> {
         }
         let cells = belief.members.len() + STEPS_PER_TEST;
         self.work += (cells * self.problem.tests.len() + STEPS_PER_RANKING) as u64;
-        let mut scored = match self.problem.is_crisp() {
+        let mut scored = match self.problem.matrix.is_crisp() {
             true => self.score_crisp(belief),
             false if self.problem.is_decided(belief) => Vec::new(),
             false => self.score_noisy(belief),
         };
         let has_words = !self.worded.is_empty();
-        if has_words && (self.problem.is_crisp() || !self.problem.is_decided(belief)) {
+        if has_words && (self.problem.matrix.is_crisp() || !self.problem.is_decided(belief)) {
             scored.extend(self.score_worded(belief));
         }
         for (test, gain) in &mut scored {
@@ -282,7 +284,7 @@ impl<'a> Grower<'a> {
         if let [only] = ranked {
             return Some(*only);
         }
-        let mut left = match self.problem.is_crisp() {
+        let mut left = match self.problem.matrix.is_crisp() {
             true => self.rollout_left / CRISP_SHARE,
             false => self.rollout_left / NOISY_SHARE,
         };

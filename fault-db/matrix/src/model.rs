@@ -28,8 +28,10 @@ pub struct Test {
 /// States, tests, and the probability that each test fails in each state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matrix {
-    states: Vec<State>,
-    tests: Vec<Test>,
+    /// Its states, in the order given.
+    pub states: Vec<State>,
+    /// Its tests, in the order given.
+    pub tests: Vec<Test>,
     /// One row of tests for each state.
     cells: Vec<f64>,
     /// For each test the outcomes that it has instead of passing and failing; a cell is the place of one.
@@ -94,16 +96,6 @@ impl Matrix {
             words,
             crisp,
         })
-    }
-
-    /// Its states, in the order given.
-    pub fn states(&self) -> &[State] {
-        &self.states
-    }
-
-    /// Its tests, in the order given.
-    pub fn tests(&self) -> &[Test] {
-        &self.tests
     }
 
     /// Probabilities that each test fails in a state; empty for a state that is not there.

@@ -83,7 +83,7 @@ pub fn plan(matrix: &Matrix, known: &Posterior, options: PlanOptions) -> Result<
     let mut warnings = remarks(matrix);
     let problem = Problem::new(matrix, known, options.confidence);
     let tests = problem.tests.len();
-    let small = problem.len() <= MAX_OPTIMAL && (problem.is_crisp() || tests <= MAX_OPTIMAL);
+    let small = problem.len() <= MAX_OPTIMAL && (problem.matrix.is_crisp() || tests <= MAX_OPTIMAL);
     let tried = match options.method {
         Some(Method::Optimal) if !small => {
             return Err(MatrixError::TooLargeForOptimal {
@@ -134,7 +134,7 @@ pub fn plan(matrix: &Matrix, known: &Posterior, options: PlanOptions) -> Result<
 }
 
 fn best_tree(problem: &Problem<'_>) -> Result<Tree, WorkLimitReached> {
-    if problem.is_crisp() {
+    if problem.matrix.is_crisp() {
         let space = CrispSpace::new(problem);
         let root = space.root();
         searched(problem, Search::new(space, CRISP_LIMITS), root)
@@ -192,7 +192,7 @@ fn remarks(matrix: &Matrix) -> Vec<String> {
     let mut remarks = Vec::new();
     let groups = matrix.ambiguity_groups();
     for group in groups.iter().take(SHOWN) {
-        let names = group.iter().map(|s| matrix.states()[*s].id.as_str());
+        let names = group.iter().map(|s| matrix.states[*s].id.as_str());
         remarks.push(format!(
             "no test tells these states apart (their rows are the same): {}",
             some(names.collect())
@@ -202,15 +202,15 @@ fn remarks(matrix: &Matrix) -> Vec<String> {
         remarks.push(format!("{} more groups of states are alike", more + 1));
     }
     let first = matrix.row(0);
-    let mut silent: Vec<bool> = vec![true; matrix.tests().len()];
-    for state in 0..matrix.states().len() {
+    let mut silent: Vec<bool> = vec![true; matrix.tests.len()];
+    for state in 0..matrix.states.len() {
         for ((silent, cell), first) in silent.iter_mut().zip(matrix.row(state)).zip(first) {
             *silent &= cell == first;
         }
     }
-    let names = matrix.tests().iter().zip(silent);
+    let names = matrix.tests.iter().zip(silent);
     let names: Vec<&str> = names
-        .filter(|(_, silent)| *silent && matrix.states().len() > 1)
+        .filter(|(_, silent)| *silent && matrix.states.len() > 1)
         .map(|(test, _)| test.id.as_str())
         .collect();
     if !names.is_empty() {

@@ -45,7 +45,7 @@ impl Belief {
 
 impl<'a> Problem<'a> {
     pub(super) fn new(matrix: &'a Matrix, posterior: &'a Posterior, confidence: f64) -> Self {
-        let tests: Vec<usize> = (0..matrix.tests().len())
+        let tests: Vec<usize> = (0..matrix.tests.len())
             .filter(|test| !posterior.is_done(*test))
             .collect();
         // With certain tests a state of probability 0 is told apart like any other; where an answer need only
@@ -61,10 +61,7 @@ impl<'a> Problem<'a> {
             cells.extend(tests.iter().filter_map(|test| row.get(*test)));
         }
         Self {
-            costs: tests
-                .iter()
-                .map(|test| matrix.tests()[*test].cost)
-                .collect(),
+            costs: tests.iter().map(|test| matrix.tests[*test].cost).collect(),
             weights: groups.iter().map(weight).collect(),
             matrix,
             posterior,
@@ -73,11 +70,6 @@ impl<'a> Problem<'a> {
             cells,
             confidence,
         }
-    }
-
-    /// Whether every remaining test is certain.
-    pub(super) fn is_crisp(&self) -> bool {
-        self.matrix.is_crisp()
     }
 
     /// Groups that are left.
@@ -204,7 +196,7 @@ impl<'a> Problem<'a> {
         }
         states.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         let mass = belief.mass();
-        if self.is_crisp() {
+        if self.matrix.is_crisp() {
             states.sort_by_key(|(state, _)| *state);
             return Leaf {
                 states: states.into_iter().map(|(state, _)| state).collect(),

@@ -15,7 +15,7 @@ mod value;
 use rusqlite::{Connection, ToSql, params_from_iter};
 
 pub(crate) use error::{Refusal, SqlError, SqlResult};
-pub(crate) use row::Row;
+pub(crate) use row::{Row, from_row};
 pub(crate) use server::Server;
 pub(crate) use value::{Field, FromField, Value, values};
 

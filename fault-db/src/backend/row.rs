@@ -28,6 +28,27 @@ impl<'a> Row<'a> {
     }
 }
 
+/// `from_row!(row => Run: id, unit, _, at_us; notes: Vec::new())`: a `Run` whose first fields are the columns of the row in
+/// their order, but for one that is passed over; the others are given.
+macro_rules! from_row {
+    ($row:ident => $name:ident: $($columns:tt)+) => {
+        $crate::backend::from_row!(@ $row, 0, $name [] $($columns)+,)
+    };
+    (@ $row:ident, $at:expr, $name:ident [$($read:tt)*] _, $($more:tt)*) => {
+        $crate::backend::from_row!(@ $row, $at + 1, $name [$($read)*] $($more)*)
+    };
+    (@ $row:ident, $at:expr, $name:ident [$($read:tt)*] $field:ident, $($more:tt)*) => {
+        $crate::backend::from_row!(
+            @ $row, $at + 1, $name [$($read)* $field: $row.get($at)?,] $($more)*
+        )
+    };
+    (@ $row:ident, $at:expr, $name:ident [$($read:tt)*] $field:ident; $($given:tt)*) => {
+        $name { $($read)* $field: $row.get($at)?, $($given)* }
+    };
+    (@ $row:ident, $at:expr, $name:ident [$($read:tt)*]) => { $name { $($read)* } };
+}
+pub(crate) use from_row;
+
 fn file_field<'a>(row: &'a rusqlite::Row<'a>, column: usize) -> Result<Field<'a>, SqlError> {
     use rusqlite::types::ValueRef;
     let value = |reason: String| SqlError::Value { column, reason };

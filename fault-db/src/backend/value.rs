@@ -47,58 +47,24 @@ impl Value<'_> {
     }
 }
 
-impl From<i64> for Value<'_> {
-    fn from(value: i64) -> Self {
-        Self::Integer(value)
-    }
+/// `of! { i64: value => Self::Integer(value); }`: the value of a Rust type.
+macro_rules! of {
+    ($($type:ty: $value:ident => $made:expr;)*) => {$(
+        impl<'a> From<$type> for Value<'a> {
+            fn from($value: $type) -> Self { $made }
+        }
+    )*};
 }
-
-impl From<u32> for Value<'_> {
-    fn from(value: u32) -> Self {
-        Self::Integer(value.into())
-    }
-}
-
-impl From<bool> for Value<'_> {
-    fn from(value: bool) -> Self {
-        Self::Integer(value.into())
-    }
-}
-
-impl From<f64> for Value<'_> {
-    fn from(value: f64) -> Self {
-        Self::Real(value)
-    }
-}
-
-impl<'a> From<&'a str> for Value<'a> {
-    fn from(value: &'a str) -> Self {
-        Self::Text(Cow::Borrowed(value))
-    }
-}
-
-impl From<String> for Value<'_> {
-    fn from(value: String) -> Self {
-        Self::Text(Cow::Owned(value))
-    }
-}
-
-impl<'a> From<&'a String> for Value<'a> {
-    fn from(value: &'a String) -> Self {
-        Self::Text(Cow::Borrowed(value))
-    }
-}
-
-impl From<Id> for Value<'_> {
-    fn from(value: Id) -> Self {
-        Self::Bytes(Cow::Owned(value.as_bytes().to_vec()))
-    }
-}
-
-impl<'a> From<&'a [u8]> for Value<'a> {
-    fn from(value: &'a [u8]) -> Self {
-        Self::Bytes(Cow::Borrowed(value))
-    }
+of! {
+    i64: value => Self::Integer(value);
+    u32: value => Self::Integer(value.into());
+    bool: value => Self::Integer(value.into());
+    f64: value => Self::Real(value);
+    &'a str: value => Self::Text(Cow::Borrowed(value));
+    &'a String: value => Self::Text(Cow::Borrowed(value));
+    String: value => Self::Text(Cow::Owned(value));
+    &'a [u8]: value => Self::Bytes(Cow::Borrowed(value));
+    Id: value => Self::Bytes(Cow::Owned(value.as_bytes().to_vec()));
 }
 
 impl<'a, T: Into<Value<'a>>> From<Option<T>> for Value<'a> {

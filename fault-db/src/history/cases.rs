@@ -3,7 +3,7 @@
 //! A case has no row of its own. An event of the kind `cause` (a person's) or `diagnosed` (a run's) attributes a fault
 //! to a part, and merges as every event does; the faults that are attributed to the same part are the case.
 
-use crate::backend::{Row, SqlResult, values};
+use crate::backend::{Row, SqlResult, from_row, values};
 use crate::error::StoreError;
 use crate::history::event_graph::recompute_fault;
 use crate::history::fault_event::{NewEvent, insert_event};
@@ -14,25 +14,17 @@ use crate::store::Store;
 use crate::values::fault_state::{FaultAction, FaultState};
 use crate::values::record::{CAUSE, CauseRecord, DIAGNOSED, part_name};
 
-/// A fault whose state was changed.
+/// A fault that is changed, alone or with its case.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ChangedFault {
+pub struct CaseFault {
+    pub(crate) seq: i64,
     /// The fault.
     pub id: Id,
     /// Name of the fault's code.
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
-    /// Present state of the fault.
-    pub state: FaultState,
-}
-
-/// A fault about to be changed.
-pub(crate) struct CaseFault {
-    pub seq: i64,
-    pub id: Id,
-    pub code_name: String,
-    pub lru: String,
+    /// Its state: of a change the one that it led to.
     pub state: FaultState,
 }
 
@@ -118,8 +110,8 @@ impl Store {
             body: &body,
             state: None,
         };
-        insert_event(self.backend(), seq, &event)
-            .and_then(|()| recompute_fault(self.backend(), seq))
+        insert_event(&self.backend, seq, &event)
+            .and_then(|()| recompute_fault(&self.backend, seq))
             .map_err(|error| self.failed("attributing a fault", error))
     }
 
@@ -154,11 +146,5 @@ fn follows(action: FaultAction, named: FaultState, other: FaultState) -> bool {
 }
 
 pub(crate) fn case_fault(row: Row<'_>) -> SqlResult<CaseFault> {
-    Ok(CaseFault {
-        seq: row.get(0)?,
-        id: row.get(1)?,
-        code_name: row.get(2)?,
-        lru: row.get(3)?,
-        state: row.get(4)?,
-    })
+    Ok(from_row!(row => CaseFault: seq, id, code_name, lru, state))
 }

@@ -81,7 +81,7 @@ impl Store {
             }
             Ok(())
         };
-        let found = self.backend().each(CONFLICTING_EVENTS, &[], take);
+        let found = self.backend.each(CONFLICTING_EVENTS, &[], take);
         found.map_err(|error| self.failed("looking for conflicts", error))?;
         Ok(conflicts)
     }

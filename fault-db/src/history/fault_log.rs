@@ -2,7 +2,7 @@
 
 use crate::backend::{Backend, values};
 use crate::error::StoreError;
-use crate::history::cases::{CaseFault, ChangedFault};
+use crate::history::cases::CaseFault;
 use crate::history::event_graph::recompute_fault;
 use crate::history::fault_event::{NewEvent, insert_event};
 use crate::history::limits;
@@ -54,7 +54,7 @@ impl Store {
         who: &str,
         note: &str,
         at_us: i64,
-    ) -> Result<(ChangedFault, Vec<ChangedFault>), StoreError> {
+    ) -> Result<(CaseFault, Vec<CaseFault>), StoreError> {
         self.act(fault, &Change::towards(state, (who, note), at_us), true)
     }
 
@@ -77,7 +77,7 @@ impl Store {
         repair: &RepairRecord,
         who: &str,
         at_us: i64,
-    ) -> Result<(ChangedFault, Vec<ChangedFault>), StoreError> {
+    ) -> Result<(CaseFault, Vec<CaseFault>), StoreError> {
         self.repair(fault, repair, (who, at_us), true)
     }
 
@@ -87,7 +87,7 @@ impl Store {
         repair: &RepairRecord,
         (who, at_us): (&str, i64),
         whole_case: bool,
-    ) -> Result<(ChangedFault, Vec<ChangedFault>), StoreError> {
+    ) -> Result<(CaseFault, Vec<CaseFault>), StoreError> {
         repair.check()?;
         // Strings only: cannot fail.
         let body = serde_json::to_string(repair).unwrap_or_default();
@@ -126,7 +126,7 @@ impl Store {
         fault: Id,
         change: &Change<'_>,
         whole_case: bool,
-    ) -> Result<(ChangedFault, Vec<ChangedFault>), StoreError> {
+    ) -> Result<(CaseFault, Vec<CaseFault>), StoreError> {
         limits::name("the name of who says it", change.who)?;
         if change.kind != REPAIR {
             limits::note("the note", change.body)?;
@@ -151,7 +151,7 @@ impl Store {
         backend: &Backend,
         fault: CaseFault,
         change: &Change<'_>,
-    ) -> Result<ChangedFault, StoreError> {
+    ) -> Result<CaseFault, StoreError> {
         let to = fault.state.next(change.action);
         let to = to.map_err(|source| StoreError::Transition {
             fault: fault.id,
@@ -179,12 +179,7 @@ impl Store {
             Ok(())
         };
         work().map_err(|error| self.failed("changing a fault's state", error))?;
-        Ok(ChangedFault {
-            id: fault.id,
-            code_name: fault.code_name,
-            lru: fault.lru,
-            state: to,
-        })
+        Ok(CaseFault { state: to, ..fault })
     }
 }
 

@@ -70,7 +70,7 @@ impl Store {
                 let same =
                     (known.iter()).find(|(_, known)| known.serial_no == instrument.serial_no);
                 let id = same.map_or(minted, |(id, _)| *id);
-                append_statement(self.backend(), INSTRUMENT, id, instrument)
+                append_statement(&self.backend, INSTRUMENT, id, instrument)
             };
             register().map_err(|error| self.failed(DOING, error))
         })
@@ -95,12 +95,12 @@ impl Store {
 
     /// All statements in their order.
     fn statements(&self) -> SqlResult<Vec<(Id, Instrument)>> {
-        let Some(own) = own_file_id(self.backend())? else {
+        let Some(own) = own_file_id(&self.backend)? else {
             return Ok(Vec::new());
         };
         let sql =
             "SELECT id, says FROM seal WHERE origin = ?1 AND what = 'instrument' ORDER BY ordinal";
-        let found = self.backend().select(sql, &values![own], |row| {
+        let found = self.backend.select(sql, &values![own], |row| {
             Ok((row.get::<Id>(0)?, row.get::<String>(1)?))
         })?;
         let read = |(id, says): (Id, String)| Some((id, serde_json::from_str(&says).ok()?));

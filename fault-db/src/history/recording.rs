@@ -4,7 +4,7 @@
 use rusqlite::{Connection, params};
 use serde::Serialize;
 
-use crate::backend::values;
+use crate::backend::{from_row, values};
 use crate::error::StoreError;
 use crate::history::compression;
 use crate::history::run_writer::RunWriter;
@@ -61,7 +61,7 @@ impl RunWriter<'_> {
                 }
             })?;
         let digest = seal::trace::of_recording(&values![
-            self.id(),
+            self.id,
             record.ordinal,
             &record.procedure,
             record.t0_bench_us,
@@ -105,13 +105,10 @@ impl Store {
             JOIN recording r ON r.run = t.run AND r.ordinal = t.recording WHERE t.id = ?1";
         let found = self.first("reading a recording", SQL, &values![trace], |row| {
             let packed: Vec<u8> = row.get(4)?;
-            let recording = Recording {
-                run_id: row.get(0)?,
-                procedure: row.get(1)?,
-                t0_bench_us: row.get(2)?,
-                bench_json: row.get(3)?,
-                stimuli_json: String::new(),
-            };
+            let recording = from_row!(row => Recording:
+                run_id, procedure, t0_bench_us, bench_json;
+                stimuli_json: String::new()
+            );
             Ok((recording, packed))
         })?;
         found

@@ -8,7 +8,7 @@
 
 use sha2::{Digest as _, Sha256};
 
-use crate::backend::{Backend, Row, SqlError, SqlResult, values};
+use crate::backend::{Backend, Row, SqlError, SqlResult, from_row, values};
 use crate::history::fault_event::{EventContext, NewEvent, insert_event_with_context};
 use crate::history::graph_sql::heads;
 use crate::id::Id;
@@ -115,13 +115,7 @@ pub(crate) fn reopen_recurred(
 }
 
 fn read(row: Row<'_>) -> SqlResult<Recurrence> {
-    Ok(Recurrence {
-        fault: row.get(0)?,
-        resolution: row.get(1)?,
-        lamport: row.get(2)?,
-        at_us: row.get(3)?,
-        message: row.get(4)?,
-    })
+    Ok(from_row!(row => Recurrence: fault, resolution, lamport, at_us, message))
 }
 
 /// Each recurrence has its own event, with the same id wherever it is found.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::backend::{Backend, Row, SqlResult, values};
+use crate::backend::{Backend, Row, SqlResult, from_row, values};
 use crate::error::StoreError;
 use crate::history::limits;
 use crate::id::Id;
@@ -118,7 +118,7 @@ impl Store {
         let mut unsigned = Vec::new();
         for (run, note, who) in notes {
             if signed.0 != Some(run) {
-                let read = signatures_of(self.backend(), run);
+                let read = signatures_of(&self.backend, run);
                 signed = (Some(run), read.map_err(|error| self.failed(DOING, error))?);
             }
             if !signed.1.iter().any(|(_, of)| of.is_about("note", note)) {
@@ -145,7 +145,7 @@ impl Store {
     /// Notes on the run with this row number, oldest first.
     pub(crate) fn run_notes(&self, run: i64) -> SqlResult<Vec<RunNote>> {
         let sql = format!("{NOTES} WHERE n.run = ?1 ORDER BY n.at_us, n.id");
-        self.backend().select(&sql, &values![run], note)
+        self.backend.select(&sql, &values![run], note)
     }
 }
 
@@ -153,14 +153,11 @@ const NOTES: &str = "SELECT n.at_us, n.who, n.text, n.trace, n.place_us, n.id FR
 
 fn note(row: Row<'_>) -> SqlResult<RunNote> {
     let (trace, at_us) = (row.get::<Option<Id>>(3)?, row.get::<Option<i64>>(4)?);
-    Ok(RunNote {
-        at_us: row.get(0)?,
-        who: row.get(1)?,
+    Ok(from_row!(row => RunNote:
+        at_us, who, text, _, _, id;
         place: trace
             .zip(at_us)
             .map(|(trace, at_us)| TracePlace { trace, at_us }),
-        text: row.get(2)?,
-        id: row.get(5)?,
-        signed_by: None,
-    })
+        signed_by: None
+    ))
 }

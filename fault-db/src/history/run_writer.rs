@@ -37,7 +37,8 @@ const MAX_WAITING_STEPS: usize = 16_384;
 /// interrupted.
 pub struct RunWriter<'a> {
     pub(crate) store: &'a Store,
-    id: Id,
+    /// The run's id.
+    pub id: Id,
     pub(crate) run: i64,
     unit: i64,
     line: String,
@@ -144,11 +145,6 @@ impl<'a> RunWriter<'a> {
         RunWriter::begin_as(self.id, store, record)
     }
 
-    /// The run's id.
-    pub fn id(&self) -> Id {
-        self.id
-    }
-
     /// Steps recorded but not yet in the file.
     pub fn waiting_steps(&self) -> usize {
         self.waiting.len()
@@ -252,7 +248,7 @@ impl<'a> RunWriter<'a> {
         let (stored, digest) = store.write(DOING, |conn| {
             let work = || {
                 insert_steps(conn, run, waiting)?;
-                insert_fault(store.backend(), &place, ids, record)
+                insert_fault(&store.backend, &place, ids, record)
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))
         })?;
@@ -339,12 +335,12 @@ impl<'a> RunWriter<'a> {
                 conn.prepare_cached(SQL)?.execute(values)?;
                 match is_rest {
                     true => Ok(()),
-                    false => seal::append(store.backend(), "run", id, &payload, &digest),
+                    false => seal::append(&store.backend, "run", id, &payload, &digest),
                 }
             };
             work().map_err(|error: SqlError| store.failed(DOING, error))?;
             store.note_passed((unit, run, id), known_events, end)?;
-            fill_empty_blocks(store.backend()).map_err(|error| store.failed(DOING, error))
+            fill_empty_blocks(&store.backend).map_err(|error| store.failed(DOING, error))
         })
     }
 

@@ -195,7 +195,7 @@ impl Store {
                 body: &note,
                 state: None,
             };
-            insert_event(self.backend(), fault, &event)
+            insert_event(&self.backend, fault, &event)
                 .map_err(|error| self.failed(DOING, error))?;
         }
         Ok(())

@@ -3,9 +3,9 @@
 //! The event of the kind `withdrawn` follows the one that it takes back. Both stay in the history; whatever is derived from
 //! events (state, cause, repairs, counts, what diagnosis learns) is as if the withdrawn one had never been written.
 
-use crate::backend::{Row, Value, values};
+use crate::backend::{Row, Value, from_row, values};
 use crate::error::StoreError;
-use crate::history::cases::{CASE_FAULT, CaseFault, ChangedFault, case_fault};
+use crate::history::cases::{CASE_FAULT, CaseFault, case_fault};
 use crate::history::event_graph::recompute_fault;
 use crate::history::fault_event::{NewEvent, insert_withdrawal};
 use crate::history::graph_sql::standing;
@@ -36,7 +36,7 @@ pub struct Withdrawn {
     /// Author of what was withdrawn.
     pub who: String,
     /// The fault that was named, then the others about which the same was written, each as it stands now.
-    pub faults: Vec<ChangedFault>,
+    pub faults: Vec<CaseFault>,
 }
 
 /// An event that a person wrote.
@@ -122,13 +122,7 @@ impl Store {
                 insert_withdrawal(backend, fault.seq, &event, of_fault.id)
                     .and_then(|()| recompute_fault(backend, fault.seq))
                     .map_err(|error| self.failed(DOING, error))?;
-                let now = self.fault_row(fault.id)?;
-                changed.push(ChangedFault {
-                    id: now.id,
-                    code_name: now.code_name,
-                    lru: now.lru,
-                    state: now.state,
-                });
+                changed.push(self.fault_row(fault.id)?);
             }
             let Written {
                 kind, at_us, who, ..
@@ -146,15 +140,10 @@ impl Store {
     /// given.
     fn last_written(&self, fault: &CaseFault, at_us: Option<i64>) -> Result<Written, StoreError> {
         let row = |row: Row<'_>| {
-            Ok(Written {
-                seq: row.get(0)?,
-                id: row.get(1)?,
-                kind: row.get(2)?,
-                at_us: row.get(3)?,
-                who: row.get(4)?,
-                has_state: row.get::<i64>(5)? == 1,
-                lamport: row.get(6)?,
-            })
+            Ok(from_row!(row => Written:
+                seq, id, kind, at_us, who, _, lamport;
+                has_state: row.get::<i64>(5)? == 1
+            ))
         };
         let found = self.first(
             "reading what was written",

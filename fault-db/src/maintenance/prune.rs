@@ -3,7 +3,7 @@
 use rusqlite::{Connection, params};
 use serde::Serialize;
 
-use crate::backend::{Backend, SqlResult};
+use crate::backend::{Backend, SqlResult, from_row};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::seal::{PRUNED, PrunedPayload, append_statement, hex, trace};
@@ -106,7 +106,7 @@ impl Store {
         loop {
             let counts = self.write(DOING, |conn| {
                 let counts = plan(conn, rule).map_err(failed)?;
-                let sealed = seal_deleted(self.backend(), rule.at_us);
+                let sealed = seal_deleted(&self.backend, rule.at_us);
                 sealed.map_err(|error| self.failed(DOING, error))?;
                 delete(conn).map_err(failed)?;
                 Ok(counts)
@@ -188,15 +188,13 @@ fn plan(conn: &Connection, rule: &PruneRule) -> rusqlite::Result<PruneCounts> {
     );
     conn.query_row(&count, [], |row| {
         let trace_bytes: u64 = row.get(1)?;
-        Ok(PruneCounts {
-            traces: row.get(0)?,
+        Ok(from_row!(row => PruneCounts:
+            traces, _, kept_for_faults, kept_unsent;
             recordings,
             trace_bytes,
-            kept_for_faults: row.get(2)?,
-            kept_unsent: row.get(3)?,
             freed_bytes: 0,
-            over_bytes: over_bytes.saturating_sub(trace_bytes),
-        })
+            over_bytes: over_bytes.saturating_sub(trace_bytes)
+        ))
     })
 }
 

@@ -61,9 +61,9 @@ pub(crate) enum FilteredTable {
 #[derive(Clone)]
 pub(crate) struct Resolved<'a> {
     filter: &'a FaultFilter,
-    unit: Option<i64>,
-    codes: Option<Vec<i64>>,
-    lrus: Option<Vec<String>>,
+    pub unit: Option<i64>,
+    pub codes: Option<Vec<i64>>,
+    pub lrus: Option<Vec<String>>,
     search: Option<Search>,
     frequent: FrequentWords,
 }
@@ -105,7 +105,7 @@ impl Resolved<'_> {
     /// knows that by itself.
     pub fn estimate_frequency(&mut self, store: &Store) -> Result<(), StoreError> {
         let is_few = self.filter.limit.is_some_and(|most| most <= FEW);
-        let (Backend::File(_), Some(search), true) = (store.backend(), &self.search, is_few) else {
+        let (Backend::File(_), Some(search), true) = (&store.backend, &self.search, is_few) else {
             return Ok(());
         };
         let asked = search.for_file();
@@ -127,20 +127,6 @@ impl Resolved<'_> {
             of_runs: is_frequent("note_words", "run_note")?,
         };
         Ok(())
-    }
-
-    pub fn unit(&self) -> Option<i64> {
-        self.unit
-    }
-
-    /// The numbers of the codes asked for.
-    pub fn codes(&self) -> Option<&[i64]> {
-        self.codes.as_deref()
-    }
-
-    /// The stored spellings of the part asked for: usually one, or more that differ in capitals.
-    pub fn lrus(&self) -> Option<&[String]> {
-        self.lrus.as_deref()
     }
 
     pub fn filter(&self) -> &FaultFilter {

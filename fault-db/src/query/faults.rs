@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::fault_filter::FaultFilter;
 use super::filter::limit;
-use crate::backend::{Row, SqlError, SqlResult, values};
+use crate::backend::{Row, SqlError, SqlResult, from_row, values};
 use crate::error::StoreError;
 use crate::history::cases::REST_OF_CASE;
 use crate::id::Id;
@@ -120,7 +120,7 @@ impl Store {
     pub fn faults(&self, filter: &FaultFilter) -> Result<Vec<FaultSummary>, StoreError> {
         let mut resolved = filter.resolve(self)?;
         resolved.estimate_frequency(self)?;
-        let conditions = resolved.conditions_seen(self.backend());
+        let conditions = resolved.conditions_seen(&self.backend);
         let order = "ORDER BY x.last_at_us DESC, x.seq DESC";
         let limit = limit(filter.limit);
         let sql = format!("{SELECT_FAULT} {} {order} {limit}", conditions.sql());
@@ -152,24 +152,17 @@ impl Store {
     }
 
     fn occurrences(&self, fault: i64) -> SqlResult<Vec<Occurrence>> {
-        self.backend().select(
+        self.backend.select(
             "SELECT o.id, r.id, o.step_index, o.at_us, o.bench_us, o.message, o.findings, t.id, o.freeze_json
              FROM fault_occurrence o JOIN run r ON r.seq = o.run
              LEFT JOIN trace t ON t.seq = o.trace
              WHERE o.fault = ?1 ORDER BY o.at_us DESC, o.seq DESC LIMIT ?2",
             &values![fault, FaultDetail::MAX_OCCURRENCES],
             |row| {
-                Ok(Occurrence {
-                    id: row.get(0)?,
-                    run_id: row.get(1)?,
-                    step_index: row.get(2)?,
-                    at_us: row.get(3)?,
-                    bench_us: row.get(4)?,
-                    message: row.get(5)?,
-                    findings: row.get(6)?,
-                    trace_id: row.get(7)?,
-                    freeze: json(row, 8)?,
-                })
+                Ok(from_row!(row => Occurrence:
+                    id, run_id, step_index, at_us, bench_us, message, findings, trace_id;
+                    freeze: json(row, 8)?
+                ))
             },
         )
     }
@@ -177,7 +170,7 @@ impl Store {
     /// Events of a fault. An event that several stores have withdrawn has the correction made
     /// first.
     fn events(&self, fault: i64) -> SqlResult<Vec<FaultEvent>> {
-        let mut events = self.backend().select(
+        let mut events = self.backend.select(
             "SELECT e.id, e.kind, e.at_us, e.who, e.body, e.state, w.at_us, w.who, w.body
              FROM fault_event e LEFT JOIN fault_event w ON w.kind = 'withdrawn' AND w.follows = e.id
              WHERE e.fault = ?1 AND e.kind <> 'withdrawn' ORDER BY e.at_us, e.seq, w.turn, w.id",
@@ -186,16 +179,13 @@ impl Store {
                 let kind: String = row.get(1)?;
                 let is_repair = kind == REPAIR;
                 let is_cause = matches!(&*kind, CAUSE | DIAGNOSED);
-                Ok(FaultEvent {
-                    id: row.get(0)?,
-                    at_us: row.get(2)?,
-                    who: row.get(3)?,
+                Ok(from_row!(row => FaultEvent:
+                    id, _, at_us, who, _, state;
                     note: if is_repair || is_cause {
                         String::new()
                     } else {
                         row.get(4)?
                     },
-                    state: row.get(5)?,
                     repair: if is_repair { Some(json(row, 4)?) } else { None },
                     cause: if is_cause { Some(json(row, 4)?) } else { None },
                     correction: match row.get::<Option<i64>>(6)? {
@@ -206,8 +196,8 @@ impl Store {
                         }),
                         None => None,
                     },
-                    kind,
-                })
+                    kind
+                ))
             },
         )?;
         events.dedup_by_key(|event| event.id);
@@ -216,22 +206,11 @@ impl Store {
 }
 
 fn summary(row: Row<'_>) -> SqlResult<FaultSummary> {
-    Ok(FaultSummary {
-        id: row.get(0)?,
-        unit_serial: row.get(1)?,
-        code: row.get(2)?,
-        code_name: row.get(3)?,
-        lru: row.get(4)?,
-        cause: row.get(12)?,
-        severity: row.get(5)?,
-        state: row.get(6)?,
-        first_at_us: row.get(7)?,
-        last_at_us: row.get(8)?,
-        occurrences: row.get(9)?,
-        trace_id: row.get(10)?,
-        message: row.get::<Option<String>>(13)?.unwrap_or_default(),
-        findings: row.get(14)?,
-    })
+    Ok(from_row!(row => FaultSummary:
+        id, unit_serial, code, code_name, lru, severity, state, first_at_us, last_at_us,
+        occurrences, trace_id, _, cause, _, findings;
+        message: row.get::<Option<String>>(13)?.unwrap_or_default()
+    ))
 }
 
 pub(super) fn json<T: serde::de::DeserializeOwned>(row: Row<'_>, column: usize) -> SqlResult<T> {

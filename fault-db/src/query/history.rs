@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::faults::json;
-use crate::backend::{Row, SqlError, SqlResult, values};
+use crate::backend::{Row, SqlError, SqlResult, from_row, values};
 use crate::error::StoreError;
 use crate::history::graph_sql::standing;
 use crate::id::Id;
@@ -97,18 +97,14 @@ impl Store {
         but: Option<Id>,
     ) -> SqlResult<Vec<Seen>> {
         let row = |row: Row<'_>| {
-            Ok(Seen {
-                run: row.get(0)?,
-                of_log: row.get::<&str>(1)?.starts_with(LOG_SOURCE),
-                code: row.get(2)?,
-                lru: row.get(3)?,
-                at_us: row.get(4)?,
-                message: row.get(5)?,
-            })
+            Ok(from_row!(row => Seen:
+                run, _, code, lru, at_us, message;
+                of_log: row.get::<&str>(1)?.starts_with(LOG_SOURCE)
+            ))
         };
         // No id is empty: nothing is left out then.
         let but = but.map_or_else(Vec::new, |id| id.as_bytes().to_vec());
-        let all = self.backend().select(
+        let all = self.backend.select(
             "SELECT r.seq, r.source, f.code, f.lru, o.at_us, o.message
              FROM unit u JOIN run r ON r.unit = u.seq
              JOIN fault_occurrence o ON o.run = r.seq JOIN fault f ON f.seq = o.fault
@@ -132,7 +128,7 @@ impl Store {
         unit: &str,
         (since_us, before_us): (i64, i64),
     ) -> SqlResult<Vec<Repaired>> {
-        self.backend().select(
+        self.backend.select(
             concat!(
                 "SELECT f.code, f.lru, e.at_us, e.body
                  FROM unit u JOIN fault f ON f.unit = u.seq JOIN fault_event e ON e.fault = f.seq
@@ -142,12 +138,10 @@ impl Store {
             ),
             &values![unit, REPAIR, since_us, before_us],
             |row| {
-                Ok(Repaired {
-                    code: row.get(0)?,
-                    lru: row.get(1)?,
-                    at_us: row.get(2)?,
-                    repair: json(row, 3)?,
-                })
+                Ok(from_row!(row => Repaired:
+                    code, lru, at_us;
+                    repair: json(row, 3)?
+                ))
             },
         )
     }

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::faults::json;
 use super::stays::{Span, Stay};
-use crate::backend::{SqlResult, values};
+use crate::backend::{SqlResult, from_row, values};
 use crate::error::StoreError;
 use crate::history::graph_sql::standing;
 use crate::id::Id;
@@ -167,7 +167,7 @@ impl Store {
     }
 
     fn runs_of(&self, span: &Span) -> SqlResult<Vec<LifeEvent>> {
-        self.backend().select(
+        self.backend.select(
             "SELECT r.started_at_us, r.id, r.verdict, r.operator, r.source, r.train,
                 (SELECT count(DISTINCT o.fault) FROM fault_occurrence o WHERE o.run = r.seq)
              FROM run r WHERE r.unit = ?1 AND r.started_at_us >= ?2 AND r.started_at_us <= ?3
@@ -177,14 +177,9 @@ impl Store {
                 Ok(LifeEvent {
                     at_us: row.get(0)?,
                     unit: span.serial.clone(),
-                    what: LifeWhat::Run(LifeRun {
-                        id: row.get(1)?,
-                        verdict: row.get(2)?,
-                        operator: row.get(3)?,
-                        source: row.get(4)?,
-                        train: row.get(5)?,
-                        faults: row.get(6)?,
-                    }),
+                    what: LifeWhat::Run(from_row!(row => LifeRun:
+                        _, id, verdict, operator, source, train, faults
+                    )),
                 })
             },
         )
@@ -193,7 +188,7 @@ impl Store {
     /// Events of faults in a span; what was written at several faults at once is one.
     fn fault_events_of(&self, span: &Span) -> SqlResult<Vec<LifeEvent>> {
         let mut together: BTreeMap<(i64, String, String, String), LifeFault> = BTreeMap::new();
-        self.backend().each(
+        self.backend.each(
             concat!(
                 "SELECT e.at_us, e.kind, e.who, e.body, f.id, f.code, f.code_name, coalesce(f.cause, f.lru),
                     (SELECT o.findings FROM fault_occurrence o

@@ -1,6 +1,6 @@
 //! All fault occurrences of one run in order, as input of the diagnosis.
 
-use crate::backend::values;
+use crate::backend::{from_row, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::store::Store;
@@ -40,17 +40,10 @@ impl Store {
                      WHERE r.id = ?1 ORDER BY o.seq",
             &values![run],
             |row| {
-                Ok(RunOccurrence {
-                    fault: row.get(6)?,
-                    code: row.get(0)?,
-                    code_name: row.get(1)?,
-                    lru: row.get(2)?,
-                    step_index: row.get(3)?,
-                    bench_us: row.get(4)?,
-                    trace_id: row.get(5)?,
-                    message: row.get(7)?,
-                    findings: row.get(8)?,
-                })
+                Ok(from_row!(row => RunOccurrence:
+                    code, code_name, lru, step_index, bench_us, trace_id, fault, message,
+                    findings
+                ))
             },
         )
     }

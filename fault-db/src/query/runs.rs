@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::faults::json;
 use super::filter::{Conditions, limit};
-use crate::backend::{Row, SqlResult, values};
+use crate::backend::{Row, SqlResult, from_row, values};
 use crate::error::StoreError;
 use crate::history::run_notes::RunNote;
 use crate::history::verify::{SETTLED, SettledFault, made_by};
@@ -185,7 +185,7 @@ impl Store {
         let found = self.first(DOING, &select, &values![id], row)?;
         let (run, seq) = found.ok_or_else(|| StoreError::not_found("run", id))?;
         let rest = || -> SqlResult<_> {
-            let signed = signatures_of(self.backend(), id)?;
+            let signed = signatures_of(&self.backend, id)?;
             let mut notes = self.run_notes(seq)?;
             for note in &mut notes {
                 let of_note = signed.iter().find(|(_, of)| of.is_about("note", note.id));
@@ -198,7 +198,7 @@ impl Store {
                 faults: self.run_faults(seq)?,
                 settled: self.settled_by(id)?,
                 notes,
-                seal: sealed_as(self.backend(), id)?,
+                seal: sealed_as(&self.backend, id)?,
                 signature: (signed.into_iter())
                     .find_map(|(_, of)| of.is_about("run", id).then_some(of)),
             })
@@ -207,21 +207,18 @@ impl Store {
     }
 
     fn settled_by(&self, run: Id) -> SqlResult<Vec<SettledFault>> {
-        self.backend()
+        self.backend
             .select(SETTLED, &values![run, made_by(run)], |row| {
                 let has_repair = row.get::<Option<&str>>(4)?.is_some();
-                Ok(SettledFault {
-                    id: row.get(0)?,
-                    code: row.get(1)?,
-                    code_name: row.get(2)?,
-                    lru: row.get(3)?,
-                    repair: has_repair.then(|| json(row, 4)).transpose()?,
-                })
+                Ok(from_row!(row => SettledFault:
+                    id, code, code_name, lru;
+                    repair: has_repair.then(|| json(row, 4)).transpose()?
+                ))
             })
     }
 
     fn scripts(&self, run: i64) -> SqlResult<Vec<ScriptRecord>> {
-        self.backend().select(
+        self.backend.select(
             "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path",
             &values![run],
             |row| {
@@ -235,36 +232,25 @@ impl Store {
 
     fn steps(&self, run: i64) -> SqlResult<Vec<StepRecord>> {
         let mut measurements = self.measurements(run)?;
-        self.backend().select(
+        self.backend.select(
             "SELECT step_index, procedure, kind, place, name, turn, turns, verdict, started_bench_us,
                 bench_time_us, message, findings, script_line, limit_source FROM step WHERE run = ?1 ORDER BY step_index",
             &values![run],
             |row| {
                 let index = row.get(0)?;
-                Ok(StepRecord {
+                Ok(from_row!(row => StepRecord:
+                    _, procedure, kind, place, name, turn, turns, verdict, started_bench_us,
+                    bench_time_us, message, findings, script_line, limit_source;
                     index,
-                    procedure: row.get(1)?,
-                    kind: row.get(2)?,
-                    place: row.get(3)?,
-                    name: row.get(4)?,
-                    turn: row.get(5)?,
-                    turns: row.get(6)?,
-                    verdict: row.get(7)?,
-                    started_bench_us: row.get(8)?,
-                    bench_time_us: row.get(9)?,
-                    message: row.get(10)?,
-                    findings: row.get(11)?,
-                    script_line: row.get(12)?,
-                    limit_source: row.get(13)?,
-                    measurements: measurements.remove(&index).unwrap_or_default(),
-                })
+                    measurements: measurements.remove(&index).unwrap_or_default()
+                ))
             },
         )
     }
 
     fn measurements(&self, run: i64) -> SqlResult<BTreeMap<u32, Vec<MeasurementRecord>>> {
         let mut by_step = BTreeMap::<u32, Vec<MeasurementRecord>>::new();
-        self.backend().each(
+        self.backend.each(
             "SELECT step_index, name, value, unit, low, high, verdict, limit_source FROM measurement
              WHERE run = ?1 ORDER BY step_index, ordinal",
             &values![run],
@@ -272,15 +258,9 @@ impl Store {
                 by_step
                     .entry(row.get(0)?)
                     .or_default()
-                    .push(MeasurementRecord {
-                        name: row.get(1)?,
-                        value: row.get(2)?,
-                        unit: row.get(3)?,
-                        low: row.get(4)?,
-                        high: row.get(5)?,
-                        verdict: row.get(6)?,
-                        limit_source: row.get(7)?,
-                    });
+                    .push(from_row!(row => MeasurementRecord:
+                        _, name, value, unit, low, high, verdict, limit_source
+                    ));
                 Ok(())
             },
         )?;
@@ -288,7 +268,7 @@ impl Store {
     }
 
     fn run_faults(&self, run: i64) -> SqlResult<Vec<RunFault>> {
-        self.backend().select(
+        self.backend.select(
             "SELECT f.id, f.code, f.code_name, f.lru, f.severity, f.state, min(o.at_us),
                 max(o.at_us), min(o.bench_us), count(*),
                 (SELECT t.id FROM fault_occurrence p JOIN trace t ON t.seq = p.trace
@@ -298,20 +278,10 @@ impl Store {
              WHERE o.run = ?1 GROUP BY f.seq ORDER BY min(o.bench_us), min(o.seq)",
             &values![run],
             |row| {
-                Ok(RunFault {
-                    id: row.get(0)?,
-                    code: row.get(1)?,
-                    code_name: row.get(2)?,
-                    lru: row.get(3)?,
-                    cause: row.get(11)?,
-                    severity: row.get(4)?,
-                    state: row.get(5)?,
-                    first_at_us: row.get(6)?,
-                    last_at_us: row.get(7)?,
-                    first_bench_us: row.get(8)?,
-                    occurrences: row.get(9)?,
-                    trace_id: row.get(10)?,
-                })
+                Ok(from_row!(row => RunFault:
+                    id, code, code_name, lru, severity, state, first_at_us, last_at_us,
+                    first_bench_us, occurrences, trace_id, cause
+                ))
             },
         )
     }
@@ -323,33 +293,16 @@ impl Store {
             None if self.is_under_way(row.get(0)?) => RunState::Running,
             None => RunState::Interrupted,
         };
-        Ok(RunSummary {
-            id: row.get(0)?,
-            unit_serial: row.get(1)?,
-            unit_kind: row.get(2)?,
-            unit_config_name: row.get(3)?,
-            line: row.get(4)?,
-            train: row.get(21)?,
+        Ok(from_row!(row => RunSummary:
+            id, unit_serial, unit_kind, unit_config_name, line, _, operator, source,
+            started_at_us, finished_at_us, _, _, bench_time_us, wall_time_us, app_version,
+            scripts_sha256, unit_config_sha256, injected, _, _, faults, train, continues,
+            connection, symptom, evidence;
             seed: row.get::<i64>(5)?.cast_unsigned(),
-            operator: row.get(6)?,
-            source: row.get(7)?,
-            started_at_us: row.get(8)?,
-            finished_at_us: row.get(9)?,
             verdict,
             state,
-            bench_time_us: row.get(12)?,
-            wall_time_us: row.get(13)?,
-            app_version: row.get(14)?,
-            scripts_sha256: row.get(15)?,
-            unit_config_sha256: row.get(16)?,
-            injected: row.get(17)?,
-            continues: row.get(22)?,
-            connection: row.get(23)?,
-            symptom: row.get(24)?,
-            evidence: row.get(25)?,
-            recorded: counts_of_text(row.get(18)?),
-            faults: row.get(20)?,
-        })
+            recorded: counts_of_text(row.get(18)?)
+        ))
     }
 }
 

@@ -38,7 +38,7 @@ pub(super) struct Span {
 impl Store {
     /// The trains a unit was in, and its whole life.
     pub(super) fn stays_of_unit(&self, serial: &str) -> SqlResult<(Vec<Stay>, Vec<Span>)> {
-        let found = self.backend().first(
+        let found = self.backend.first(
             "SELECT seq FROM unit WHERE serial = ?1",
             &values![serial],
             |row| row.get(0),
@@ -58,7 +58,7 @@ impl Store {
 
     /// The units that were in a train.
     pub(super) fn stays_in_train(&self, train: &str) -> SqlResult<(Vec<Stay>, Vec<Span>)> {
-        let units = self.backend().select(
+        let units = self.backend.select(
             "SELECT DISTINCT u.seq, u.serial FROM run r JOIN unit u ON u.seq = r.unit
              WHERE r.train = ?1 AND r.train <> '' ORDER BY u.serial",
             &values![train],
@@ -86,7 +86,7 @@ impl Store {
 
     /// The trains a unit was in one after the other.
     fn trains_of(&self, unit: i64, serial: &str) -> SqlResult<Vec<Stay>> {
-        let runs = self.backend().select(
+        let runs = self.backend.select(
             "SELECT r.train, r.started_at_us FROM run r WHERE r.unit = ?1 AND r.train <> ''
              ORDER BY r.started_at_us, r.id",
             &values![unit],
@@ -113,14 +113,14 @@ impl Store {
     /// The units a part was in, by the repairs that put it in and took it out.
     pub(super) fn stays_of_part(&self, serial: &str) -> SqlResult<(Vec<Stay>, Vec<Span>)> {
         let mut all = Conditions::default();
-        let faults = repaired_with(self.backend(), serial, &mut all);
+        let faults = repaired_with(&self.backend, serial, &mut all);
         let sql = format!(
             "SELECT e.at_us, u.seq, u.serial, e.body
              FROM fault_event e JOIN fault f ON f.seq = e.fault JOIN unit u ON u.seq = f.unit
              WHERE e.kind = '{REPAIR}' AND e.fault IN ({faults}){} ORDER BY e.at_us, e.seq",
             standing!("e")
         );
-        let repairs = self.backend().select(&sql, all.values(), |row| {
+        let repairs = self.backend.select(&sql, all.values(), |row| {
             let repair: RepairRecord = json(row, 3)?;
             Ok((
                 row.get::<i64>(0)?,
@@ -173,7 +173,7 @@ impl Store {
             stay.from_us.unwrap_or(i64::MIN),
             stay.until_us.unwrap_or(i64::MAX),
         );
-        let counted = self.backend().first(
+        let counted = self.backend.first(
             "SELECT count(*) FROM run r JOIN unit u ON u.seq = r.unit
              WHERE u.serial = ?1 AND r.started_at_us >= ?2 AND r.started_at_us < ?3",
             &values![stay.unit.as_str(), from_us, until_us],

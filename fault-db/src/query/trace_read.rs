@@ -7,7 +7,7 @@ use rusqlite::MAIN_DB;
 use rusqlite::blob::Blob;
 
 use super::traces::{GAPS, PARTIAL, sha256};
-use crate::backend::{Backend, Row, SqlResult, values};
+use crate::backend::{Backend, Row, SqlResult, from_row, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::store::Store;
@@ -221,7 +221,7 @@ impl Store {
     }
 
     fn reader(&self, seq: i64) -> Result<Reader<'_>, StoreError> {
-        match self.backend() {
+        match &self.backend {
             Backend::File(conn) => conn
                 .blob_open(MAIN_DB, "trace", "data", seq, true)
                 .map(Reader::File)
@@ -293,18 +293,10 @@ enum Reader<'s> {
 }
 
 fn read_row(row: Row<'_>) -> SqlResult<TraceRow> {
-    Ok(TraceRow {
-        seq: row.get(0)?,
-        t0_bench_us: row.get(1)?,
-        t0_us: row.get(2)?,
-        period_us: row.get(3)?,
-        rows: row.get(4)?,
-        trigger_row: row.get(5)?,
-        flags: row.get(6)?,
-        channel_set: row.get(7)?,
-        encoding: row.get(8)?,
-        bytes: row.get(9)?,
-    })
+    Ok(from_row!(row => TraceRow:
+        seq, t0_bench_us, t0_us, period_us, rows, trigger_row, flags, channel_set, encoding,
+        bytes
+    ))
 }
 
 fn places(all: &[Channel], names: Option<&[&str]>) -> Result<Vec<usize>, TraceError> {

@@ -4,7 +4,7 @@ use rusqlite::{Connection, OptionalExtension, params};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::backend::{Value, values};
+use crate::backend::{Value, from_row, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::seal;
@@ -58,15 +58,9 @@ impl Store {
             ),
             values,
             |row| {
-                Ok(TraceSummary {
-                    id: row.get(0)?,
-                    run_id: row.get(1)?,
-                    t0_us: row.get(2)?,
-                    period_us: row.get(3)?,
-                    rows: row.get(4)?,
-                    size_bytes: row.get(5)?,
-                    occurrences: row.get(6)?,
-                })
+                Ok(from_row!(row => TraceSummary:
+                    id, run_id, t0_us, period_us, rows, size_bytes, occurrences
+                ))
             },
         )
     }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::filter::Conditions;
-use crate::backend::{Backend, values};
+use crate::backend::{Backend, from_row, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::schema::sql_functions::{DAY_US, month_start_us, utc_day, utc_month};
@@ -125,16 +125,9 @@ impl Store {
             conditions.sql()
         );
         self.select("reading a measurement", &sql, conditions.values(), |row| {
-            Ok(TrendPoint {
-                at_us: row.get(0)?,
-                run_id: row.get(1)?,
-                unit_serial: row.get(2)?,
-                value: row.get(3)?,
-                unit: row.get(4)?,
-                low: row.get(5)?,
-                high: row.get(6)?,
-                verdict: row.get(7)?,
-            })
+            Ok(from_row!(row => TrendPoint:
+                at_us, run_id, unit_serial, value, unit, low, high, verdict
+            ))
         })
     }
 
@@ -150,7 +143,7 @@ impl Store {
         // Counts are kept for whole days; at both ends of the span an incomplete day may remain.
         let low = query.since_us.map_or(i64::MIN, |us| utc_day(us - 1) + 1);
         let high = query.until_us.map_or(i64::MAX, utc_day);
-        if matches!(self.backend(), Backend::Server(_)) || !is_fleet || low >= high {
+        if matches!(&self.backend, Backend::Server(_)) || !is_fleet || low >= high {
             return self.days(query);
         }
         self.measured(query)?;
@@ -210,7 +203,7 @@ impl Store {
         };
         let mut conditions = self.measured(&query)?;
         let is_kept = query.line.is_none() && query.train.is_none() && query.step.is_none();
-        let sql = match self.backend() {
+        let sql = match &self.backend {
             Backend::File(_) if is_kept => {
                 conditions = Conditions::default();
                 conditions.add("m.name = ?", Some(query.measurement.clone()));
@@ -265,11 +258,7 @@ impl Store {
             conditions.sql()
         );
         self.first("reading limits", &sql, conditions.values(), |row| {
-            Ok(TrendLimits {
-                unit: row.get(0)?,
-                low: row.get(1)?,
-                high: row.get(2)?,
-            })
+            Ok(from_row!(row => TrendLimits: unit, low, high))
         })
     }
 
@@ -288,12 +277,7 @@ impl Store {
             conditions.sql()
         );
         self.select("listing steps", &sql, conditions.values(), |row| {
-            Ok(TrendStep {
-                procedure: row.get(0)?,
-                step: row.get(1)?,
-                low: row.get(2)?,
-                high: row.get(3)?,
-            })
+            Ok(from_row!(row => TrendStep: procedure, step, low, high))
         })
     }
 
@@ -316,7 +300,7 @@ impl Store {
     /// # Errors
     /// The file or server cannot be read.
     pub fn measuring_procedures(&self, measurement: &str) -> Result<Vec<String>, StoreError> {
-        let sql = match self.backend() {
+        let sql = match &self.backend {
             Backend::File(_) => {
                 "SELECT DISTINCT procedure FROM measured_day WHERE name = ?1 ORDER BY 1"
             }
@@ -385,13 +369,10 @@ impl Store {
 
 fn trend_day(row: crate::backend::Row<'_>) -> crate::backend::SqlResult<TrendDay> {
     let n: u32 = row.get(1)?;
-    Ok(TrendDay {
+    Ok(from_row!(row => TrendDay:
+        _, _, _, sum_of_squares, least, most, not_passed;
         day_us: row.get::<i64>(0)? * DAY_US,
         n,
-        mean: row.get::<f64>(2)? / f64::from(n),
-        sum_of_squares: row.get(3)?,
-        least: row.get(4)?,
-        most: row.get(5)?,
-        not_passed: row.get(6)?,
-    })
+        mean: row.get::<f64>(2)? / f64::from(n)
+    ))
 }

@@ -2,7 +2,7 @@
 //! them. A sync brings those of all laptops, an import those that the other file has seen.
 
 use super::copied_from;
-use crate::backend::{Backend, SqlResult, values};
+use crate::backend::{Backend, SqlResult, from_row, values};
 use crate::id::Id;
 use crate::maintenance::Damage;
 
@@ -30,12 +30,7 @@ pub(crate) fn keep(file: &Backend, head: &KnownHead) -> SqlResult<()> {
 pub(crate) fn of_file(file: &Backend) -> SqlResult<Vec<KnownHead>> {
     let sql = "SELECT origin, ordinal, hash, seen_at_us FROM chain_head ORDER BY origin";
     file.select(sql, &[], |row| {
-        Ok(KnownHead {
-            origin: row.get(0)?,
-            ordinal: row.get(1)?,
-            hash: row.get(2)?,
-            seen_at_us: row.get(3)?,
-        })
+        Ok(from_row!(row => KnownHead: origin, ordinal, hash, seen_at_us))
     })
 }
 
@@ -45,12 +40,10 @@ pub(crate) fn seen_by(file: &Backend) -> SqlResult<Vec<KnownHead>> {
         WHERE origin IS NOT (SELECT value FROM about WHERE key = 'file_id') GROUP BY origin";
     let mut seen = of_file(file)?;
     let held = file.select(sql, &[], |row| {
-        Ok(KnownHead {
-            origin: row.get(0)?,
-            ordinal: row.get(1)?,
-            hash: row.get(2)?,
-            seen_at_us: 0,
-        })
+        Ok(from_row!(row => KnownHead:
+            origin, ordinal, hash;
+            seen_at_us: 0
+        ))
     })?;
     for head in held {
         let is_known =
@@ -69,12 +62,10 @@ pub(crate) fn of_server(server: &Backend, seen_at_us: i64) -> SqlResult<Vec<Know
             AND s.ordinal = (SELECT max(x.ordinal) FROM seal x WHERE x.origin = l.file_id)
          ORDER BY l.file_id";
     server.select(sql, &[], |row| {
-        Ok(KnownHead {
-            origin: row.get(0)?,
-            ordinal: row.get(1)?,
-            hash: row.get(2)?,
-            seen_at_us,
-        })
+        Ok(from_row!(row => KnownHead:
+            origin, ordinal, hash;
+            seen_at_us
+        ))
     })
 }
 
@@ -135,7 +126,7 @@ mod tests {
 
     fn seen(of: &Store) -> KnownHead {
         let head = of.head().expect("read").expect("a chain");
-        let (_, hash) = super::super::head_of(of.backend(), head.file)
+        let (_, hash) = super::super::head_of(&of.backend, head.file)
             .expect("read")
             .expect("a chain");
         KnownHead {
@@ -157,14 +148,14 @@ mod tests {
         statement(&own);
         statement(&own);
         let head = seen(&own);
-        keep(own.backend(), &head).expect("kept");
-        keep(other.backend(), &head).expect("kept");
+        keep(&own.backend, &head).expect("kept");
+        keep(&other.backend, &head).expect("kept");
         assert_eq!(own.check().expect("checked").problems, []);
         assert_eq!(other.seen_otherwise(&own).expect("compared"), [""; 0]);
         other.merge_from(&own).expect("merged");
 
         let cut = "DELETE FROM seal WHERE origin = ?1 AND ordinal = ?2";
-        own.backend()
+        own.backend
             .execute(cut, &values![head.origin, head.ordinal])
             .expect("cut");
         let said = &own.check().expect("checked").problems[0].detail.to_string();
@@ -183,7 +174,7 @@ mod tests {
         assert!(said.contains("was rewritten: entry 3"), "{said}");
         assert_eq!(other.seen_otherwise(&own).expect("compared"), [said]);
         let third = open(&dir.path().join("c.db"), 20_000);
-        keep(third.backend(), &head).expect("kept");
+        keep(&third.backend, &head).expect("kept");
         assert!(third.merge_from(&own).is_err());
     }
 
@@ -195,8 +186,8 @@ mod tests {
         statement(&own);
         let long = seen(&own);
         for head in [&long, &short] {
-            keep(own.backend(), head).expect("kept");
+            keep(&own.backend, head).expect("kept");
         }
-        assert_eq!(of_file(own.backend()).expect("read"), [long]);
+        assert_eq!(of_file(&own.backend).expect("read"), [long]);
     }
 }

@@ -4,7 +4,7 @@ use super::Signer;
 use super::places::Places;
 use super::signed::Signed;
 use super::statement::{About, SIGNATURE, Statement};
-use crate::backend::{Backend, SqlResult, values};
+use crate::backend::{Backend, SqlResult, from_row, values};
 use crate::id::Id;
 use crate::seal::{self, hex};
 use crate::values::step_counts::{COUNTS_OF_RUN, counts_of_text};
@@ -30,14 +30,7 @@ pub(crate) fn sign_new_entries(backend: &Backend, signer: &Signer, known: i64) -
          WHERE origin = ?1 AND ordinal > ?2 AND what IN ('run', 'event', 'note', 'instrument') ORDER BY ordinal",
         &values![file, known],
         |row| {
-            Ok(Entry {
-                ordinal: row.get(0)?,
-                what: row.get(1)?,
-                id: row.get(2)?,
-                payload: row.get(3)?,
-                digest: row.get(4)?,
-                hash: row.get(5)?,
-            })
+            Ok(from_row!(row => Entry: ordinal, what, id, payload, digest, hash))
         },
     )?;
     for entry in new {
@@ -102,19 +95,11 @@ fn about(backend: &Backend, id: Id, statement: &mut Statement) -> SqlResult<()> 
          FROM run r JOIN unit u ON u.seq = r.unit WHERE r.id = ?1"
     );
     let found = backend.first(&select, &values![id], |row| {
-        let about = About {
-            unit: row.get(2)?,
-            verdict: row.get(3)?,
-            operator: row.get(4)?,
-            source: row.get(5)?,
-            line: row.get(6)?,
-            train: row.get(7)?,
-            started_at_us: row.get(8)?,
-            app_version: row.get(9)?,
-            injected: row.get(10)?,
-            steps: counts_of_text(row.get(11)?).run().into(),
-            measurements: row.get(12)?,
-        };
+        let about = from_row!(row => About:
+            _, _, unit, verdict, operator, source, line, train, started_at_us, app_version,
+            injected, _, measurements;
+            steps: counts_of_text(row.get(11)?).run().into()
+        );
         Ok((row.get::<i64>(0)?, row.get::<i64>(1)?, about))
     })?;
     if let Some((run, at_us, about)) = found {

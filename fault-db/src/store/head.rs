@@ -10,14 +10,14 @@ impl Store {
     /// file never opened for writing.
     pub fn head(&self) -> Result<Option<SealHead>, StoreError> {
         const DOING: &str = "reading the last seal";
-        let Backend::File(_) = self.backend() else {
+        let Backend::File(_) = &self.backend else {
             return Ok(None);
         };
         let read = || -> SqlResult<_> {
-            let Some(file) = own_file_id(self.backend())? else {
+            let Some(file) = own_file_id(&self.backend)? else {
                 return Ok(None);
             };
-            let head = head_of(self.backend(), file)?;
+            let head = head_of(&self.backend, file)?;
             Ok(head.map(|(entries, hash)| SealHead {
                 file,
                 entries,
@@ -33,14 +33,14 @@ impl Store {
     /// One of them cannot be read.
     pub fn seen_otherwise(&self, other: &Store) -> Result<Vec<String>, StoreError> {
         const DOING: &str = "comparing chains of seals";
-        if !matches!(self.backend(), Backend::File(_)) {
+        if !matches!(&self.backend, Backend::File(_)) {
             return Ok(Vec::new());
         }
-        let known = known_heads::seen_by(self.backend());
+        let known = known_heads::seen_by(&self.backend);
         let known = known.map_err(|error| self.failed(DOING, error))?;
         let look = || {
-            let own = own_file_id(other.backend())?;
-            known_heads::broken(other.backend(), &known, own)
+            let own = own_file_id(&other.backend)?;
+            known_heads::broken(&other.backend, &known, own)
         };
         let broken = look().map_err(|error| other.failed(DOING, error))?;
         Ok(broken

@@ -126,7 +126,7 @@ impl Store {
 
     /// The run whose seal names a trace of this id that a file does not have.
     fn run_that_names(&self, named: &NamedTable, digits: &str) -> Result<Option<Id>, StoreError> {
-        if named.table != "trace" || !matches!(self.backend(), Backend::File(_)) {
+        if named.table != "trace" || !matches!(&self.backend, Backend::File(_)) {
             return Ok(None);
         }
         const SQL: &str = "SELECT s.id FROM seal s,
@@ -146,7 +146,7 @@ impl Store {
             if let Some(aliases) = named.aliases {
                 exact += &format!(" UNION SELECT named FROM {aliases} WHERE id = ?1");
             }
-            return self.backend().select(&exact, &[low], |row| row.get(0));
+            return self.backend.select(&exact, &[low], |row| row.get(0));
         }
         // A beginning is a range of the index, and so is the end that tables show; any other end scans all
         // ids.
@@ -156,7 +156,7 @@ impl Store {
                 Value::Bytes(bytes(digits).into()),
             )
         } else {
-            let hex = match self.backend() {
+            let hex = match &self.backend {
                 Backend::File(_) => "lower(hex(id))",
                 Backend::Server(_) => "encode(id, 'hex')",
             };
@@ -173,7 +173,7 @@ impl Store {
             );
         }
         sql += &format!(" LIMIT {MATCHES_SHOWN}");
-        self.backend()
+        self.backend
             .select(&sql, &[low, high, end], |row| row.get(0))
     }
 }

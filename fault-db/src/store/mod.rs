@@ -35,7 +35,7 @@ const STATEMENT_CACHE: usize = 64;
 ///
 /// Runs are recorded in a file. Queries, and changes of faults by users, work on a server as well.
 pub struct Store {
-    backend: Backend,
+    pub(crate) backend: Backend,
     path: PathBuf,
     ids: Option<RefCell<IdSource>>,
     codec: RefCell<TraceCodec>,
@@ -266,10 +266,6 @@ impl Store {
     ) -> Result<bool, StoreError> {
         let found = self.backend.has(sql, values);
         found.map_err(|error| self.failed(doing, error))
-    }
-
-    pub(crate) fn backend(&self) -> &Backend {
-        &self.backend
     }
 
     pub(crate) fn failed(&self, doing: &'static str, error: impl Into<SqlError>) -> StoreError {

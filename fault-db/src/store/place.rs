@@ -90,7 +90,7 @@ impl Store {
         let found = Self::open_read_only(&self.path)?;
         let is_there = || -> Result<bool, StoreError> {
             if let Some(began) = began {
-                let hash = hash_of(found.backend(), began.file, began.entries);
+                let hash = hash_of(&found.backend, began.file, began.entries);
                 let hash =
                     hash.map_err(|error| found.failed("comparing chains of seals", error))?;
                 if hash.is_none_or(|hash| hex(&hash) != began.seal) {
@@ -98,7 +98,7 @@ impl Store {
                 }
             }
             let there = found.run(run)?;
-            let sealed = sealed_as(found.backend(), run);
+            let sealed = sealed_as(&found.backend, run);
             let sealed =
                 sealed.map_err(|error| found.failed("reading the seal of a run", error))?;
             let is_whole = |steps| sealed.is_some() && there.steps.len() == steps;

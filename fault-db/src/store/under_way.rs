@@ -13,7 +13,7 @@ use crate::store::Store;
 impl Store {
     /// Whether a run that has no end is under way: a server has only such as are over.
     pub(crate) fn is_under_way(&self, run: Id) -> bool {
-        matches!(self.backend(), Backend::File(_)) && is_held(&self.lock_of(run))
+        matches!(&self.backend, Backend::File(_)) && is_held(&self.lock_of(run))
     }
 
     /// Tells other programs that a run is under way, until what this gives is dropped.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use fault_db::{
-    CauseRecord, ChangedFault, Channel, ChannelKind, FaultFilter, FaultRecord, FaultState,
+    CaseFault, CauseRecord, Channel, ChannelKind, FaultFilter, FaultRecord, FaultState,
     FreezeSample, Id, IdSource, MeasurementRecord, OpenOptions, RepairRecord, RunEnd, RunRecord,
     RunWriter, ScriptRecord, StatKey, StepRecord, Store, TraceData, UnitRecord, Verdict,
 };
@@ -113,7 +113,7 @@ pub trait Deeds: Borrow<Store> {
         repair: &RepairRecord,
         who: &str,
         at_us: i64,
-    ) -> (ChangedFault, Vec<ChangedFault>) {
+    ) -> (CaseFault, Vec<CaseFault>) {
         let done = self.borrow().repair_case(fault, repair, who, at_us);
         done.expect("a repair")
     }

@@ -5,29 +5,20 @@ use alloc::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-/// Use of a code.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum CodeMeaning {
-    /// The limit holds under cab signal.
-    #[default]
-    Line,
-    /// The limit holds in yard mode; under cab signal the code permits nothing.
-    Yard,
-    /// Ends the limit of yard mode.
-    YardCancel,
-}
-
-impl CodeMeaning {
-    /// Name of the meaning in files.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Line => "line",
-            Self::Yard => "yard",
-            Self::YardCancel => "yard_cancel",
-        }
+crate::labelled! {
+    /// Use of a code.
+    #[derive(
+        Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema,
+    )]
+    #[serde(rename_all = "snake_case")]
+    pub enum CodeMeaning: label {
+        /// The limit holds under cab signal.
+        #[default]
+        Line = "line",
+        /// The limit holds in yard mode; under cab signal the code permits nothing.
+        Yard = "yard",
+        /// Ends the limit of yard mode.
+        YardCancel = "yard_cancel",
     }
 }
 

@@ -11,10 +11,10 @@ pub struct TachoConfig {
     /// Wheel diameter, mm.
     pub wheel_diameter_mm: f64,
     /// Amount by which a diameter keyed in may be smaller than the configured one, mm: a wheel worn to its limit.
-    #[serde(default = "TachoConfig::default_worn_mm")]
+    #[serde(default = "thousandths::<80_000>")]
     pub worn_mm: f64,
     /// Amount by which a diameter keyed in may be greater, mm: as wheels are measured.
-    #[serde(default = "TachoConfig::default_over_mm")]
+    #[serde(default = "thousandths::<5000>")]
     pub over_mm: f64,
     /// Averaging time of the speed measurement, ms.
     pub window_ms: u32,
@@ -25,34 +25,34 @@ pub struct TachoConfig {
     /// Greatest believable acceleration of a wheel, m/s².
     pub plausible_accel_mps2: f64,
     /// Adhesion on a dry rail: a wheel whose speed changes faster than it gives the train spins or slides.
-    #[serde(default = "TachoConfig::default_adhesion")]
+    #[serde(default = "thousandths::<350>")]
     pub adhesion: f64,
     /// Speed, km/h, by which both tachometers must have fallen faster than adhesion lets a train slow, where they then
     /// give no pulses, so that they are not believed.
-    #[serde(default = "TachoConfig::default_fall_kmh")]
+    #[serde(default = "thousandths::<2000>")]
     pub fall_kmh: f64,
     /// How long that must last, ms.
-    #[serde(default = "TachoConfig::default_fall_ms")]
+    #[serde(default = "whole::<100>")]
     pub fall_ms: u32,
     /// Deceleration that the emergency brake has at the least, m/s²: a train whose speed is not believed stands after
     /// a stop at it.
-    #[serde(default = "TachoConfig::default_least_brake_mps2")]
+    #[serde(default = "thousandths::<800>")]
     pub least_brake_mps2: f64,
     /// Time for which power may be asked for before a tachometer gives a pulse, ms.
-    #[serde(default = "TachoConfig::default_no_pulses_ms")]
+    #[serde(default = "whole::<6000>")]
     pub no_pulses_ms: u32,
     /// Speed of the axles that TCMS measures, km/h, above which a train moves although no tachometer gives pulses.
-    #[serde(default = "TachoConfig::default_tcms_moves_kmh")]
+    #[serde(default = "thousandths::<2000>")]
     pub tcms_moves_kmh: f64,
     /// Speed, km/h, by which the axles that TCMS measures must be faster than both tachometers, so that these are not
     /// believed.
-    #[serde(default = "TachoConfig::default_tcms_difference_kmh")]
+    #[serde(default = "thousandths::<10_000>")]
     pub tcms_difference_kmh: f64,
     /// Share by which the unit's clock may be faster than the pace of TCMS's alive counter.
-    #[serde(default = "TachoConfig::default_clock_share")]
+    #[serde(default = "thousandths::<80>")]
     pub clock_share: f64,
     /// Share of the way by which the tachometers may differ from each other, and each from the track's way.
-    #[serde(default = "TachoConfig::default_share")]
+    #[serde(default = "thousandths::<30>")]
     pub share: f64,
     /// Speed that counts as standing, km/h [ASCE: 0.3 m/s].
     pub standstill_kmh: f64,
@@ -61,59 +61,8 @@ pub struct TachoConfig {
     /// Way against the reverser that trips, m.
     pub rollback_m: f64,
     /// Way without a stop, at a speed that counts as standing, from which on a train moves, m.
-    #[serde(default = "TachoConfig::default_creep_m")]
+    #[serde(default = "thousandths::<500>")]
     pub creep_m: f64,
-}
-
-impl TachoConfig {
-    /// Values of `sg100`, for configurations without the keys.
-    const fn default_creep_m() -> f64 {
-        0.5
-    }
-
-    const fn default_fall_kmh() -> f64 {
-        2.0
-    }
-
-    const fn default_worn_mm() -> f64 {
-        80.0
-    }
-
-    const fn default_over_mm() -> f64 {
-        5.0
-    }
-
-    const fn default_fall_ms() -> u32 {
-        100
-    }
-
-    const fn default_least_brake_mps2() -> f64 {
-        0.8
-    }
-
-    const fn default_no_pulses_ms() -> u32 {
-        6000
-    }
-
-    const fn default_tcms_moves_kmh() -> f64 {
-        2.0
-    }
-
-    const fn default_tcms_difference_kmh() -> f64 {
-        10.0
-    }
-
-    const fn default_clock_share() -> f64 {
-        0.08
-    }
-
-    const fn default_adhesion() -> f64 {
-        0.35
-    }
-
-    const fn default_share() -> f64 {
-        0.03
-    }
 }
 
 /// Supervision of markers and TRA.
@@ -134,41 +83,32 @@ pub struct MarkerConfig {
     /// Time between TRA tests, ms.
     pub tra_test_ms: u32,
     /// Time within which the same marker again is the same edge, ms.
-    #[serde(default = "MarkerConfig::default_debounce_ms")]
+    #[serde(default = "whole::<100>")]
     pub debounce_ms: u32,
     /// Time within which the same marker again is TRA's, and no marker of the track, ms.
-    #[serde(default = "MarkerConfig::default_bounce_ms")]
+    #[serde(default = "whole::<500>")]
     pub bounce_ms: u32,
     /// Tones of PSM1 to PSM4 behind the marker antenna, Hz.
-    #[serde(default = "MarkerConfig::default_tones_hz")]
+    #[serde(default = "tones_hz")]
     pub tones_hz: [f64; 4],
     /// Level in the antenna over the marker's middle, mV rms.
-    #[serde(default = "MarkerConfig::default_level_mv")]
+    #[serde(default = "thousandths::<500_000>")]
     pub level_mv: f64,
     /// Distance from the middle at which it has fallen to 61 % (1σ of a bell), m.
-    #[serde(default = "MarkerConfig::default_reach_m")]
+    #[serde(default = "thousandths::<100>")]
     pub reach_m: f64,
 }
 
-/// Values of `sg100`, for configurations without the keys.
-impl MarkerConfig {
-    const fn default_tones_hz() -> [f64; 4] {
-        [16_000.0, 17_000.0, 18_000.0, 19_000.0]
-    }
+/// Value of a key that a configuration may go without, as `sg100` has it: so many thousandths.
+const fn thousandths<const N: u32>() -> f64 {
+    N as f64 / 1000.0
+}
 
-    const fn default_level_mv() -> f64 {
-        500.0
-    }
+/// The same as a whole number.
+const fn whole<const N: u32>() -> u32 {
+    N
+}
 
-    const fn default_reach_m() -> f64 {
-        0.1
-    }
-
-    const fn default_debounce_ms() -> u32 {
-        100
-    }
-
-    const fn default_bounce_ms() -> u32 {
-        500
-    }
+const fn tones_hz() -> [f64; 4] {
+    [16_000.0, 17_000.0, 18_000.0, 19_000.0]
 }

@@ -12,28 +12,19 @@ const FULL_EFFORT: f64 = 1024.0;
 /// Strength from which on a thing is there that is only there or not.
 const HALF: f64 = 0.5;
 
-/// What kind of fault a mode is.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum FaultKind {
-    /// Something does not work, all the time.
-    Permanent,
-    /// The fault comes and goes, by time, speed or warmth.
-    Intermittent,
-    /// Something works, but not as well as it should.
-    Degraded,
-}
-
-impl FaultKind {
-    /// Word in catalogues and reports.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Permanent => "permanent",
-            Self::Intermittent => "intermittent",
-            Self::Degraded => "degraded",
-        }
+crate::labelled! {
+    /// What kind of fault a mode is.
+    #[derive(
+        Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+    )]
+    #[serde(rename_all = "snake_case")]
+    pub enum FaultKind: word {
+        /// Something does not work, all the time.
+        Permanent = "permanent",
+        /// The fault comes and goes, by time, speed or warmth.
+        Intermittent = "intermittent",
+        /// Something works, but not as well as it should.
+        Degraded = "degraded",
     }
 }
 

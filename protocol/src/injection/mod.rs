@@ -76,27 +76,18 @@ pub enum Effect {
     },
 }
 
-/// What a laptop alone lacks to find a fault: it has the maintenance port of a unit on a train at rest in a depot, and
-/// with it the TEST board, the antennas' test coils, the unit's read-backs, its self-test and its log.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum OutOfReach {
-    /// Wheels that turn, or a train that is driven.
-    Motion,
-    /// Somebody at the desk of a cab, or at its doors.
-    Cab,
-    /// The train's own equipment, or a code in the rail.
-    Train,
-}
-
-impl OutOfReach {
-    /// The word in the catalogue's file.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Motion => "motion",
-            Self::Cab => "cab",
-            Self::Train => "train",
-        }
+crate::labelled! {
+    /// What a laptop alone lacks to find a fault: it has the maintenance port of a unit on a train at rest in a depot, and
+    /// with it the TEST board, the antennas' test coils, the unit's read-backs, its self-test and its log.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+    #[serde(rename_all = "snake_case")]
+    pub enum OutOfReach: word {
+        /// Wheels that turn, or a train that is driven.
+        Motion = "motion",
+        /// Somebody at the desk of a cab, or at its doors.
+        Cab = "cab",
+        /// The train's own equipment, or a code in the rail.
+        Train = "train",
     }
 }
 

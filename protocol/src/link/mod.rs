@@ -46,7 +46,8 @@ pub struct Link {
     receivers: [Option<Receiver>; CHANNELS],
     next_seq: [u16; CHANNELS],
     payload: Vec<u8>,
-    counters: Counters,
+    /// Counts of accepted and rejected frames so far.
+    pub counters: Counters,
 }
 
 impl Link {
@@ -103,13 +104,13 @@ impl Link {
     /// step.
     pub fn push(&mut self, bytes: &[u8]) {
         self.decoder.push(bytes);
-        self.counters.garbage = self.decoder.garbage();
+        self.counters.garbage = self.decoder.garbage;
     }
 
     /// Starts a new connection: drops the unfinished frame and the state of every channel. Counters stay.
     pub fn reset_connection(&mut self) {
         self.decoder.restart();
-        self.counters.garbage = self.decoder.garbage();
+        self.counters.garbage = self.decoder.garbage;
         self.receivers = [None; CHANNELS];
     }
 
@@ -162,7 +163,7 @@ impl Link {
                 }
             }
         };
-        self.counters.garbage = self.decoder.garbage();
+        self.counters.garbage = self.decoder.garbage;
         if let Some(received) = &accepted {
             self.counters.accepted[received.header.channel as usize] += 1;
         }
@@ -172,11 +173,6 @@ impl Link {
     /// When the last frame was accepted on a channel.
     pub fn last_heard(&self, channel: Channel) -> Option<Instant> {
         self.receivers[channel as usize].map(|receiver| receiver.heard_at)
-    }
-
-    /// Counts of accepted and rejected frames so far.
-    pub const fn counters(&self) -> &Counters {
-        &self.counters
     }
 }
 
@@ -212,7 +208,7 @@ mod tests {
         unit.reset_connection();
         unit.push(&frame);
         assert_eq!(unit.poll(now).map(|r| r.message), Some(keep_alive));
-        let counters = unit.counters();
+        let counters = &unit.counters;
         assert_eq!(
             (counters.accepted_total(), counters.rejected_total()),
             (2, 0)
@@ -283,8 +279,8 @@ mod tests {
             Some(Status::default().into())
         );
         assert_eq!(bench.last_heard(Channel::Ptu), Some(now));
-        assert_eq!(unit.counters().accepted(Channel::Ptu), 2);
-        assert_eq!(unit.counters().rejected_total(), 0);
+        assert_eq!(unit.counters.accepted(Channel::Ptu), 2);
+        assert_eq!(unit.counters.rejected_total(), 0);
     }
 
     /// Goal: what is not of an end's channels neither acts nor answers, and no channel is blamed for it. Method: a
@@ -317,7 +313,7 @@ mod tests {
             ),
             "{heard:?}"
         );
-        let counters = unit.counters();
+        let counters = &unit.counters;
         assert_eq!(counters.rejected_for(Reject::Channel, None), 3);
         assert_eq!(counters.rejected_for(Reject::Checksum, None), 1);
         assert_eq!(counters.rejected_total(), 4);
@@ -339,7 +335,7 @@ mod tests {
                 unit.push(&frame);
                 while unit.poll(now).is_some() {}
             }
-            unit.counters().out_of_place(Channel::Ptu)
+            unit.counters.out_of_place(Channel::Ptu)
         };
         let (mut first, mut second) = (Link::new(End::Bench), Link::new(End::Bench));
         let mut now = Instant::from_ms(70_000);
@@ -353,7 +349,7 @@ mod tests {
             now += Duration::from_ms(200);
             assert_eq!(feed(&mut second, now, 1), 10);
         }
-        assert!(unit.counters().rejected(Reject::Sequence) > 12);
+        assert!(unit.counters.rejected(Reject::Sequence) > 12);
     }
 
     /// Method: a unit that lives for 300 ms, and again 100 ms later, with numbers and clock from the beginning.
@@ -373,7 +369,7 @@ mod tests {
             }
             now += Duration::from_ms(100);
         }
-        let counters = bench.counters();
+        let counters = &bench.counters;
         assert!(counters.rejected(Reject::Sequence) > 20);
         assert!(
             counters.accepted(Channel::Ptu) > 50,

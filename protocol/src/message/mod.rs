@@ -86,27 +86,21 @@ impl Channel {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Address {
     /// The maintenance program, PTU or BTU.
-    Tester,
+    Tester = 0x10,
     /// The unit under test.
-    Unit,
+    Unit = 0x20,
     /// The bench's input and output rack.
-    IoRack,
+    IoRack = 0x30,
     /// The train control and monitoring system.
-    Tcms,
+    Tcms = 0x40,
     /// The wayside TWC equipment.
-    Wayside,
+    Wayside = 0x50,
 }
 
 impl Address {
     /// Number on the wire.
     pub const fn code(self) -> u8 {
-        match self {
-            Self::Tester => 0x10,
-            Self::Unit => 0x20,
-            Self::IoRack => 0x30,
-            Self::Tcms => 0x40,
-            Self::Wayside => 0x50,
-        }
+        self as u8
     }
 
     /// The address of a wire number.

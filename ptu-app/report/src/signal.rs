@@ -259,7 +259,7 @@ pub fn plots(picture: &Picture, of: (&Reading, usize), words: &Words) -> Vec<Plo
     if has_spectrum {
         plots.push(spectrogram(picture, of, words));
     }
-    let envelope = fill(said.envelope, &[("hz", &picture.carrier_hz())]);
+    let envelope = fill(said.envelope, &[("hz", &picture.carrier_hz)]);
     plots.push(over_time(
         &envelope,
         said.millivolts_rms,

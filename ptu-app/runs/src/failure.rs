@@ -15,26 +15,20 @@ pub use crate::words::*;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
     /// All passed, or the question was answered.
-    Passed,
-    Failed,
+    Passed = 0,
+    Failed = 1,
     /// The command or a script is wrong.
-    Usage,
+    Usage = 2,
     /// The bench, the link or the database does not work.
-    Bench,
+    Bench = 3,
     /// Stopped by the operator.
-    Aborted,
+    Aborted = 130,
 }
 
 impl Exit {
     /// The number the shell sees.
     pub const fn code(self) -> u8 {
-        match self {
-            Self::Passed => 0,
-            Self::Failed => 1,
-            Self::Usage => 2,
-            Self::Bench => 3,
-            Self::Aborted => 130,
-        }
+        self as u8
     }
 }
 

@@ -1,6 +1,8 @@
 //! Distributes work to threads; the result does not depend on their number.
 
 use std::sync::Mutex;
+use std::sync::MutexGuard;
+use std::sync::PoisonError;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
@@ -56,6 +58,11 @@ pub fn run<T: Send>(
     let mut results = results.into_inner().unwrap_or_default();
     results.sort_by_key(|(i, _)| *i);
     results
+}
+
+/// Locks a mutex even if a thread panicked while holding it: the data are consistent at any time.
+pub fn held<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+    lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]

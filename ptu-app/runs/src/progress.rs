@@ -19,13 +19,8 @@ impl Progress {
     /// Progress of `count` runs; `what` is what the bar calls them.
     pub fn new(count: usize, what: String) -> Self {
         let bar = stdio::draws().then(|| {
-            let style = "{bar:30} {pos}/{len} runs  {elapsed} (left {eta})  {msg}";
-            ProgressBar::new(count as u64)
-                .with_message(what.clone())
-                .with_style(
-                    ProgressStyle::with_template(style)
-                        .unwrap_or_else(|_| ProgressStyle::default_bar()),
-                )
+            let form = "{bar:30} {pos}/{len} runs  {elapsed} (left {eta})  {msg}";
+            bar(count as u64, form).with_message(what.clone())
         });
         Self {
             bar,
@@ -48,10 +43,8 @@ impl Progress {
     }
 }
 
-impl Drop for Progress {
-    fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
-    }
+/// A bar of this form, which is taken away where it is dropped.
+pub fn bar(total: u64, form: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(form);
+    ProgressBar::new(total).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

@@ -122,7 +122,7 @@ impl Verb {
     /// pager.
     fn is_question(&self) -> bool {
         match self {
-            Self::Run(arguments) => arguments.is_list(),
+            Self::Run(arguments) => arguments.list,
             Self::Drive(_) | Self::Campaign(_) | Self::Train(_) | Self::Signal(_) => false,
             Self::Completions(_) | Self::LoadScripts => false,
             _ => true,

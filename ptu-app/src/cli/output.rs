@@ -95,23 +95,13 @@ impl Form {
 #[derive(Clone, Debug, Args)]
 pub struct Output {
     #[command(flatten)]
-    form: Form,
+    pub form: Form,
     /// Save the question under a name, for `ptu saved`
     #[arg(long, value_name = "NAME")]
     save: Option<String>,
 }
 
 impl Output {
-    /// Neither JSON nor CSV.
-    pub fn is_table(&self) -> bool {
-        self.form.is_table()
-    }
-
-    /// JSON.
-    pub fn is_json(&self) -> bool {
-        self.form.is_json()
-    }
-
     /// Saves the question, if it was given a name.
     pub fn save(&self) -> Result<(), Failure> {
         match &self.save {

@@ -129,7 +129,8 @@ pub struct RunArguments {
     check: bool,
     /// Show what would be run and drive nothing: a line for each procedure; all steps of those that are named
     #[arg(long)]
-    list: bool,
+    /// Whether the command drives nothing, and lists what would be run.
+    pub list: bool,
     /// With --list: all steps, also where no procedure is named
     #[arg(long, requires = "list")]
     steps: bool,
@@ -247,11 +248,6 @@ impl RunArguments {
         setup.record_whole = self.show.mcap.is_some();
         setup.run_control = operator.map(|operator| operator as Arc<dyn RunControl>);
         self.execute(&mut plan, setup, &directory)
-    }
-
-    /// Whether the command drives nothing, and lists what would be run.
-    pub fn is_list(&self) -> bool {
-        self.list
     }
 
     fn line(&self) -> &str {

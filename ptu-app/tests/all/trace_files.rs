@@ -202,6 +202,12 @@ fn each_formats_own_reader_finds_what_was_recorded() {
 #[ignore = "long suite: readers of other makers"]
 fn a_part_has_its_signals_and_its_span() {
     let place = Place::new();
+    let is_the_same = |file: &str, span: &str| {
+        let said = place.ptu(&["trace", "diff", "latest", file]).exits(0);
+        let compared = format!("compared from {span}");
+        assert!(said.out.contains("no signal differs"), "{}", said.out);
+        assert!(said.out.contains(&compared), "{}", said.out);
+    };
     let trace = trace(600);
     kept(&place, &trace);
     for file in ["t.csv", "t.parquet", "t.mcap"] {
@@ -219,24 +225,12 @@ fn a_part_has_its_signals_and_its_span() {
         assert_eq!(samples[1].as_f64(), Some(trace.columns[0][191]));
         assert_eq!(found["columns"].as_object().map(|c| c.len()), Some(2));
         // Laid at the trace again it is the same.
-        let said = place.ptu(&["trace", "diff", "latest", file]).exits(0);
-        assert!(said.out.contains("no signal differs"), "{}", said.out);
-        assert!(
-            said.out.contains("compared from -0.50 s to 1.00 s"),
-            "{}",
-            said.out
-        );
+        is_the_same(file, "-0.50 s to 1.00 s");
     }
     // A part that does not have the trigger.
     let late = "trace export latest --out late.csv --window 5..6";
     place.ptu(late).exits(0);
-    let said = place.ptu(&["trace", "diff", "latest", "late.csv"]).exits(0);
-    assert!(said.out.contains("no signal differs"), "{}", said.out);
-    assert!(
-        said.out.contains("compared from 5.00 s to 6.00 s"),
-        "{}",
-        said.out
-    );
+    is_the_same("late.csv", "5.00 s to 6.00 s");
     let shown = place.ptu("trace show latest --window 5..6 --signal eb");
     assert!(shown.exits(0).out.contains("1.1 s, without the trigger"));
 }

@@ -118,7 +118,7 @@ fn lateness(look_on: bool) -> (Vec<u64>, usize) {
     let context = Context::default();
     let wake = Arc::new(move || noted.lock().expect("times").push(Instant::now()));
     let mut app = App::new(&context, options, wake).expect("a window");
-    while app.units().chosen().phase() != Phase::Idle {
+    while app.units.chosen().phase() != Phase::Idle {
         frame(&context, &mut app);
         std::thread::sleep(Duration::from_millis(20));
     }
@@ -127,7 +127,7 @@ fn lateness(look_on: bool) -> (Vec<u64>, usize) {
         to: Speed::from_kmh(20.0),
         accel_mps2: 0.5,
     };
-    app.units().chosen().bench.apply(speed).expect("permitted");
+    app.units.chosen().bench.apply(speed).expect("permitted");
     std::thread::sleep(Duration::from_secs(1));
     shown.lock().expect("times").clear();
     let began = Instant::now();

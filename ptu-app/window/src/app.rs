@@ -42,12 +42,14 @@ pub struct Options {
 }
 
 pub struct App {
-    queries: QueryWorker,
+    /// Questions to the database and to files, likewise.
+    pub queries: QueryWorker,
     database: DataWatch,
     /// The person was told that it is gone.
     told_gone: bool,
-    units: Units,
-    settings: Settings,
+    /// The units, for who drives the window from outside.
+    pub units: Units,
+    pub settings: Settings,
     /// The name of the operator as it was written last.
     operator: String,
     saved: Settings,
@@ -57,7 +59,8 @@ pub struct App {
     pages: Pages,
     go_to: Vec<Destination>,
     closing: bool,
-    closed: bool,
+    /// The window is closed: every run recorded, every unit disarmed.
+    pub closed: bool,
     /// The person knows that outputs were not confirmed safe.
     noted_not_safe: bool,
     /// The system asks the program to end.
@@ -120,7 +123,7 @@ impl App {
         self.pages.poll(&mut page_context);
         self.frame.around(ui, &mut page_context);
         if page_context.units.chosen().waiting_run().is_some() && !page_context.settings.locked {
-            let goes_on = self.pages.goes_on(&page_context);
+            let goes_on = self.pages.procedures.goes_on(&page_context);
             Panel::top("lost").show(ui, |ui| self.frame.lost(ui, goes_on, &mut page_context));
         }
         if page_context.settings.locked {
@@ -143,8 +146,8 @@ impl App {
             }
             self.pages.show(page, ui, &mut page_context);
         });
-        let procedures = match self.frame.finds() {
-            true => self.pages.procedures(&page_context),
+        let procedures = match self.frame.find.open {
+            true => self.pages.procedures.loaded(&page_context),
             false => &[],
         };
         self.frame.over(ui, procedures, &mut page_context);
@@ -154,30 +157,11 @@ impl App {
         }
         for to in std::mem::take(page_context.go_to) {
             if to == Destination::Setup {
-                self.frame.set_up();
+                self.frame.setup.open();
             }
             page_context.settings.page = self.pages.go_to(to, &mut page_context);
             ui.ctx().request_repaint();
         }
-    }
-
-    /// The units, for who drives the window from outside.
-    pub fn units(&self) -> &Units {
-        &self.units
-    }
-
-    /// Questions to the database and to files, likewise.
-    pub fn queries(&self) -> &QueryWorker {
-        &self.queries
-    }
-
-    /// The window is closed: every run recorded, every unit disarmed.
-    pub fn is_closed(&self) -> bool {
-        self.closed
-    }
-
-    pub fn settings(&self) -> &Settings {
-        &self.settings
     }
 
     pub fn page(&self) -> Page {
@@ -192,7 +176,7 @@ impl App {
         }
         self.messages.over(About::Database);
         if gone {
-            let file = self.queries.paths().database.display().to_string();
+            let file = self.queries.paths.database.display().to_string();
             self.messages
                 .trouble_about(About::Database, words.frame.database_gone, told(file));
         }

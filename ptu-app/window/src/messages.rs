@@ -7,7 +7,8 @@ use ptu_runs::failure::Trouble;
 /// The latest messages, oldest first.
 #[derive(Debug, Default)]
 pub struct Messages {
-    all: Vec<Message>,
+    /// Oldest first.
+    pub all: Vec<Message>,
     /// Index of the latest trouble, until the user acknowledges it.
     unread: Option<usize>,
     /// Record that was taken back last.
@@ -151,11 +152,6 @@ impl Messages {
         for message in &mut self.all {
             message.over |= message.about == Some(about);
         }
-    }
-
-    /// Oldest first.
-    pub fn all(&self) -> &[Message] {
-        &self.all
     }
 
     /// The latest trouble that the user has not acknowledged.

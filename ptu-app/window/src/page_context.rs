@@ -34,7 +34,7 @@ impl PageContext<'_> {
     /// Reason for which nothing can be recorded here: the window reads a server. None if recording
     /// is possible.
     pub fn only_reads(&self) -> Option<&'static str> {
-        let reads = self.queries.paths().is_server();
+        let reads = self.queries.paths.is_server();
         reads.then_some(self.words.care.is_server)
     }
 

@@ -11,8 +11,8 @@ type Query = Box<dyn FnOnce(&DataPaths) + Send>;
 /// The thread and the queue of its queries; the thread ends when this is dropped.
 pub struct QueryWorker {
     queries: Sender<Query>,
-    wake: Wake,
-    paths: DataPaths,
+    pub wake: Wake,
+    pub paths: DataPaths,
 }
 
 impl QueryWorker {
@@ -49,14 +49,6 @@ impl QueryWorker {
         // The receiver lives as long as this sender.
         let _ = self.queries.send(query);
         Pending(receiver)
-    }
-
-    pub fn paths(&self) -> &DataPaths {
-        &self.paths
-    }
-
-    pub fn wake(&self) -> &Wake {
-        &self.wake
     }
 }
 

@@ -1,8 +1,12 @@
 //! The state of requests to the query worker, as a page keeps it from frame to frame.
 
-use ptu_runs::failure::Trouble;
+use eframe::egui::{RichText, Ui};
 
+use super::messages::Messages;
 use super::query_worker::Pending;
+use super::{DataPaths, PageContext, Palette};
+use ptu_report::words::Words;
+use ptu_runs::failure::{Failure, Trouble};
 
 /// The state of one request to the query worker.
 #[derive(Default)]
@@ -44,6 +48,44 @@ impl<T> Request<T> {
 
     pub fn is_idle(&self) -> bool {
         matches!(self, Self::Idle)
+    }
+
+    /// The response if it has arrived with this call, after which nothing is requested; a failure is told under `failed`.
+    pub fn take(&mut self, failed: &str, messages: &mut Messages) -> Option<T> {
+        if !self.poll() {
+            return None;
+        }
+        match std::mem::take(self) {
+            Self::Ready(value) => return Some(value),
+            Self::Failed(why) => messages.trouble(failed, why),
+            Self::Idle | Self::Pending(_) => {}
+        }
+        None
+    }
+
+    /// The response; while there is none, says in its place why.
+    pub fn shown(&self, ui: &mut Ui, words: &Words) -> Option<&T> {
+        match self {
+            Self::Ready(value) => return Some(value),
+            Self::Failed(why) => {
+                drop(ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad)));
+            }
+            Self::Idle | Self::Pending(_) => drop(ui.label(words.common.loading)),
+        }
+        None
+    }
+
+    /// Says that the response is still to come, or what was not done and why, with a button; true when a person tries
+    /// again.
+    pub fn missing(&self, ui: &mut Ui, words: &Words, not_done: &str) -> bool {
+        let Self::Failed(why) = self else {
+            ui.label(words.common.loading);
+            return false;
+        };
+        let said = RichText::new(not_done).color(Palette::of(ui).bad);
+        ui.label(said.strong());
+        ui.label(&*words.trouble(why));
+        ui.button(words.common.refresh).clicked()
     }
 }
 
@@ -102,6 +144,59 @@ impl<T> CachedResponse<Vec<T>> {
     /// Entries of the latest response; empty before there is one.
     pub fn items(&self) -> &[T] {
         self.shown.value().map(Vec::as_slice).unwrap_or_default()
+    }
+}
+
+/// A response that is requested again when the data have changed, or something else is to be read.
+pub struct FollowingResponse<K, T> {
+    /// What was asked for, and the version of the data then; none = to be requested anew.
+    asked: Option<(K, (usize, u64))>,
+    response: CachedResponse<T>,
+}
+
+impl<K, T> Default for FollowingResponse<K, T> {
+    fn default() -> Self {
+        Self {
+            asked: None,
+            response: CachedResponse::default(),
+        }
+    }
+}
+
+impl<K: Clone + PartialEq + Send + 'static, T: Send + 'static> FollowingResponse<K, T> {
+    /// Reads `what` if it is not read yet or the data have changed since; true when a response has arrived with this
+    /// call. The response to something else is dropped at once, unless it is one that `stays`.
+    pub fn keep_up(
+        &mut self,
+        (what, stays): (K, bool),
+        context: &PageContext<'_>,
+        read: impl FnOnce(&DataPaths, K) -> Result<T, Failure> + Send + 'static,
+    ) -> bool {
+        let wanted = (what, context.data_version());
+        if self.asked.as_ref() != Some(&wanted) {
+            let what = wanted.0.clone();
+            let pending = context.queries.run(move |paths| read(paths, what));
+            match self.asked.replace(wanted.clone()) {
+                Some((before, _)) if before != wanted.0 && !stays => {
+                    self.response.request_other(pending);
+                }
+                _ => self.response.request(pending),
+            }
+        }
+        self.response.poll()
+    }
+
+    /// Has it read again.
+    pub fn read_again(&mut self) {
+        self.asked = None;
+    }
+}
+
+impl<K, T> std::ops::Deref for FollowingResponse<K, T> {
+    type Target = CachedResponse<T>;
+
+    fn deref(&self) -> &CachedResponse<T> {
+        &self.response
     }
 }
 

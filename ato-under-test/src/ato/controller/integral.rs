@@ -13,15 +13,11 @@ const ROUNDING_MPS2: f64 = 0.005;
 /// still more of it; an error the other way takes it down at once.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Integral {
-    value: f64,
+    pub(super) value: f64,
     asked_n: f64,
 }
 
 impl Integral {
-    pub(super) fn value(&self) -> f64 {
-        self.value
-    }
-
     /// One cycle at `rate` per second, which has the sign of the error.
     pub(super) fn add(&mut self, rate: f64, input: &ControllerInput) {
         let withheld_n = self.asked_n - input.granted_n;

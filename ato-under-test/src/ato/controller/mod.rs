@@ -18,7 +18,8 @@ use core::fmt::Debug;
 
 use protocol::config::{AtoConfig, ControllerKind};
 
-use super::profile::{ReferenceInputs, Setpoint};
+use super::profile::{Reference, ReferenceGenerator, ReferenceInputs, Setpoint};
+use plausibility::PlausibilityCheck;
 
 pub use fuzzy::Fuzzy;
 pub use pi::Pi;
@@ -93,6 +94,44 @@ impl<T: SpeedController + Clone + 'static> CloneBoxed for T {
 impl Clone for Box<dyn SpeedController> {
     fn clone(&self) -> Self {
         (**self).clone_boxed()
+    }
+}
+
+/// What controllers that follow a jerk-limited profile share: the profile, the check of what is measured, and the way
+/// from a law's force to a demand.
+#[derive(Clone, Debug)]
+struct ProfileFollower {
+    generator: ReferenceGenerator,
+    plausibility: PlausibilityCheck,
+    feed_forward: bool,
+}
+
+impl ProfileFollower {
+    fn new(config: &AtoConfig) -> Self {
+        Self {
+            generator: ReferenceGenerator::new(config),
+            plausibility: PlausibilityCheck::new(config),
+            feed_forward: config.profile.feed_forward,
+        }
+    }
+
+    /// The reference of this cycle, or the brake where the train does not do as it should.
+    fn reference(&mut self, input: &ControllerInput) -> Result<Reference, Demand> {
+        match self.plausibility.brake(input) {
+            Some(brake) => Err(brake),
+            None => Ok(self.generator.step(input.into())),
+        }
+    }
+
+    fn demand(&self, reference: &Reference, input: &ControllerInput, law_n: f64) -> Demand {
+        let mut force_n = law_n;
+        if self.feed_forward || reference.stopping {
+            force_n += input.mass_kg * reference.setpoint.accel_mps2;
+        }
+        Demand {
+            target_mps: reference.setpoint.speed_mps,
+            force_n: force_n.min(reference.most_mps2 * input.mass_kg),
+        }
     }
 }
 

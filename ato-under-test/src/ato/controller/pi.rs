@@ -13,15 +13,11 @@
 use protocol::config::{AtoConfig, GainUnit};
 
 use super::integral::Integral;
-use super::plausibility::PlausibilityCheck;
-use super::{ControllerInput, Demand, SpeedController};
-use crate::ato::profile::ReferenceGenerator;
+use super::{ControllerInput, Demand, ProfileFollower, SpeedController};
 
 #[derive(Clone, Debug)]
 pub struct Pi {
-    generator: ReferenceGenerator,
-    plausibility: PlausibilityCheck,
-    feed_forward: bool,
+    follower: ProfileFollower,
     /// N per m/s at `mass_kg`.
     proportional: f64,
     /// N/s per m/s at `mass_kg`.
@@ -40,9 +36,7 @@ impl Pi {
             GainUnit::Kmh => 3.6,
         };
         Self {
-            generator: ReferenceGenerator::new(config),
-            plausibility: PlausibilityCheck::new(config),
-            feed_forward: config.profile.feed_forward,
+            follower: ProfileFollower::new(config),
             proportional: pi.proportional_n * per_mps,
             integral_rate: pi.integral_n_per_s * per_mps,
             mass_kg: pi.mass_kg,
@@ -53,31 +47,25 @@ impl Pi {
 
 impl SpeedController for Pi {
     fn step(&mut self, input: &ControllerInput) -> Demand {
-        if let Some(brake) = self.plausibility.brake(input) {
-            return brake;
-        }
-        let reference = self.generator.step(input.into());
+        let reference = match self.follower.reference(input) {
+            Ok(reference) => reference,
+            Err(brake) => return brake,
+        };
         let error = reference.setpoint.speed_mps - input.speed_mps;
         self.integral.add(self.integral_rate * error, input);
-        let law_n = self.proportional * error + self.integral.value();
-        let mut force_n = law_n * input.mass_kg / self.mass_kg;
-        if self.feed_forward || reference.stopping {
-            force_n += input.mass_kg * reference.setpoint.accel_mps2;
-        }
-        force_n = force_n.min(reference.most_mps2 * input.mass_kg);
-        self.integral.asked(force_n);
-        Demand {
-            target_mps: reference.setpoint.speed_mps,
-            force_n,
-        }
+        let law_n = self.proportional * error + self.integral.value;
+        let law_n = law_n * input.mass_kg / self.mass_kg;
+        let demand = self.follower.demand(&reference, input, law_n);
+        self.integral.asked(demand.force_n);
+        demand
     }
 
     fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64 {
-        self.generator.slowing_m(from_mps, to_mps)
+        self.follower.generator.slowing_m(from_mps, to_mps)
     }
 
     fn reset(&mut self) {
-        self.generator.reset();
+        self.follower.generator.reset();
         self.integral = Integral::default();
     }
 }

@@ -56,7 +56,7 @@ impl Pss {
     fn target_mps(&self, input: &ControllerInput) -> f64 {
         let ahead_m = input.speed_mps * self.ahead_s;
         input.to_stop_m.map_or(input.cruise_mps, |distance| {
-            let curve_mps = self.descent.curve().at(distance + ahead_m).0;
+            let curve_mps = self.descent.curve.at(distance + ahead_m).0;
             input.cruise_mps.min(curve_mps)
         })
     }
@@ -89,7 +89,7 @@ impl SpeedController for Pss {
             let rate = self.gain_per_s * self.integral_per_s * error;
             self.integral.add(rate, input);
         }
-        let asked_mps2 = reference.accel_mps2 + correction_mps2 + self.integral.value();
+        let asked_mps2 = reference.accel_mps2 + correction_mps2 + self.integral.value;
         let most_mps2 = self.descent.most_mps2(input.to_stop_m);
         let force_n = asked_mps2.min(most_mps2) * input.mass_kg;
         self.integral.asked(force_n);

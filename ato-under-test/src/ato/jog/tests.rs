@@ -100,7 +100,7 @@ fn a_missed_stop_point_is_reached_from_either_side() {
             train.to_stop_m
         );
         assert_eq!(train.tries, 1, "{from_m}");
-        assert!(!train.jog.gave_up());
+        assert!(!train.jog.gave_up);
     }
 }
 
@@ -164,7 +164,7 @@ fn what_it_cannot_reach_it_gives_up_at_once() {
         let mut jog = Jog::default();
         let outcome = jog.step(&inputs, &config().jog);
         assert_eq!(outcome.failed_m, failed_m, "{inputs:?}");
-        assert!(outcome.ended && jog.gave_up());
+        assert!(outcome.ended && jog.gave_up);
     }
     // Before the stop point an ordinary run leads on.
     let short = with(near, |it| it.to_stop_m = Some(5.1));

@@ -15,7 +15,7 @@ use super::{Setpoint, StopCurve};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Descent {
-    curve: StopCurve,
+    pub curve: StopCurve,
     jerk_mps3: f64,
     gain_per_s: f64,
 }
@@ -28,10 +28,6 @@ impl Descent {
             jerk_mps3: config.jerk_mps3,
             gain_per_s: config.join_per_s,
         }
-    }
-
-    pub fn curve(&self) -> &StopCurve {
-        &self.curve
     }
 
     /// Greatest acceleration that may be asked for, m/s²: in the last part of the curve the brake is
@@ -121,7 +117,7 @@ mod tests {
                 } else {
                     now.speed_mps += now.accel_mps2 * dt;
                 }
-                let over = now.speed_mps - descent.curve().at(distance_m).0;
+                let over = now.speed_mps - descent.curve.at(distance_m).0;
                 assert!(
                     over < 0.05,
                     "{speed_mps}: over by {over} m/s at {distance_m} m"
@@ -143,7 +139,7 @@ mod tests {
             speed_mps: 16.0,
             accel_mps2: 0.0,
         };
-        let (speed_mps, accel_mps2) = descent.curve().at(150.0);
+        let (speed_mps, accel_mps2) = descent.curve.at(150.0);
         let next = descent.follow(from, 150.0);
         assert_eq!((next.speed_mps, next.accel_mps2), (speed_mps, accel_mps2));
     }

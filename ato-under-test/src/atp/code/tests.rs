@@ -41,12 +41,12 @@ impl Receiver {
 
     /// Hears a signal for some time; when each code came into force, ms from the first scan.
     fn hear(&mut self, signal: AntennaSignal, ms: u64) -> Vec<(u64, Code)> {
-        let (begin, mut before, mut changes) = (self.now, self.decoder.code(), Vec::new());
+        let (begin, mut before, mut changes) = (self.now, self.decoder.code, Vec::new());
         while self.now < begin + Duration::from_ms(ms) {
             self.decoder
                 .step(self.now, signal, self.confirms, &self.config, &mut self.log);
-            if self.decoder.code() != before {
-                before = self.decoder.code();
+            if self.decoder.code != before {
+                before = self.decoder.code;
                 changes.push((self.now.since(begin).as_ms(), before));
             }
             self.now += SCAN;
@@ -103,7 +103,7 @@ fn a_scan_now_and_then_renews_no_code() {
         receiver.hear(SILENCE, 700);
         receiver.hear(signal(3000.0, rate_hz, 500.0), SCAN.as_ms());
         receiver.hear(SILENCE, 400);
-        assert_eq!(receiver.decoder.code(), Code::None, "{rate_hz} Hz");
+        assert_eq!(receiver.decoder.code, Code::None, "{rate_hz} Hz");
     }
 }
 
@@ -141,9 +141,9 @@ fn codes_that_alternate_are_this_table() {
         let mut after = alloc::vec![];
         for _ in 0..8000 / (one_ms + two_ms) {
             receiver.hear(one, one_ms);
-            after.push(receiver.decoder.code());
+            after.push(receiver.decoder.code);
             receiver.hear(two, two_ms);
-            after.push(receiver.decoder.code());
+            after.push(receiver.decoder.code);
         }
         let settled = &after[after.len() / 2..];
         let what = (one, one_ms, two, two_ms);
@@ -168,7 +168,7 @@ fn a_pause_between_codes_that_alternate_frees_none() {
         receiver.hear(SILENCE, 50);
         receiver.hear(CODE_75, 450);
         receiver.hear(SILENCE, 50);
-        after.push(receiver.decoder.code());
+        after.push(receiver.decoder.code);
     }
     assert!(
         after.iter().all(|code| *code == Code::Known(1)),
@@ -194,7 +194,7 @@ fn a_code_that_was_taken_for_a_moment_is_back_after_the_hold_time() {
         receiver.hear(CODE_25, 100);
         receiver.hear(CODE_75, 100);
     }
-    assert_eq!(receiver.decoder.code(), Code::Known(6), "the fault");
+    assert_eq!(receiver.decoder.code, Code::Known(6), "the fault");
 }
 
 #[test]
@@ -215,7 +215,7 @@ fn level_carrier_and_rate_are_taken_within_their_tolerances() {
     ] {
         let mut receiver = Receiver::new();
         receiver.hear(signal, 1000);
-        assert_eq!(receiver.decoder.code(), code, "{signal:?}");
+        assert_eq!(receiver.decoder.code, code, "{signal:?}");
     }
 }
 
@@ -236,7 +236,7 @@ fn a_code_of_the_yard_permits_nothing_on_the_line() {
         }
         let limit = receiver.decoder.limit(&config.codes);
         assert_eq!(
-            (receiver.decoder.code(), limit),
+            (receiver.decoder.code, limit),
             (Code::Known(1), Speed::ZERO),
             "{other:?}"
         );

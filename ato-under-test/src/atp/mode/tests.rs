@@ -62,7 +62,7 @@ impl Train {
             self.now += Duration::from_ms(ms);
             self.sequence.step(self.now, inputs, &mut self.log);
         }
-        self.sequence.mode()
+        self.sequence.mode
     }
 }
 
@@ -111,7 +111,7 @@ fn an_emergency_brake_ends_the_run_and_the_next_departs_anew() {
         .flat_map(|one| by_others.map(|line_open| (one, line_open)))
     {
         let mut train = Train::new();
-        let mut after = |inputs| (train.after(3, 600, inputs), train.sequence.stops());
+        let mut after = |inputs| (train.after(3, 600, inputs), train.sequence.stops);
         let given = with(GOOD, |it| (it.switch, it.start) = (switch, start));
         after(withheld(with(given, |it| it.start = false)));
         assert_eq!(after(given).0, Mode::AutomaticRun);
@@ -198,7 +198,7 @@ fn a_door_or_the_cab_that_ends_a_run_in_motion_stops_the_train() {
         let mut after = |departure, lacking| {
             (
                 train.after(1, 1_100, driverless(departure, lacking)),
-                train.sequence.stops(),
+                train.sequence.stops,
             )
         };
         after(false, Refusals::empty());
@@ -222,7 +222,7 @@ fn a_door_or_the_cab_that_ends_a_run_in_motion_stops_the_train() {
 #[test]
 fn after_a_failure_of_ato_a_driverless_train_waits_for_a_new_departure() {
     let mut train = Train::new();
-    let mut after = |inputs| (train.after(3, 600, inputs), train.sequence.refusals());
+    let mut after = |inputs| (train.after(3, 600, inputs), train.sequence.refusals);
     let none = Refusals::empty();
     let waits = withheld(DRIVERLESS);
     assert_eq!(after(waits).0, Mode::Automatic);

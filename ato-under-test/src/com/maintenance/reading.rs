@@ -34,7 +34,7 @@ impl Maintenance {
 
     /// Rows of the run record to send in this cycle.
     pub fn read_run(&mut self, record: &RunRecord, replies: &mut Vec<Message>) {
-        let (rows, per_cycle) = (record.rows(), ROWS_PER_CYCLE);
+        let (rows, per_cycle) = (&record.rows, ROWS_PER_CYCLE);
         if send(
             &mut self.run_reader,
             rows,
@@ -43,7 +43,7 @@ impl Maintenance {
             replies,
         ) {
             let end = RunEnd {
-                next_index: rows.next_index(),
+                next_index: rows.next_index,
                 oldest_index: rows.oldest_index(),
             };
             replies.push(end.into());

@@ -59,7 +59,7 @@ impl Stop {
             self.now += CYCLE;
         }
         let station = &self.station;
-        (station.opens(), station.closes(), station.waits())
+        (station.opens, station.closes(), station.waits)
     }
 
     fn logged(&self) -> Vec<(u16, i32)> {

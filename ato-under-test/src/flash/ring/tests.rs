@@ -22,15 +22,15 @@ fn content(sequence: u32) -> [u8; 8] {
 }
 
 fn fill(flash: &mut RamFlash, ring: &mut LogRing, until: u32) {
-    while ring.next() < until {
-        let sequence = ring.next();
+    while ring.next < until {
+        let sequence = ring.next;
         ring.append(flash, 7, &content(sequence)).expect("stored");
     }
 }
 
 /// Numbers kept, each with the content it was given.
 fn kept(flash: &RamFlash, ring: &LogRing) -> Vec<u32> {
-    let found = (ring.oldest()..ring.next()).filter(|sequence| {
+    let found = (ring.oldest()..ring.next).filter(|sequence| {
         match ring.read(flash, *sequence).expect("readable") {
             Slot::Entry(stored) => {
                 assert_eq!(stored.content[..8], content(*sequence));
@@ -47,14 +47,11 @@ fn kept(flash: &RamFlash, ring: &LogRing) -> Vec<u32> {
 fn an_erased_device_holds_nothing_and_entries_are_found_again() {
     let mut flash = RamFlash::default();
     let mut ring = mounted(&flash);
-    assert_eq!(
-        (ring.oldest(), ring.next(), ring.last_power_up()),
-        (0, 0, 0)
-    );
+    assert_eq!((ring.oldest(), ring.next, ring.last_power_up), (0, 0, 0));
     for until in [1, SLOTS - 1, SLOTS, SLOTS + 1, 2 * SLOTS, 5 * SLOTS + 3] {
         fill(&mut flash, &mut ring, until);
         ring = mounted(&flash);
-        assert_eq!((ring.next(), ring.last_power_up()), (until, 7));
+        assert_eq!((ring.next, ring.last_power_up), (until, 7));
         let oldest = (until - 1) / SLOTS * SLOTS;
         let oldest = oldest.saturating_sub((BLOCKS as u32 - 1) * SLOTS);
         assert_eq!(kept(&flash, &ring), (oldest..until).collect::<Vec<_>>());
@@ -93,7 +90,7 @@ fn power_that_fails_at_any_byte_loses_the_entry_being_written_at_most() {
             for cut in [cut, cut / 2] {
                 let mut ring = mounted(&flash);
                 flash.fail_after(Some(cut));
-                let _ = ring.append(&mut flash, 7, &content(ring.next()));
+                let _ = ring.append(&mut flash, 7, &content(ring.next));
                 flash.fail_after(None);
             }
             let mut ring = mounted(&flash);
@@ -109,7 +106,7 @@ fn power_that_fails_at_any_byte_loses_the_entry_being_written_at_most() {
                 given_up == 0 || erases && given_up <= SLOTS as usize,
                 "{before} {cut}"
             );
-            let next = ring.next();
+            let next = ring.next;
             fill(&mut flash, &mut ring, next + 2 * SLOTS);
             let found = kept(&flash, &mounted(&flash));
             assert!(
@@ -162,7 +159,7 @@ proptest! {
         for sequence in before {
             prop_assert!(found.contains(&sequence) || hit(sequence), "{sequence} of {until}");
         }
-        let next = ring.next();
+        let next = ring.next;
         fill(&mut flash, &mut ring, next + SLOTS);
         let ring = mounted(&flash);
         let found = kept(&flash, &ring);
@@ -181,8 +178,8 @@ proptest! {
             }
         }
         let mut ring = mounted(&flash);
-        let next = ring.next();
+        let next = ring.next;
         fill(&mut flash, &mut ring, next + SLOTS + 1);
-        prop_assert_eq!(mounted(&flash).next(), next + SLOTS + 1);
+        prop_assert_eq!(mounted(&flash).next, next + SLOTS + 1);
     }
 }

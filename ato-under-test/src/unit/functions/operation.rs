@@ -15,10 +15,10 @@ use crate::kernel::{EventLog, RunCycle};
 impl Functions {
     pub(super) fn operate(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
         let was_ready = self.ato_outputs.ready;
-        let data = self.twc.data();
+        let data = self.twc.data.as_ref();
         let tachometers = self.atp.tachometers();
         let inputs = AtoInputs {
-            mode: self.atp.sequence().mode(),
+            mode: self.atp.sequence().mode,
             limit: self.atp.limit(),
             codes: &around.setup.config.codes,
             heard_within_s: f64::from(around.setup.config.receiver.hold_ms) / 1000.0,
@@ -29,14 +29,14 @@ impl Functions {
                 Some(RunningMode::Slow) if !around.guards.slow_running => RunningMode::Normal,
                 ordered => ordered.unwrap_or_default(),
             },
-            section: self.locator.section(),
+            section: self.locator.section.as_ref(),
             position_m: self.locator.position_m(),
             ahead_m: self.locator.ahead_m(),
             aligned_m: around.setup.config.doors.aligned_m,
             last_marker: self.locator.knows_stop_point(),
             jogs: around.guards.jogging,
             speed: self.wheel_speed(),
-            standstill: tachometers.standstill(),
+            standstill: tachometers.standstill,
             power_cut: self.atp.power_cut() || around.tcms.cuts_power(),
             train: TrainReport {
                 overrides: around.tcms.overrides(),
@@ -84,8 +84,8 @@ impl Functions {
     /// Speed ATO goes by: of the wheel that markers calibrate; ATP keeps its own, safe speed.
     fn wheel_speed(&self) -> Speed {
         let tachometers = self.atp.tachometers();
-        let wheel = 1.0 + self.locator.wheel_correction();
-        Speed::from_mps(tachometers.channel(tachometers.distance_channel()).mps() * wheel)
+        let wheel = 1.0 + self.locator.wheel.correction();
+        Speed::from_mps(tachometers.channel(tachometers.distance_channel).mps() * wheel)
     }
 
     /// This cycle as the run record keeps it.
@@ -95,15 +95,15 @@ impl Functions {
             speed_cms: self.wheel_speed().to_cms(),
             target_cms: self.ato_outputs.target.to_cms(),
             effort: self.ato_outputs.effort,
-            marker: (self.locator.last_marker(), self.locator.count()),
-            state: self.ato.state(),
+            marker: (self.locator.last_marker, self.locator.count),
+            state: self.ato.state,
         }
     }
 
     /// KRN's checks of what ATO needs [S0 §1, §3.3]; its processor is under the watchdog.
     fn ato_checks(&self, around: &Surroundings<'_>) -> Checks {
         let failed = around.self_tester.failed();
-        let run = self.atp.sequence().mode() == Mode::AutomaticRun;
+        let run = self.atp.sequence().mode == Mode::AutomaticRun;
         let causes = [
             (
                 failed.intersects(SelfTest::CONFIGURATION | SelfTest::TRACK_DATABASE),

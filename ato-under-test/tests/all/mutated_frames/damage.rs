@@ -5,57 +5,27 @@ use protocol::link::{Link, MAX_AHEAD};
 use protocol::message::{CATALOGUE, Channel, Message, MessageSpec};
 use protocol::{Instant, Random};
 
-/// Damage to a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    Bits,
-    Bytes,
-    Cut,
-    Doubled,
-    Spliced,
-    Burst,
-    Escaped,
-    /// From here on the check sequence fits.
-    Length,
-    Header,
-    Number,
-    Stamp,
-    Older,
+protocol::labelled! {
+    /// Damage to a frame.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Kind: label {
+        Bits = "1 to 8 bits flipped",
+        Bytes = "1 to 8 bytes changed",
+        Cut = "a piece cut out",
+        Doubled = "a piece doubled, up to four times",
+        Spliced = "a piece of another frame put in",
+        Burst = "a burst of noise put in",
+        Escaped = "a byte escaped without need",
+        /// From here on the check sequence fits.
+        Length = "FCS fits: payload too short or too long",
+        Header = "FCS fits: version, channel or address changed",
+        Number = "FCS fits: sequence number out of reach",
+        Stamp = "FCS fits: time stamp of up to 60 s ago",
+        Older = "a sound frame that was heard before",
+    }
 }
 
 impl Kind {
-    pub const ALL: [Self; 12] = [
-        Self::Bits,
-        Self::Bytes,
-        Self::Cut,
-        Self::Doubled,
-        Self::Spliced,
-        Self::Burst,
-        Self::Escaped,
-        Self::Length,
-        Self::Header,
-        Self::Number,
-        Self::Stamp,
-        Self::Older,
-    ];
-
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Bits => "1 to 8 bits flipped",
-            Self::Bytes => "1 to 8 bytes changed",
-            Self::Cut => "a piece cut out",
-            Self::Doubled => "a piece doubled, up to four times",
-            Self::Spliced => "a piece of another frame put in",
-            Self::Burst => "a burst of noise put in",
-            Self::Escaped => "a byte escaped without need",
-            Self::Length => "FCS fits: payload too short or too long",
-            Self::Header => "FCS fits: version, channel or address changed",
-            Self::Number => "FCS fits: sequence number out of reach",
-            Self::Stamp => "FCS fits: time stamp of up to 60 s ago",
-            Self::Older => "a sound frame that was heard before",
-        }
-    }
-
     /// The check sequence is that of the damaged frame.
     const fn fits(self) -> bool {
         self as usize >= Self::Length as usize

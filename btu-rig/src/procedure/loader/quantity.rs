@@ -4,51 +4,31 @@ use std::cmp::Ordering;
 
 use crate::procedure::origin::Origin;
 
-/// Dimension of a quantity, with the unit in which it is kept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Dimension {
-    /// km/h.
-    Speed,
-    /// m/s².
-    Acceleration,
-    /// ms.
-    Time,
-    /// m.
-    Distance,
-    /// Hz.
-    Frequency,
-    /// mV.
-    Level,
-    /// kg.
-    Mass,
+protocol::labelled! {
+    /// Dimension of a quantity, with the unit in which it is kept.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(super) enum Dimension: unit {
+        /// km/h.
+        Speed = "km/h",
+        /// m/s².
+        Acceleration = "m/s²",
+        /// ms.
+        Time = "ms",
+        /// m.
+        Distance = "m",
+        /// Hz.
+        Frequency = "Hz",
+        /// mV.
+        Level = "mV",
+        /// kg.
+        Mass = "kg",
+    }
 }
 
 impl Dimension {
-    /// The unit it is kept and shown in.
-    pub(super) const fn unit(self) -> &'static str {
-        match self {
-            Self::Speed => "km/h",
-            Self::Acceleration => "m/s²",
-            Self::Time => "ms",
-            Self::Distance => "m",
-            Self::Frequency => "Hz",
-            Self::Level => "mV",
-            Self::Mass => "kg",
-        }
-    }
-
     /// The dimension of signals and measurements in `unit`; `None` for plain numbers.
     pub(super) fn of_unit(unit: &str) -> Option<Self> {
-        match unit {
-            "km/h" => Some(Self::Speed),
-            "m/s²" => Some(Self::Acceleration),
-            "ms" => Some(Self::Time),
-            "m" => Some(Self::Distance),
-            "Hz" => Some(Self::Frequency),
-            "mV" => Some(Self::Level),
-            "kg" => Some(Self::Mass),
-            _ => None,
-        }
+        Self::ALL.into_iter().find(|one| one.unit() == unit)
     }
 
     /// Name with article and example, for messages.

@@ -136,7 +136,7 @@ impl Runner {
                 self.findings.extend(before);
                 let wanted = live.is_some() || !self.leaving;
                 if wanted && place < self.schedule.len() {
-                    self.spoil(place, live.map_or(now, |run| run.started()), now, by);
+                    self.spoil(place, live.map_or(now, |run| run.started), now, by);
                 }
             }
             // Actions of the clean-up may have waited for what the unit did not do while it braked.

@@ -78,7 +78,7 @@ enum Stop {
 /// Runs one procedure once.
 #[derive(Debug)]
 pub struct Runner {
-    procedure: Arc<Procedure>,
+    pub procedure: Arc<Procedure>,
     options: RunOptions,
     schedule: Vec<ScheduledStep>,
     phase: Phase,
@@ -165,10 +165,6 @@ impl Runner {
             findings: Findings::default(),
             out: Vec::new(),
         }
-    }
-
-    pub fn procedure(&self) -> &Arc<Procedure> {
-        &self.procedure
     }
 
     /// Operator's stop. The first ends the present step and goes on to clean-up; the second cuts

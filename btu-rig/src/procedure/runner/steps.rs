@@ -141,7 +141,7 @@ impl Runner {
             captured: &self.captured,
             unit_time: self.evidence.unit_time,
         };
-        let started = run.started();
+        let started = run.started;
         let place = *next - 1;
         let before_target = place < self.begun_at.target;
         let end = run.finish(step, scan, aborted);

@@ -46,7 +46,8 @@ impl std::str::FromStr for Harness {
 /// Presence of the harness, as far as it is known.
 #[derive(Debug)]
 pub struct HarnessWatch {
-    found: Option<bool>,
+    /// Whether there is one, once it is known.
+    pub found: Option<bool>,
     /// Since when the maintenance channel is heard and nothing else.
     alone_since: Option<Instant>,
 }
@@ -61,11 +62,6 @@ impl HarnessWatch {
             },
             alone_since: None,
         }
-    }
-
-    /// Whether there is one, once it is known.
-    pub fn found(&self) -> Option<bool> {
-        self.found
     }
 
     /// Whether the harness is connected, as far as is known.
@@ -99,16 +95,16 @@ mod tests {
         let mut watch = HarnessWatch::new(Harness::Auto);
         watch.note_frame(at(100), Channel::Ptu);
         watch.note_frame(at(590), Channel::Ptu);
-        assert_eq!(watch.found(), None);
+        assert_eq!(watch.found, None);
         watch.note_frame(at(600), Channel::Ptu);
-        assert_eq!(watch.found(), Some(false));
+        assert_eq!(watch.found, Some(false));
         watch.note_frame(at(610), Channel::Io);
-        assert_eq!(watch.found(), Some(false), "found once");
+        assert_eq!(watch.found, Some(false), "found once");
 
         let mut watch = HarnessWatch::new(Harness::Auto);
         watch.note_frame(at(100), Channel::Ptu);
         watch.note_frame(at(110), Channel::Io);
-        assert_eq!(watch.found(), Some(true));
+        assert_eq!(watch.found, Some(true));
     }
 
     #[test]
@@ -117,7 +113,7 @@ mod tests {
             let mut watch = HarnessWatch::new(asked);
             watch.note_frame(Instant::ZERO, Channel::Io);
             watch.note_frame(Instant::from_ms(900), Channel::Ptu);
-            assert_eq!(watch.found(), Some(found));
+            assert_eq!(watch.found, Some(found));
         }
     }
 }

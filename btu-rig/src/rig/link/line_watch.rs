@@ -83,7 +83,7 @@ pub struct LineWatch {
     clock: Option<(Instant, u32)>,
     /// Whether the unit's clock goes as the bench's does.
     clock_is_right: bool,
-    rate: ClockRate,
+    pub rate: ClockRate,
     lateness: Lateness,
     /// When a frame came last, and how late it was.
     late: (Instant, Duration),
@@ -241,11 +241,6 @@ impl LineWatch {
 
     fn settled(&self, now: Instant) -> bool {
         self.settles_until.is_some_and(|until| now >= until)
-    }
-
-    /// Excess of the unit's clock over the bench's, thousandths, if the unit's clock is wrong.
-    pub fn clock_wrong_by_permille(&self) -> Option<i32> {
-        self.rate.wrong_by_permille()
     }
 
     /// What got lost until now, and in the last seconds.

@@ -39,12 +39,12 @@ pub struct Exchange {
     may_send: Instant,
     armed_at: Option<Instant>,
     /// Why the unit refused or ended arming, as it said last.
-    refusal: ArmRefusal,
-    failure: Option<Refusal>,
+    pub refusal: ArmRefusal,
+    pub failure: Option<Refusal>,
     /// Why the unit ended the session without being asked to.
     ended: Option<ArmRefusal>,
     /// Results of the last self-test asked for, as far as they came.
-    self_test: Vec<SelfTestItem>,
+    pub self_test: Vec<SelfTestItem>,
     /// The outcome is not awaited: the bench is being made safe.
     quiet: bool,
 }
@@ -122,16 +122,6 @@ impl Exchange {
         let current = self.current.as_ref().map(|current| &current.request);
         let next = current.or(self.queue.front());
         matches!(next, Some(Request::Disarm))
-    }
-
-    /// Why the unit refused or ended arming, as it said last; none once it is armed.
-    pub fn refusal(&self) -> ArmRefusal {
-        self.refusal
-    }
-
-    /// What failed and is not forgotten yet.
-    pub fn failure(&self) -> Option<&Refusal> {
-        self.failure.as_ref()
     }
 
     /// The bench goes on to something else.
@@ -265,11 +255,6 @@ impl Exchange {
     fn awaits_self_test(&self, seq: u16) -> bool {
         let current = self.current.as_ref();
         current.is_some_and(|current| current.tests_itself && current.asked(seq))
-    }
-
-    /// What the last self-test asked for found, as far as it came.
-    pub fn self_test(&self) -> &[SelfTestItem] {
-        &self.self_test
     }
 
     /// Takes the armed bit of the unit's status.

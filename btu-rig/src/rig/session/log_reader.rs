@@ -81,10 +81,11 @@ pub struct LogReader {
     /// Times it was asked since the next entry is wanted.
     asked_times: u32,
     events: VecDeque<UnitEvent>,
-    overwritten: u64,
+    /// Entries the unit had overwritten or cleared before they could be read.
+    pub overwritten: u64,
     allowance: LogBudget,
     /// Entries that were read and not kept.
-    not_kept: u64,
+    pub not_kept: u64,
 }
 
 impl LogReader {
@@ -232,16 +233,6 @@ impl LogReader {
         let since = since.filter(|_| self.wanted_since.is_some());
         since.map_or(Duration::ZERO, |at| now.since(at))
     }
-
-    /// Entries the unit had overwritten or cleared before they could be read.
-    pub fn overwritten(&self) -> u64 {
-        self.overwritten
-    }
-
-    /// Entries beyond what a log can hold: read, counted, not kept.
-    pub fn not_kept(&self) -> u64 {
-        self.not_kept
-    }
 }
 
 #[cfg(test)]
@@ -296,7 +287,7 @@ mod tests {
             taken.extend(indices(&mut reader));
         }
         assert_eq!(taken, (56..256).collect::<Vec<_>>());
-        assert_eq!(reader.overwritten(), 56);
+        assert_eq!(reader.overwritten, 56);
     }
 
     fn indices(reader: &mut LogReader) -> Vec<u32> {
@@ -330,6 +321,6 @@ mod tests {
             reader.on_entry(Instant::ZERO, &entry(index));
         }
         assert_eq!(indices(&mut reader), [10, 11]);
-        assert_eq!(reader.overwritten(), 10);
+        assert_eq!(reader.overwritten, 10);
     }
 }

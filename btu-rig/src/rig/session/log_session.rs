@@ -29,8 +29,10 @@ pub struct LogSession {
     link: Link,
     tester: Tester,
     watch: LinkWatch,
-    status: Option<StatusBits>,
-    mode: Option<Mode>,
+    /// The unit's states as it last reported them.
+    pub status: Option<StatusBits>,
+    /// Operating mode as the unit last reported it.
+    pub mode: Option<Mode>,
     begun: Option<Instant>,
     events: StoreReader,
     rows: Option<StoreReader>,
@@ -58,7 +60,7 @@ impl LogSession {
 
     /// Tells the unit the time.
     pub fn tell_time(&mut self, time: TimeOfDay) {
-        self.tester.tell_time(time);
+        self.tester.clock.tell(time);
     }
 
     /// Asks for what is due.
@@ -77,7 +79,7 @@ impl LogSession {
             return;
         }
         self.events.step(now, &mut self.link, out);
-        match self.events.state() {
+        match &self.events.state {
             StoreState::Missing => self.tester.hold_log(false),
             // The time is stored before the events are read to their end.
             StoreState::Read => {
@@ -95,7 +97,7 @@ impl LogSession {
         self.link.push(bytes);
         while let Some(received) = self.link.poll(now) {
             self.watch
-                .note_frame(received.header.channel, self.link.counters());
+                .note_frame(received.header.channel, &self.link.counters);
             match &received.message {
                 Message::Identity(identity) => {
                     self.identified_at = Some((now, identity.uptime_ms));
@@ -117,7 +119,7 @@ impl LogSession {
 
     /// Identity of the unit, once the unit has told it.
     pub fn identity(&self) -> Option<&Identity> {
-        self.tester.identity()
+        self.tester.identity.as_ref()
     }
 
     /// When the unit last reported its uptime, and what it was, ms.
@@ -125,43 +127,33 @@ impl LogSession {
         self.identified_at
     }
 
-    /// Operating mode as the unit last reported it.
-    pub fn mode(&self) -> Option<Mode> {
-        self.mode
-    }
-
-    /// The unit's states as it last reported them.
-    pub fn status(&self) -> Option<StatusBits> {
-        self.status
-    }
-
     /// New entries of the unit's log, in order, each once.
     pub fn take_events(&mut self) -> Vec<UnitEvent> {
-        self.tester.take_events()
+        self.tester.log.take()
     }
 
     /// Whether the identity and all that the unit has logged or stored is read.
     pub fn is_complete(&self) -> bool {
-        let stored = |reader: &StoreReader| *reader.state() == StoreState::Read;
-        let read = match self.events.state() {
-            StoreState::Missing => self.tester.log().up_to_date(),
+        let stored = |reader: &StoreReader| reader.state == StoreState::Read;
+        let read = match &self.events.state {
+            StoreState::Missing => self.tester.log.up_to_date(),
             _ => stored(&self.events) && self.rows.as_ref().is_none_or(stored),
         };
         self.identity().is_some()
-            && self.tester.events_at_contact().is_some()
-            && self.tester.time_settled()
+            && self.tester.events_at_contact.is_some()
+            && self.tester.clock.settled()
             && read
     }
 
     /// What the unit has stored, as far as it is read: events with the times it was given, and rows. `None` for a
     /// unit without stored memory.
     pub fn stored(&self) -> Option<(&StoredData, Option<&StoredData>)> {
-        let rows = self.rows.as_ref().map(StoreReader::data);
+        let rows = self.rows.as_ref().map(|rows| &rows.data);
         let known = !matches!(
-            self.events.state(),
+            &self.events.state,
             StoreState::Unknown | StoreState::Missing
         );
-        known.then(|| (self.events.data(), rows))
+        known.then_some((&self.events.data, rows))
     }
 
     /// Stored entries that are still to come.
@@ -171,12 +163,12 @@ impl LogSession {
 
     /// Entries the unit had overwritten or cleared before they could be read.
     pub fn overwritten(&self) -> u64 {
-        self.tester.log().overwritten()
+        self.tester.log.overwritten
     }
 
     /// Times the unit was started again since it was first heard.
     pub fn restarts(&self) -> u32 {
-        self.tester.restarts()
+        self.tester.restarts
     }
 
     /// Why the unit turned this tester away, if it did: another has it.
@@ -186,7 +178,7 @@ impl LogSession {
 
     /// Entries beyond what a log can hold: counted, and not among the events.
     pub fn not_kept(&self) -> u64 {
-        self.tester.log().not_kept()
+        self.tester.log.not_kept
     }
 
     /// What is wrong with the connection, with who answers or with its log, after a time allowed for first
@@ -198,7 +190,7 @@ impl LogSession {
         let failed = stores
             .into_iter()
             .flatten()
-            .find_map(|reader| match reader.state() {
+            .find_map(|reader| match &reader.state {
                 StoreState::Failed(why) => Some(why.clone()),
                 _ => None,
             });

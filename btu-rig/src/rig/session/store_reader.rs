@@ -67,7 +67,7 @@ struct Gap {
 pub struct StoreReader {
     store: StoreKind,
     per_cycle: u8,
-    state: StoreState,
+    pub state: StoreState,
     /// Number of the next entry to take, and the first that is not wanted.
     next: u32,
     until: u32,
@@ -76,7 +76,7 @@ pub struct StoreReader {
     asked_times: u32,
     heard: Instant,
     gap: Option<Gap>,
-    data: StoredData,
+    pub data: StoredData,
 }
 
 impl StoreReader {
@@ -227,17 +227,9 @@ impl StoreReader {
         }
     }
 
-    pub fn state(&self) -> &StoreState {
-        &self.state
-    }
-
     /// Entries that are still to come.
     pub fn left(&self) -> u32 {
         self.until.saturating_sub(self.next)
-    }
-
-    pub fn data(&self) -> &StoredData {
-        &self.data
     }
 }
 
@@ -300,7 +292,7 @@ mod tests {
 
     fn numbers(reader: &StoreReader) -> Vec<u32> {
         reader
-            .data()
+            .data
             .entries
             .iter()
             .map(|entry| entry.sequence)
@@ -319,25 +311,22 @@ mod tests {
             let reader = read(&all, 40, 160, lost);
             assert_eq!(numbers(&reader), all, "{lost}");
             assert_eq!(
-                (reader.state(), reader.data().damaged),
+                (&reader.state, reader.data.damaged),
                 (&StoreState::Read, 0),
                 "{lost}"
             );
         }
         let reader = read(&whole, 40, 160, 0);
         assert_eq!(numbers(&reader), whole);
-        assert_eq!(
-            (reader.state(), reader.data().damaged),
-            (&StoreState::Read, 6)
-        );
+        assert_eq!((&reader.state, reader.data.damaged), (&StoreState::Read, 6));
     }
 
     #[test]
     fn a_store_that_is_empty_or_all_damaged_is_read_to_its_end() {
-        assert_eq!(read(&[], 0, 0, 0).state(), &StoreState::Read);
+        assert_eq!(&read(&[], 0, 0, 0).state, &StoreState::Read);
         let reader = read(&[], 10, 30, 0);
         assert_eq!(
-            (reader.state(), reader.data().damaged),
+            (&reader.state, reader.data.damaged),
             (&StoreState::Read, 20)
         );
     }
@@ -349,14 +338,14 @@ mod tests {
         for now in (0..3_000).step_by(10).map(Instant::from_ms) {
             reader.step(now, &mut link, &mut Vec::new());
         }
-        assert_eq!(reader.state(), &StoreState::Missing);
+        assert_eq!(&reader.state, &StoreState::Missing);
     }
 
     #[test]
     fn a_store_that_cannot_be_is_refused() {
         let absurd = read(&[], 0, u32::MAX, 0);
         assert_eq!(
-            *absurd.state(),
+            absurd.state,
             StoreState::Failed(LinkTrouble::MemoryTooLarge { entries: u32::MAX })
         );
     }

@@ -9,13 +9,13 @@ use protocol::message::{
 use protocol::{Duration, Instant};
 
 use crate::procedure::link_trouble::{Changed, LinkTrouble, Property};
-use crate::procedure::{LogState, Refusal, UnitEvent};
+use crate::procedure::{LogState, Refusal};
 
 use super::exchange::Exchange;
 use super::log_reader::LogReader;
 use super::request::Request;
 use super::test_signals;
-use super::unit_clock::{TimeOfDay, UnitClock};
+use super::unit_clock::UnitClock;
 
 /// Period of the keep-alive: the unit disarms after one second without.
 const KEEP_ALIVE: Duration = Duration::from_ms(200);
@@ -28,30 +28,33 @@ const UPTIME_WRAP_MS: u32 = 1 << 31;
 
 #[derive(Debug)]
 pub struct Tester {
-    session: u32,
+    pub session: u32,
     silent: bool,
     speaks_since: Instant,
     keep_alive_due: Instant,
     identify_due: Instant,
-    identity: Option<Identity>,
+    pub identity: Option<Identity>,
     /// Identity of the unit when it was first asked.
     first: Option<Identity>,
     /// Differences of another unit that answered.
     changed: Option<LinkTrouble>,
-    self_test: SelfTest,
+    /// Self-test items that failed, as the unit has said since it was started.
+    pub self_test: SelfTest,
     /// Count of events in the last status.
     logged: Option<u32>,
-    events_at_contact: Option<u32>,
+    /// Entries the unit's log had when it was first heard.
+    pub events_at_contact: Option<u32>,
     /// Events from before the contact are not read.
     leaves_old: bool,
-    restarts: u32,
+    /// Times the unit was started again.
+    pub restarts: u32,
     /// The log says that the unit restarted by itself after it was started.
     restarted_itself: bool,
-    exchange: Exchange,
-    log: LogReader,
+    pub exchange: Exchange,
+    pub log: LogReader,
     /// The log is not read: what is stored is, instead.
     holds_log: bool,
-    clock: UnitClock,
+    pub clock: UnitClock,
     /// The log was to be cleared: what is gone from it then is gone on purpose.
     clears_log: bool,
     /// Entries logged since contact that were gone before they could be read.
@@ -234,7 +237,7 @@ impl Tester {
 
     /// Why the unit refused or ended arming, as it said last.
     pub fn arm_refusal(&self) -> ArmRefusal {
-        self.exchange.refusal()
+        self.exchange.refusal
     }
 
     /// Every request has its outcome.
@@ -242,15 +245,10 @@ impl Tester {
     /// # Errors
     /// What the unit refused or did not answer, until it is forgotten.
     pub fn settled(&self) -> Result<bool, Refusal> {
-        match self.exchange.failure() {
+        match self.exchange.failure.as_ref() {
             Some(refusal) => Err(refusal.clone()),
             None => Ok(self.exchange.idle()),
         }
-    }
-
-    /// The bench goes on to something else: what failed before is reported.
-    pub fn forget_failure(&mut self) {
-        self.exchange.forget_failure();
     }
 
     /// Listening, not armed, nothing under way.
@@ -263,38 +261,9 @@ impl Tester {
         (!self.silent).then_some(self.speaks_since)
     }
 
-    pub fn session(&self) -> u32 {
-        self.session
-    }
-
-    /// Identity of the unit, once the unit has told it.
-    pub fn identity(&self) -> Option<&Identity> {
-        self.identity.as_ref()
-    }
-
-    /// Entries the unit's log had when it was first heard.
-    pub fn events_at_contact(&self) -> Option<u32> {
-        self.events_at_contact
-    }
-
     /// The log is not read, or from now on it is.
     pub fn hold_log(&mut self, holds: bool) {
         self.holds_log = holds;
-    }
-
-    /// Tells the unit the time, now and after each restart.
-    pub fn tell_time(&mut self, time: TimeOfDay) {
-        self.clock.tell(time);
-    }
-
-    /// Bench and unit both stood still for so long.
-    pub fn put_off_time(&mut self, pause: Duration) {
-        self.clock.put_off(pause);
-    }
-
-    /// The unit has the time, or does not take it.
-    pub fn time_settled(&self) -> bool {
-        self.clock.settled()
     }
 
     /// What the unit logged before it was first heard is not read.
@@ -307,29 +276,15 @@ impl Tester {
         self.exchange.take_ended().filter(|_| !self.silent)
     }
 
-    /// Times the unit was started again.
-    pub fn restarts(&self) -> u32 {
-        self.restarts
-    }
-
     /// Whether it restarted by itself when it was started last, as its log says; `None` until that is read.
     pub fn restarted_itself(&self, now: Instant) -> Option<bool> {
         let read = self.logged.is_some() && self.log.state(now) == LogState::Read;
         read.then_some(self.restarted_itself)
     }
 
-    /// Log entries not yet taken.
-    pub fn take_events(&mut self) -> Vec<UnitEvent> {
-        self.log.take()
-    }
-
     /// What the last self-test asked for found, as far as it came.
     pub fn self_test_items(&self) -> &[SelfTestItem] {
-        self.exchange.self_test()
-    }
-
-    pub fn log(&self) -> &LogReader {
-        &self.log
+        &self.exchange.self_test
     }
 
     /// How far the log is read.
@@ -339,11 +294,6 @@ impl Tester {
             LogState::Unanswered if self.silent => LogState::Behind,
             state => state,
         }
-    }
-
-    /// Self-test items that failed, as the unit has said since it was started.
-    pub fn self_test(&self) -> SelfTest {
-        self.self_test
     }
 
     /// Why nothing that is heard can be judged: another unit answers, or the log cannot be read.

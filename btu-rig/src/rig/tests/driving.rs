@@ -9,7 +9,7 @@ use crate::rig::Bench;
 use crate::stimulus::{CutOut, Stimulus, TachoCondition};
 
 fn speed(bench: &Bench<FakeUnit>) -> f64 {
-    bench.rig().sample().get(Signal::TrainSpeed).unwrap()
+    bench.rig.sample().get(Signal::TrainSpeed).unwrap()
 }
 
 fn order(bits: AtcToTcmsBits, effort: i16) -> AtcToTcms {
@@ -27,17 +27,17 @@ fn the_train_obeys_ato_passes_its_markers_and_stops_for_the_relay() {
     bench.apply(Stimulus::MarkersAlong { section: Some(61) });
     bench.apply(Stimulus::TrainDriven { on: true });
     bench.apply(Stimulus::ModeSwitch(ModeSwitch::Automatic));
-    bench.link_mut().to_tcms = order(AtcToTcmsBits::POWER, 1023);
+    bench.link.to_tcms = order(AtcToTcmsBits::POWER, 1023);
     bench.run_ms(25_000);
     assert!((50.0..75.0).contains(&speed(&bench)), "{}", speed(&bench));
     bench.run_ms(10_000);
-    assert_eq!(bench.rig().sample().get(Signal::MarkerCoil), Some(1.0));
-    let position = bench.rig().sample().get(Signal::TrainPosition).unwrap();
+    assert_eq!(bench.rig.sample().get(Signal::MarkerCoil), Some(1.0));
+    let position = bench.rig.sample().get(Signal::TrainPosition).unwrap();
     assert!(position > 304.03, "{position}");
-    bench.link_mut().outputs = Outputs::empty();
+    bench.link.outputs = Outputs::empty();
     bench.run_ms(30_000);
     assert_eq!(speed(&bench), 0.0);
-    assert_eq!(bench.rig().sample().get(Signal::EbLoop), Some(1.0));
+    assert_eq!(bench.rig.sample().get(Signal::EbLoop), Some(1.0));
 }
 
 #[test]
@@ -48,8 +48,8 @@ fn generators_wait_while_the_train_drives() {
         to: Speed::from_kmh(30.0),
         accel_mps2: 1.0,
     };
-    let now = bench.now();
-    assert!(bench.rig_mut().apply(now, &go).is_err());
+    let now = bench.now;
+    assert!(bench.rig.apply(now, &go).is_err());
     bench.apply(Stimulus::TrainDriven { on: false });
     bench.apply(go);
     bench.run_ms(10_000);
@@ -79,16 +79,16 @@ fn making_safe_keeps_what_a_turning_wheel_needs() {
         accel_mps2: 3.0,
     });
     bench.run_ms(4000);
-    let now = bench.now();
-    bench.rig_mut().make_safe(now);
+    let now = bench.now;
+    bench.rig.make_safe(now);
     bench.run_ms(2900);
-    let value = |bench: &Bench<FakeUnit>, signal| bench.rig().sample().get(signal).unwrap();
-    assert!(!bench.rig().safe());
+    let value = |bench: &Bench<FakeUnit>, signal| bench.rig.sample().get(signal).unwrap();
+    assert!(!bench.rig.safe());
     assert_eq!(value(&bench, Signal::CarrierHz), 3000.0);
     assert_eq!(value(&bench, Signal::Tacho1), 1.0);
     assert_eq!(value(&bench, Signal::Doors), 1.0);
     bench.run_ms(200);
-    assert!(bench.rig().safe());
+    assert!(bench.rig.safe());
     assert_eq!(value(&bench, Signal::CarrierHz), 0.0);
     assert_eq!(value(&bench, Signal::Tacho1), 0.0);
     assert_eq!(speed(&bench), 0.0);
@@ -97,7 +97,7 @@ fn making_safe_keeps_what_a_turning_wheel_needs() {
 #[test]
 fn an_impossible_request_is_refused_with_a_reason() {
     let mut bench = bench(FakeUnit::default());
-    let now = bench.now();
+    let now = bench.now;
     for (stimulus, text) in [
         (
             Stimulus::Tacho {
@@ -152,7 +152,7 @@ fn an_impossible_request_is_refused_with_a_reason() {
             "no car 9",
         ),
     ] {
-        let refusal = bench.rig_mut().apply(now, &stimulus).unwrap_err();
+        let refusal = bench.rig.apply(now, &stimulus).unwrap_err();
         assert!(refusal.0.contains(text), "{}", refusal.0);
     }
 }
@@ -168,19 +168,19 @@ fn settling_follows_what_was_begun_last() {
         accel_mps2: 1.0,
     };
     assert_eq!(bench.settle(ramp), Ok(()));
-    assert_eq!(bench.now().as_secs(), 10.0);
+    assert_eq!(bench.now.as_secs(), 10.0);
     bench.apply(Stimulus::Travel {
         distance_m: 200.0,
         speed: to,
         accel_mps2: 1.0,
     });
     assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
-    assert!(bench.now().as_secs() < 11.0 && !bench.rig().motion_settled());
-    while !bench.rig().safe() {
-        let now = bench.now();
-        bench.rig_mut().make_safe(now);
+    assert!(bench.now.as_secs() < 11.0 && !bench.rig.motion_settled());
+    while !bench.rig.safe() {
+        let now = bench.now;
+        bench.rig.make_safe(now);
         bench.run_ms(10);
         assert!(now.as_secs() < 14.0, "10 m/s at 3 m/s² is 3.4 s");
     }
-    assert!(!bench.link().armed());
+    assert!(!bench.link.armed());
 }

@@ -37,7 +37,7 @@ fn bench(unit: FakeUnit) -> Bench<FakeUnit> {
 
 /// Trouble of the link as text; empty if there is none.
 fn link_error<L: UnitLink>(bench: &Bench<L>) -> String {
-    let error = bench.rig().link_error();
+    let error = bench.rig.link_error();
     error.map_or_else(String::new, |error| error.to_string())
 }
 
@@ -49,8 +49,8 @@ impl Bench<FakeUnit> {
     }
 
     fn apply(&mut self, stimulus: Stimulus) {
-        let now = self.now();
-        self.rig_mut().apply(now, &stimulus).unwrap();
+        let now = self.now;
+        self.rig.apply(now, &stimulus).unwrap();
     }
 
     /// Applies and waits for the outcome, for at most 10 s.
@@ -58,7 +58,7 @@ impl Bench<FakeUnit> {
         self.apply(stimulus);
         for _ in 0..1000 {
             self.tick().unwrap();
-            if self.rig().settled()? {
+            if self.rig.settled()? {
                 return Ok(());
             }
         }

@@ -42,23 +42,23 @@ fn procedure(needs: &str, expect: &str) -> Arc<Procedure> {
 #[test]
 fn without_a_harness_only_the_tester_speaks() {
     let mut bench = reached(Harness::Auto, aboard());
-    assert_eq!(bench.rig().connection(), Some(Connection::Ptu));
-    assert_eq!(bench.rig().link_error(), None);
-    let counters = bench.link().link.counters();
+    assert_eq!(bench.rig.connection(), Some(Connection::Ptu));
+    assert_eq!(bench.rig.link_error(), None);
+    let counters = &bench.link.link.counters;
     for channel in [Channel::Io, Channel::Tcms, Channel::Twc] {
         assert_eq!(counters.accepted(channel), 0, "{channel:?}");
     }
     assert!(counters.accepted(Channel::Ptu) > 0);
-    let now = bench.now();
-    let refused = bench.rig_mut().apply(now, &Stimulus::Hcr { on: false });
+    let now = bench.now;
+    let refused = bench.rig.apply(now, &Stimulus::Hcr { on: false });
     let why = refused.expect_err("goes through the harness").0;
     assert!(
         why.contains("only the maintenance port is connected"),
         "{why}"
     );
     assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
-    assert!(bench.rig().sample().get(Signal::CarrierHz).is_none());
-    assert!(bench.rig().sample().get(Signal::TrainSpeed).is_none());
+    assert!(bench.rig.sample().get(Signal::CarrierHz).is_none());
+    assert!(bench.rig.sample().get(Signal::TrainSpeed).is_none());
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn what_a_harness_would_show_is_as_the_unit_tells_it() {
         ..aboard()
     };
     let mut bench = reached(Harness::Auto, unit);
-    let sample = bench.rig().sample();
+    let sample = bench.rig.sample();
     for (signal, value) in [
         (Signal::Eb, 1.0),
         (Signal::AskedEb, 0.0),
@@ -92,10 +92,10 @@ fn what_a_harness_would_show_is_as_the_unit_tells_it() {
     ] {
         assert_eq!(sample.get(signal), Some(value), "{}", signal.name());
     }
-    bench.link_mut().subscribed = false;
-    bench.link_mut().tells_train_state = false;
+    bench.link.subscribed = false;
+    bench.link.tells_train_state = false;
     bench.run_ms(1000);
-    let sample = bench.rig().sample();
+    let sample = bench.rig.sample();
     for signal in [Signal::Eb, Signal::Doors, Signal::AskedEb, Signal::Effort] {
         assert!(sample.get(signal).is_none(), "{}", signal.name());
     }
@@ -104,9 +104,9 @@ fn what_a_harness_would_show_is_as_the_unit_tells_it() {
 #[test]
 fn a_unit_that_sends_its_contacts_is_on_a_bench() {
     let bench = reached(Harness::Auto, FakeUnit::default());
-    assert_eq!(bench.rig().connection(), Some(Connection::Btu));
-    assert_eq!(bench.rig().link_error(), None);
-    assert!(bench.rig().sample().get(Signal::CarrierHz).is_some());
+    assert_eq!(bench.rig.connection(), Some(Connection::Btu));
+    assert_eq!(bench.rig.link_error(), None);
+    assert!(bench.rig.sample().get(Signal::CarrierHz).is_some());
 }
 
 /// Goal: an older unit is asked a few times and works on; what it cannot tell is said, by its software.
@@ -124,12 +124,12 @@ fn an_older_unit_says_less_and_is_not_asked_for_ever() {
         };
         let mut bench = reached(Harness::Auto, unit);
         bench.run_ms(5000);
-        let asked = bench.link().heard.iter();
+        let asked = bench.link.heard.iter();
         let asked = asked.filter(|message| matches!(message, Message::Subscribe(_)));
         assert_eq!(asked.count(), 4);
-        assert!(bench.rig().knows_what_is_told());
+        assert!(bench.rig.knows_what_is_told());
         let limit = procedure("ptu", "becomes(limit, kmh(0))");
-        let why = bench.rig().cannot_run(&limit);
+        let why = bench.rig.cannot_run(&limit);
         let why = why.map(|why| why.to_string()).unwrap_or_default();
         assert_eq!(why.is_empty(), untold.is_empty(), "{why}");
         assert!(why.ends_with(untold), "{why}");
@@ -137,7 +137,7 @@ fn an_older_unit_says_less_and_is_not_asked_for_ever() {
             assert_eq!(why, "this unit, software 0.1.0, does not tell limit");
         }
         let status = procedure("ptu", "becomes(started, True)");
-        assert_eq!(bench.rig().cannot_run(&status), None);
+        assert_eq!(bench.rig.cannot_run(&status), None);
     }
 }
 
@@ -145,19 +145,19 @@ fn an_older_unit_says_less_and_is_not_asked_for_ever() {
 fn a_procedure_of_a_bench_is_not_run_on_a_train() {
     let bench = reached(Harness::None, aboard());
     let why = bench
-        .rig()
+        .rig
         .cannot_run(&procedure("harness", "becomes(eb, \"released\")"));
     assert_eq!(why, Some(Finding::NeedsHarness));
     let bench = reached(Harness::Bench, FakeUnit::default());
     for needs in ["harness", "ptu"] {
         let procedure = procedure(needs, "becomes(eb, \"released\")");
-        assert_eq!(bench.rig().cannot_run(&procedure), None, "{needs}");
+        assert_eq!(bench.rig.cannot_run(&procedure), None, "{needs}");
     }
 }
 
 /// Act of others on the unit, as the runner tells it.
 fn intervention(bench: &mut Bench<FakeUnit>) -> Option<String> {
-    let what = bench.rig_mut().take_intervention();
+    let what = bench.rig.take_intervention();
     what.map(|what| what.to_string())
 }
 
@@ -168,36 +168,36 @@ fn what_others_do_to_the_unit_is_told() {
     let mut bench = reached(Harness::Auto, aboard());
     for asks in [false, true] {
         assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
-        assert_eq!(bench.rig_mut().take_intervention(), None);
+        assert_eq!(bench.rig.take_intervention(), None);
         if asks {
-            bench.link_mut().dead = vec![Channel::Ptu];
+            bench.link.dead = vec![Channel::Ptu];
             bench.apply(Stimulus::PtuRelease);
             bench.run_ms(100);
-            bench.link_mut().dead.clear();
+            bench.link.dead.clear();
         }
-        let session = bench.link().session.expect("armed");
-        bench.link_mut().session = None;
+        let session = bench.link.session.expect("armed");
+        bench.link.session = None;
         let notice = ArmState {
             session,
             armed: 0,
             refusal: ArmRefusal::KeyOff,
         };
-        let now = bench.now();
+        let now = bench.now;
         let mut frame = Vec::new();
-        bench.link_mut().link.send(now, &notice.into(), &mut frame);
-        bench.rig_mut().receive(now, &frame);
+        bench.link.link.send(now, &notice.into(), &mut frame);
+        bench.rig.receive(now, &frame);
         assert_eq!(
             intervention(&mut bench).as_deref(),
             Some("the unit ended test mode by itself: the maintenance key was turned off")
         );
-        assert_eq!(bench.rig_mut().take_intervention(), None);
+        assert_eq!(bench.rig.take_intervention(), None);
     }
-    bench.link_mut().restart();
-    bench.link_mut().harness = false;
+    bench.link.restart();
+    bench.link.harness = false;
     bench.run_ms(4000);
     assert_eq!(
         intervention(&mut bench).as_deref(),
         Some("the unit was started again: its supply was interrupted")
     );
-    assert_eq!(bench.rig_mut().take_intervention(), None);
+    assert_eq!(bench.rig.take_intervention(), None);
 }

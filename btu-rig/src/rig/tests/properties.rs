@@ -99,7 +99,7 @@ fn other() -> impl Strategy<Value = Stimulus> {
 /// Every known rig signal within its range, so that it can be stored.
 fn check_sample(bench: &Bench<FakeUnit>) -> Result<(), TestCaseError> {
     for &signal in Signal::ALL {
-        if let Some(value) = bench.rig().sample().get(signal) {
+        if let Some(value) = bench.rig.sample().get(signal) {
             let definition = signal.definition();
             prop_assert!(
                 (definition.low..=definition.high).contains(&value),
@@ -121,17 +121,17 @@ proptest! {
     ) {
         let mut bench = Bench::new(rig(seed), FakeUnit::default());
         for (stimulus, scans) in steps {
-            let now = bench.now();
-            let _ = bench.rig_mut().apply(now, &stimulus);
+            let now = bench.now;
+            let _ = bench.rig.apply(now, &stimulus);
             bench.run_ms(scans * 10);
             check_sample(&bench)?;
-            let _ = bench.rig().settled();
+            let _ = bench.rig.settled();
         }
-        let now = bench.now();
-        bench.rig_mut().make_safe(now);
+        let now = bench.now;
+        bench.rig.make_safe(now);
         // 200 km/h at 3 m/s² is 18.5 s.
         bench.run_ms(20_000);
-        prop_assert!(bench.rig().safe());
+        prop_assert!(bench.rig.safe());
     }
 
     /// Two good channels count the same way, to a pulse, whatever the wheels do.
@@ -144,16 +144,16 @@ proptest! {
         let mut pulses = [0u64; 2];
         let mut last = [0u16; 2];
         for (stimulus, scans) in steps {
-            let now = bench.now();
-            let _ = bench.rig_mut().apply(now, &stimulus);
+            let now = bench.now;
+            let _ = bench.rig.apply(now, &stimulus);
             for _ in 0..scans {
                 bench.tick().unwrap();
-                for (i, tacho) in bench.rig().tachos.iter().enumerate() {
-                    pulses[i] += u64::from(tacho.count().wrapping_sub(last[i]));
-                    last[i] = tacho.count();
+                for (i, tacho) in bench.rig.tachos.iter().enumerate() {
+                    pulses[i] += u64::from(tacho.count.wrapping_sub(last[i]));
+                    last[i] = tacho.count;
                 }
             }
-            let distance = bench.rig().wheel.motion().distance_m / pulse_m;
+            let distance = bench.rig.wheel.motion.distance_m / pulse_m;
             for counted in pulses {
                 prop_assert!((counted as f64 - distance).abs() <= 1.0, "{counted} of {distance}");
             }
@@ -167,12 +167,12 @@ fn a_disarm_behind_a_self_test_that_hangs_is_not_lost() {
     let mut bench = Bench::new(rig(1), FakeUnit::default());
     bench.run_ms(500);
     for stimulus in [Stimulus::PtuArm, Stimulus::PtuSelfTest, Stimulus::PtuDisarm] {
-        let now = bench.now();
-        bench.rig_mut().apply(now, &stimulus).unwrap();
+        let now = bench.now;
+        bench.rig.apply(now, &stimulus).unwrap();
         bench.run_ms(300);
     }
-    let now = bench.now();
-    bench.rig_mut().make_safe(now);
+    let now = bench.now;
+    bench.rig.make_safe(now);
     bench.run_ms(10_000);
-    assert!(bench.rig().safe());
+    assert!(bench.rig.safe());
 }

@@ -24,9 +24,9 @@ fn refusal(text: &str) -> Result<(), Refusal> {
 #[test]
 fn a_unit_is_identified_and_its_signals_become_known() {
     let mut bench = bench(FakeUnit::default());
-    assert!(bench.rig().sample().get(Signal::Eb).is_none());
+    assert!(bench.rig.sample().get(Signal::Eb).is_none());
     bench.run_ms(4000);
-    let sample = bench.rig().sample();
+    let sample = bench.rig.sample();
     let unknown: Vec<_> = Signal::ALL
         .iter()
         .filter(|&&s| sample.get(s).is_none())
@@ -46,9 +46,9 @@ fn a_unit_is_identified_and_its_signals_become_known() {
     assert_eq!(unknown, [&["to_stop"], &of_orders[..]].concat());
     assert_eq!(sample.get(Signal::Eb), Some(0.0));
     assert_eq!(sample.get(Signal::EbLoop), Some(0.0));
-    assert!(bench.rig().identity().is_some());
-    assert_eq!(bench.rig().link_error(), None);
-    assert!(bench.rig().safe());
+    assert!(bench.rig.identity().is_some());
+    assert_eq!(bench.rig.link_error(), None);
+    assert!(bench.rig.safe());
 }
 
 #[test]
@@ -57,8 +57,8 @@ fn arming_and_a_stimulus_go_through_and_making_safe_ends_them() {
     assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
     assert_eq!(bench.settle(TEST_SPEED), Ok(()));
     bench.run_ms(2000);
-    assert!(bench.link().armed());
-    let alive = bench.link().heard.iter().rev().find_map(|m| match m {
+    assert!(bench.link.armed());
+    let alive = bench.link.heard.iter().rev().find_map(|m| match m {
         Message::KeepAlive(alive) => Some(alive.session),
         _ => None,
     });
@@ -67,14 +67,14 @@ fn arming_and_a_stimulus_go_through_and_making_safe_ends_them() {
         Some(0),
         "an armed session is kept alive under its number"
     );
-    let now = bench.now();
-    bench.rig_mut().make_safe(now);
-    assert!(!bench.rig().safe());
+    let now = bench.now;
+    bench.rig.make_safe(now);
+    assert!(!bench.rig.safe());
     bench.run_ms(500);
-    assert!(bench.rig().safe() && !bench.link().armed());
+    assert!(bench.rig.safe() && !bench.link.armed());
     assert!(
         bench
-            .link()
+            .link
             .heard
             .iter()
             .any(|m| matches!(m, Message::TestRelease(_)))
@@ -88,14 +88,14 @@ fn refusals_name_the_request_and_the_reason() {
         bench.settle(TEST_SPEED),
         refusal("unit refused the test speed: not_armed")
     );
-    bench.link_mut().refusal = ArmRefusal::KeyOff;
+    bench.link.refusal = ArmRefusal::KeyOff;
     assert_eq!(
         bench.settle(Stimulus::PtuArm),
         refusal("the unit refused to arm: key_off")
     );
-    bench.link_mut().refusal = ArmRefusal::None;
+    bench.link.refusal = ArmRefusal::None;
     assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
-    bench.link_mut().answer = Answer::OutOfRange;
+    bench.link.answer = Answer::OutOfRange;
     let marker = Stimulus::PtuMarker { psm: 9 };
     assert_eq!(
         bench.settle(marker),
@@ -103,7 +103,7 @@ fn refusals_name_the_request_and_the_reason() {
     );
     // The next stimulus ends the matter.
     bench.apply(Stimulus::CodeOff);
-    assert_eq!(bench.rig().settled(), Ok(true));
+    assert_eq!(bench.rig.settled(), Ok(true));
 }
 
 #[test]
@@ -111,24 +111,24 @@ fn a_starting_unit_is_waited_for() {
     let mut bench = bench(FakeUnit::with(|it| it.refusal = ArmRefusal::StartingUp));
     bench.apply(Stimulus::PtuArm);
     bench.run_ms(1500);
-    assert_eq!(bench.rig().settled(), Ok(false));
-    bench.link_mut().refusal = ArmRefusal::None;
+    assert_eq!(bench.rig.settled(), Ok(false));
+    bench.link.refusal = ArmRefusal::None;
     bench.run_ms(500);
-    assert_eq!(bench.rig().settled(), Ok(true));
-    assert!(bench.link().armed());
+    assert_eq!(bench.rig.settled(), Ok(true));
+    assert!(bench.link.armed());
 }
 
 #[test]
 fn a_unit_that_never_answers_is_given_up_and_a_bench_still_becomes_safe() {
     let mut bench = bench(FakeUnit::default());
     assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
-    bench.link_mut().dead = vec![Channel::Ptu];
+    bench.link.dead = vec![Channel::Ptu];
     let text = "the unit did not answer the test speed within 900 ms";
     assert_eq!(bench.settle(TEST_SPEED), refusal(text));
-    let now = bench.now();
-    bench.rig_mut().make_safe(now);
+    let now = bench.now;
+    bench.rig.make_safe(now);
     bench.run_ms(3000);
-    assert!(bench.rig().safe());
+    assert!(bench.rig.safe());
     let error = link_error(&bench);
     assert!(
         error.starts_with("unit silent for 3.") && error.ends_with("PTU channel"),
@@ -146,16 +146,16 @@ fn a_bad_line_loses_nothing() {
         let _ = bench.settle(Stimulus::PtuDisarm);
     }
     assert!(armed >= 8, "{armed} of 10");
-    bench.link_mut().loss = 0.3;
-    (0..150).for_each(|i| bench.link_mut().log_event(i));
+    bench.link.loss = 0.3;
+    (0..150).for_each(|i| bench.link.log_event(i));
     let mut events = Vec::new();
     for _ in 0..600 {
         bench.run_ms(100);
-        events.extend(bench.rig_mut().take_events());
+        events.extend(bench.rig.take_events());
     }
     // TCMS misses the unit's frames, too, and says so in a log of its own.
     events.retain(|event| event.source == EventSource::Unit);
-    assert!(bench.rig().log_up_to_date());
+    assert!(bench.rig.log_up_to_date());
     assert_eq!(
         events.iter().map(|e| e.index).collect::<Vec<_>>(),
         (0..150).collect::<Vec<_>>()
@@ -168,19 +168,14 @@ fn log_entries_come_once_each_and_overwritten_ones_are_counted() {
     (0..5).for_each(|_| unit.log_event(7));
     let mut bench = bench(unit);
     bench.run_ms(2000);
-    assert_eq!(bench.rig().events_at_contact(), Some(45));
-    bench.link_mut().log_event(8);
+    assert_eq!(bench.rig.events_at_contact(), Some(45));
+    bench.link.log_event(8);
     bench.run_ms(500);
-    let indices: Vec<_> = bench
-        .rig_mut()
-        .take_events()
-        .iter()
-        .map(|e| e.index)
-        .collect();
+    let indices: Vec<_> = bench.rig.take_events().iter().map(|e| e.index).collect();
     assert_eq!(indices, [40, 41, 42, 43, 44, 45]);
-    assert_eq!(bench.rig().events_overwritten(), 40);
+    assert_eq!(bench.rig.events_overwritten(), 40);
     bench.run_ms(500);
-    assert!(bench.rig_mut().take_events().is_empty());
+    assert!(bench.rig.take_events().is_empty());
 }
 
 /// Nobody takes the events: reading stops at the bound and goes on when they are taken.
@@ -190,9 +185,9 @@ fn events_wait_in_the_unit_when_nobody_takes_them() {
     (0..700).for_each(|_| unit.log_event(1));
     let mut bench = bench(unit);
     bench.run_ms(30_000);
-    assert_eq!(bench.rig_mut().take_events().len(), MAX_EVENTS);
+    assert_eq!(bench.rig.take_events().len(), MAX_EVENTS);
     bench.run_ms(30_000);
-    assert_eq!(bench.rig_mut().take_events().len(), 700 - MAX_EVENTS);
+    assert_eq!(bench.rig.take_events().len(), 700 - MAX_EVENTS);
 }
 
 #[test]
@@ -202,13 +197,13 @@ fn a_restart_is_noticed_and_the_new_log_read_from_its_beginning() {
     let mut bench = bench(unit);
     assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
     bench.run_ms(3000);
-    assert_eq!(bench.rig_mut().take_events().len(), 9);
-    bench.link_mut().restart();
-    bench.link_mut().log_event(100);
-    bench.link_mut().log_event(101);
+    assert_eq!(bench.rig.take_events().len(), 9);
+    bench.link.restart();
+    bench.link.log_event(100);
+    bench.link.log_event(101);
     bench.run_ms(4000);
     let codes: Vec<_> = bench
-        .rig_mut()
+        .rig
         .take_events()
         .iter()
         .filter(|e| e.source == EventSource::Unit)
@@ -216,10 +211,10 @@ fn a_restart_is_noticed_and_the_new_log_read_from_its_beginning() {
         .collect();
     assert_eq!(codes, [(0, 100), (1, 101)]);
     assert_eq!(
-        (bench.rig().unit_restarts(), bench.rig().events_at_contact()),
+        (bench.rig.unit_restarts(), bench.rig.events_at_contact()),
         (1, Some(0))
     );
-    assert!(bench.rig().safe(), "no longer armed");
+    assert!(bench.rig.safe(), "no longer armed");
 }
 
 /// The count of events does not fall, but the uptime does.
@@ -227,9 +222,9 @@ fn a_restart_is_noticed_and_the_new_log_read_from_its_beginning() {
 fn a_restart_with_a_full_log_is_noticed_by_the_uptime() {
     let mut bench = bench(FakeUnit::default());
     bench.run_ms(3000);
-    bench.link_mut().restart();
+    bench.link.restart();
     bench.run_ms(4000);
-    assert_eq!(bench.rig().unit_restarts(), 1);
+    assert_eq!(bench.rig.unit_restarts(), 1);
 }
 
 #[test]
@@ -239,7 +234,7 @@ fn a_silent_tester_sends_nothing_and_takes_no_request() {
     bench.apply(Stimulus::PtuSilent { on: true });
     let ptu = |bench: &crate::rig::Bench<FakeUnit>| {
         bench
-            .link()
+            .link
             .heard
             .iter()
             .filter(|m| m.channel() == Channel::Ptu)
@@ -248,10 +243,10 @@ fn a_silent_tester_sends_nothing_and_takes_no_request() {
     let before = ptu(&bench);
     bench.run_ms(5000);
     assert_eq!(ptu(&bench), before);
-    assert!(!bench.rig().safe());
-    let now = bench.now();
-    assert!(bench.rig_mut().apply(now, &Stimulus::PtuArm).is_err());
+    assert!(!bench.rig.safe());
+    let now = bench.now;
+    assert!(bench.rig.apply(now, &Stimulus::PtuArm).is_err());
     bench.apply(Stimulus::PtuSilent { on: false });
     bench.run_ms(500);
-    assert!(ptu(&bench) > before && bench.rig().safe());
+    assert!(ptu(&bench) > before && bench.rig.safe());
 }

@@ -18,7 +18,7 @@ fn a_line_that_takes_no_power_is_told_from_an_inverter_that_gives_none() {
     };
     let parts = |bench: &mut Bench<FakeUnit>| -> Vec<(i32, Option<LruId>)> {
         let code = Event::RegenerationCutOut.definition().code;
-        let events = bench.rig_mut().take_events().into_iter();
+        let events = bench.rig.take_events().into_iter();
         events
             .filter(|entry| entry.code == code)
             .map(|entry| entry.parameter)
@@ -42,7 +42,7 @@ fn a_line_that_takes_no_power_is_told_from_an_inverter_that_gives_none() {
             .cloned()
             .into_iter()
             .collect();
-        bench.rig_mut().inject(&faults, Instant::ZERO);
+        bench.rig.inject(&faults, Instant::ZERO);
         bench.apply(Stimulus::TrainDriven { on: true });
         bench.run_ms(500);
         assert_eq!(parts(&mut bench), begins, "{mode:?}");
@@ -65,7 +65,7 @@ fn events_of_tcms_that_nobody_takes_are_counted() {
         on,
     };
     bench.run_ms(100);
-    bench.rig_mut().take_events();
+    bench.rig.take_events();
     for _ in 0..MAX_EVENTS + 5 {
         for on in [true, false] {
             bench.apply(low(on));
@@ -73,8 +73,8 @@ fn events_of_tcms_that_nobody_takes_are_counted() {
         }
     }
     let code = Event::MainReservoirLow.definition().code;
-    let lost = bench.rig().events_overwritten() as usize;
-    let kept = bench.rig_mut().take_events();
+    let lost = bench.rig.events_overwritten() as usize;
+    let kept = bench.rig.take_events();
     assert_eq!(kept.len(), MAX_EVENTS);
     let low_kept = kept.iter().filter(|entry| entry.code == code).count();
     assert!(

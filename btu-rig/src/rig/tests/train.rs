@@ -23,7 +23,7 @@ fn section_61() -> Line {
 /// A train at the start of section 61 of this line, under these conditions.
 fn at_departure(line: &Line, conditions: Conditions) -> Bench<FakeUnit> {
     let mut bench = Bench::new(Rig::new(&config(), line, 1), FakeUnit::default());
-    bench.rig_mut().set_conditions(conditions);
+    bench.rig.set_conditions(conditions);
     bench.apply(Stimulus::MarkersAlong { section: Some(61) });
     bench.apply(Stimulus::TrainDriven { on: true });
     bench.apply(Stimulus::ModeSwitch(ModeSwitch::Automatic));
@@ -37,7 +37,7 @@ fn ask(bench: &mut Bench<FakeUnit>, share: f64) {
     } else {
         AtcToTcmsBits::POWER
     };
-    bench.link_mut().to_tcms = AtcToTcms {
+    bench.link.to_tcms = AtcToTcms {
         bits,
         effort: (share * FULL) as i16,
         mode: Mode::AutomaticRun,
@@ -46,19 +46,19 @@ fn ask(bench: &mut Bench<FakeUnit>, share: f64) {
 }
 
 fn value(bench: &Bench<FakeUnit>, signal: Signal) -> f64 {
-    bench.rig().sample().get(signal).unwrap()
+    bench.rig.sample().get(signal).unwrap()
 }
 
 /// Pulses of channel 1 so far; runs in these tests stay below one turn of the counter.
 fn pulses(bench: &Bench<FakeUnit>) -> f64 {
-    f64::from(bench.rig().tachos[0].count())
+    f64::from(bench.rig.tachos[0].count)
 }
 
 #[test]
 fn true_values_are_the_trains_and_the_distance_to_its_stop() {
     let mut bench = at_departure(&section_61(), Conditions::default());
     bench.run_ms(100);
-    assert_eq!(bench.rig().truth().to_stop_m, Some(850.03));
+    assert_eq!(bench.rig.truth().to_stop_m, Some(850.03));
     ask(&mut bench, 1.0);
     bench.run_ms(15_000);
     let TrueMotion {
@@ -69,7 +69,7 @@ fn true_values_are_the_trains_and_the_distance_to_its_stop() {
         tractive_power_w,
         traction_n,
         ..
-    } = bench.rig().truth();
+    } = bench.rig.truth();
     assert!((position_m + to_stop_m.unwrap() - 850.03).abs() < 1e-9);
     assert!((value(&bench, Signal::TrainSpeed) / 3.6 - speed_mps).abs() < 1e-9);
     assert!((value(&bench, Signal::ToStop) - to_stop_m.unwrap()).abs() < 1e-9);
@@ -77,7 +77,7 @@ fn true_values_are_the_trains_and_the_distance_to_its_stop() {
     assert!((tractive_power_w / (traction_n * speed_mps) - 1.0).abs() < 1e-3);
     ask(&mut bench, -1.0);
     bench.run_ms(5_000);
-    let braking = bench.rig().truth();
+    let braking = bench.rig.truth();
     assert!(braking.electric_brake_n > braking.air_brake_n && braking.traction_n == 0.0);
     assert!((-1.1..-0.9).contains(&value(&bench, Signal::TrainAccel)));
     assert!(value(&bench, Signal::TrainJerk).abs() < 0.1, "steady");
@@ -93,11 +93,11 @@ fn wheels_and_markers_are_what_they_are_not_what_is_configured() {
     };
     let mut bench = at_departure(&section_61(), conditions);
     ask(&mut bench, 1.0);
-    while bench.rig().markers.edges() == 0 {
+    while bench.rig.markers.edges == 0 {
         bench.run_ms(10);
-        assert!(bench.now().as_secs() < 60.0);
+        assert!(bench.now.as_secs() < 60.0);
     }
-    let rig = bench.rig();
+    let rig = &bench.rig;
     let since_s = f64::from(rig.markers.age_us()) / 1e6;
     let marker_m = rig.truth().position_m - since_s * rig.truth().speed_mps;
     assert!((marker_m - (304.03 + 1.5)).abs() < 2e-3, "{marker_m}");
@@ -119,20 +119,20 @@ fn a_slide_shows_in_the_tachometers_only() {
     ask(&mut bench, 0.4);
     bench.run_ms(25_000);
     let pulse_m = config().metres_per_pulse();
-    let lost_m = |b: &Bench<FakeUnit>| b.rig().truth().position_m - pulses(b) * pulse_m;
+    let lost_m = |b: &Bench<FakeUnit>| b.rig.truth().position_m - pulses(b) * pulse_m;
     assert!(lost_m(&bench).abs() < 0.06, "{}", lost_m(&bench));
     ask(&mut bench, -1.0);
     bench.run_ms(3_000);
-    assert!(bench.rig().truth().sliding);
+    assert!(bench.rig.truth().sliding);
     bench.run_ms(40_000);
-    assert_eq!(bench.rig().truth().speed_mps, 0.0);
+    assert_eq!(bench.rig.truth().speed_mps, 0.0);
     assert!(lost_m(&bench) > 2.0, "{}", lost_m(&bench));
     // Both move together again: back on good rails the difference stays.
-    let (lost, at) = (lost_m(&bench), bench.rig().truth().position_m);
-    bench.rig_mut().set_conditions(Conditions::default());
+    let (lost, at) = (lost_m(&bench), bench.rig.truth().position_m);
+    bench.rig.set_conditions(Conditions::default());
     ask(&mut bench, 0.5);
     bench.run_ms(10_000);
-    assert!(bench.rig().truth().position_m > at + 3.0);
+    assert!(bench.rig.truth().position_m > at + 3.0);
     assert!((lost_m(&bench) - lost).abs() < 0.03);
 }
 
@@ -181,16 +181,16 @@ fn energy_is_kept_over_a_hill() {
     for share in [1.0, 0.3, -0.4, 0.8] {
         ask(&mut bench, share);
         for _ in 0..1100 {
-            let before_m = bench.rig().truth().position_m;
+            let before_m = bench.rig.truth().position_m;
             bench.run_ms(10);
-            let state = bench.rig().train_state;
-            let distance_m = bench.rig().truth().position_m - before_m;
+            let state = bench.rig.train_state;
+            let distance_m = bench.rig.truth().position_m - before_m;
             let brake_n = state.electric_brake_n + state.air_brake_n;
             work_j += (state.traction_n - brake_n - state.resistance_n) * distance_m;
             traction_j += state.traction_n * distance_m;
         }
     }
-    let end = bench.rig().truth();
+    let end = bench.rig.truth();
     assert!(end.position_m > 300.0 && traction_j > 2e7, "{end:?}");
     let missing_j = energy_j(&end) - work_j;
     assert!(
@@ -221,7 +221,7 @@ fn the_antenna_follows_the_codes_along_the_section() {
     while rate(&bench) == 12.0 {
         bench.run_ms(10);
     }
-    let place_m = bench.rig().truth().position_m;
+    let place_m = bench.rig.truth().position_m;
     assert_eq!(rate(&bench), 16.5);
     assert!((100.0..100.2).contains(&place_m), "{place_m}");
     bench.apply(Stimulus::CodeOff);
@@ -243,14 +243,14 @@ fn codes_that_cannot_be_sent_are_refused() {
         };
         line.sections[0].speed_codes = codes.into_iter().map(sent).collect();
         let mut bench = at_departure(&line, Conditions::default());
-        let now = bench.now();
-        let refusal = bench.rig_mut().apply(now, &along).unwrap_err();
+        let now = bench.now;
+        let refusal = bench.rig.apply(now, &along).unwrap_err();
         assert!(refusal.0.contains(words), "{}", refusal.0);
         // In the other order it is the section that is refused.
         bench.apply(Stimulus::MarkersAlong { section: None });
         bench.apply(along);
         let lay = Stimulus::MarkersAlong { section: Some(61) };
-        assert!(bench.rig_mut().apply(now, &lay).is_err());
+        assert!(bench.rig.apply(now, &lay).is_err());
     }
 }
 
@@ -260,21 +260,21 @@ fn a_train_can_be_exchanged() {
     let mut bench = at_departure(&section_61(), Conditions::default());
     ask(&mut bench, 1.0);
     bench.run_ms(10_000);
-    let before = bench.rig().truth().speed_mps;
-    bench.rig_mut().set_train(TrainData::ideal());
+    let before = bench.rig.truth().speed_mps;
+    bench.rig.set_train(TrainData::ideal());
     ask(&mut bench, 0.0);
     bench.run_ms(1_000);
-    let after = bench.rig().truth().speed_mps;
+    let after = bench.rig.truth().speed_mps;
     // The train coasts by r·v alone, after the two cycles in which the order for power still
     // stands.
     assert!((after - before).abs() < 0.2, "{before} {after}");
-    assert!(bench.rig().truth().accel_mps2 > -0.02);
+    assert!(bench.rig.truth().accel_mps2 > -0.02);
     let cut_out = Stimulus::CutOut {
         what: CutOut::Brake,
         car: 1,
         on: true,
     };
-    let now = bench.now();
-    let refusal = bench.rig_mut().apply(now, &cut_out).unwrap_err();
+    let now = bench.now;
+    let refusal = bench.rig.apply(now, &cut_out).unwrap_err();
     assert!(refusal.0.contains("point mass"), "{}", refusal.0);
 }

@@ -32,7 +32,7 @@ fn mode(id: &str) -> FaultMode {
 }
 
 fn signal(bench: &Bench<FakeUnit>, signal: Signal) -> f64 {
-    bench.rig().sample().get(signal).unwrap()
+    bench.rig.sample().get(signal).unwrap()
 }
 
 /// The train stands braked by ATO with full service, then released: its equipment at either time.
@@ -40,14 +40,14 @@ fn braked_and_released(bench: &mut Bench<FakeUnit>) -> [Equipment; 2] {
     bench.apply(Stimulus::ModeSwitch(ModeSwitch::Automatic));
     bench.apply(Stimulus::TrainDriven { on: true });
     [(AtcToTcmsBits::BRAKE, -1024), (AtcToTcmsBits::empty(), 0)].map(|(bits, effort)| {
-        bench.link_mut().to_tcms = AtcToTcms {
+        bench.link.to_tcms = AtcToTcms {
             bits,
             effort,
             mode: Mode::AutomaticRun,
             ..AtcToTcms::default()
         };
         bench.run_ms(2_500);
-        bench.rig().train.equipment()
+        bench.rig.train.equipment()
     })
 }
 
@@ -88,7 +88,7 @@ const CASES: [(&str, Shows); 30] = [
         signal(bench, Signal::ControllerVolts) == 10.0
     }),
     ("master_controller.pot_drifts", |bench| {
-        let [_, low, high, _] = bench.rig().tcms.data().controller_v;
+        let [_, low, high, _] = bench.rig.tcms.data.controller_v;
         (signal(bench, Signal::ControllerVolts) - (low + high) / 2.0 - 0.3).abs() < 0.01
     }),
     ("master_controller.pot_drops_out", |bench| {
@@ -130,7 +130,7 @@ const CASES: [(&str, Shows); 30] = [
     ("tcms.hangs", tcms_is_silent),
     ("tcms.keeps_cab", |bench| {
         bench.apply(Stimulus::Hcr { on: true });
-        bench.link_mut().to_tcms.bits = AtcToTcmsBits::CHANGE_OF_CABS;
+        bench.link.to_tcms.bits = AtcToTcmsBits::CHANGE_OF_CABS;
         bench.run_ms(200);
         signal(bench, Signal::Hcr) == 1.0
     }),
@@ -150,25 +150,25 @@ const CASES: [(&str, Shows); 30] = [
 fn traction_share(bench: &mut Bench<FakeUnit>, car: usize, like: usize) -> f64 {
     bench.apply(Stimulus::ModeSwitch(ModeSwitch::Automatic));
     bench.apply(Stimulus::TrainDriven { on: true });
-    bench.link_mut().to_tcms = AtcToTcms {
+    bench.link.to_tcms = AtcToTcms {
         bits: AtcToTcmsBits::POWER,
         effort: 1023,
         mode: Mode::AutomaticRun,
         ..AtcToTcms::default()
     };
     bench.run_ms(1_500);
-    let given = bench.rig().train.equipment().traction_n;
+    let given = bench.rig.train.equipment().traction_n;
     given[car - 1] / given[like - 1]
 }
 
 fn inverter_silent(bench: &mut Bench<FakeUnit>, car: usize) -> bool {
     braked_and_released(bench);
-    bench.rig().tcms.view().found.inverters == CarSet::one(car - 1)
+    bench.rig.tcms.view.found.inverters == CarSet::one(car - 1)
 }
 
 fn brake_unit_silent(bench: &mut Bench<FakeUnit>, car: usize) -> bool {
     let [braked, _] = braked_and_released(bench);
-    let found = bench.rig().tcms.view().found.brake_units;
+    let found = bench.rig.tcms.view.found.brake_units;
     braked.air_n[car - 1] == 0.0 && found == CarSet::one(car - 1)
 }
 
@@ -191,39 +191,35 @@ fn tcms_is_silent(bench: &mut Bench<FakeUnit>) -> bool {
 }
 
 fn reservoir_is_low(bench: &mut Bench<FakeUnit>) -> bool {
-    let sources = bench.rig().tcms.view().line.sources;
+    let sources = bench.rig.tcms.view.line.sources;
     sources.contains(EbSources::MAIN_RESERVOIR)
 }
 
 fn make_safe(bench: &mut Bench<FakeUnit>) {
-    let now = bench.now();
-    bench.rig_mut().make_safe(now);
-    bench.link_mut().to_tcms = AtcToTcms::default();
+    let now = bench.now;
+    bench.rig.make_safe(now);
+    bench.link.to_tcms = AtcToTcms::default();
     bench.run_ms(3_000);
-    assert!(bench.rig().safe());
+    assert!(bench.rig.safe());
 }
 
 #[test]
 fn every_fault_of_the_train_acts_at_its_place_and_nothing_removes_it() {
     for (id, shows) in CASES {
         let mut bench = bench(FakeUnit::default());
-        bench.rig_mut().inject(&[mode(id)], POWER_AT);
+        bench.rig.inject(&[mode(id)], POWER_AT);
         bench.run_ms(5_000);
         assert!(!shows(&mut bench), "{id} before its onset");
         make_safe(&mut bench);
         let onset = POWER_AT + Duration::from_secs(ONSET_S);
-        bench.run_ms(onset.since(bench.now()).as_ms() - 20);
-        assert_eq!(
-            bench.rig().faults,
-            TrainFaults::default(),
-            "{id}: too early"
-        );
+        bench.run_ms(onset.since(bench.now).as_ms() - 20);
+        assert_eq!(bench.rig.faults, TrainFaults::default(), "{id}: too early");
         bench.run_ms(1_000);
         assert!(shows(&mut bench), "{id} after its onset");
         make_safe(&mut bench);
         assert!(shows(&mut bench), "{id} after making safe");
         make_safe(&mut bench);
-        bench.rig_mut().set_train(TrainData::line6());
+        bench.rig.set_train(TrainData::line6());
         bench.run_ms(1_000);
         assert!(shows(&mut bench), "{id} with a new train");
     }
@@ -254,7 +250,7 @@ fn a_weak_cylinder_gets_the_share_of_its_own_mode() {
         onset_s: 0.0,
         ..mode("brake_cylinder.weak")
     };
-    bench.rig_mut().inject(&[on_car_5, on_car_4], Instant::ZERO);
+    bench.rig.inject(&[on_car_5, on_car_4], Instant::ZERO);
     let [braked, _] = braked_and_released(&mut bench);
     let shares = [4, 5].map(|car| air_share(&braked, car, 1));
     assert!(
@@ -312,14 +308,14 @@ fn played(fault: Option<FaultMode>) -> (Vec<u8>, Vec<Option<f64>>, Vec<Option<f6
         accel_mps2: 2.0,
     });
     let modes: Vec<_> = fault.into_iter().collect();
-    bench.rig_mut().inject(&modes, Instant::ZERO);
+    bench.rig.inject(&modes, Instant::ZERO);
     let all = [Outputs::EB_RELAY, Outputs::FSB, Outputs::DOOR_ENABLE_LEFT];
     let (mut read, mut asked) = (Vec::new(), Vec::new());
     for outputs in [Outputs::empty(), all.into_iter().collect()] {
-        bench.link_mut().outputs = outputs;
+        bench.link.outputs = outputs;
         bench.apply(Stimulus::Marker { psm: 1 });
         bench.run_ms(1_000);
-        let sample = bench.rig().sample();
+        let sample = bench.rig.sample();
         let values = |signals: &[Signal]| {
             signals
                 .iter()
@@ -338,7 +334,7 @@ fn played(fault: Option<FaultMode>) -> (Vec<u8>, Vec<Option<f64>>, Vec<Option<f6
             Signal::Hcr,
         ]));
     }
-    (std::mem::take(&mut bench.link_mut().all_bytes), read, asked)
+    (std::mem::take(&mut bench.link.all_bytes), read, asked)
 }
 
 /// Goal: a fault of the bench acts, and the bench does not know of it. Method: each mode of the catalogue at each of its

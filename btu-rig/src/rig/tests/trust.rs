@@ -111,17 +111,17 @@ fn a_bad_line_is_reported_as_a_line_fault_in_either_direction() {
 fn what_a_line_lost_before_and_after_a_standstill_still_explains_events() {
     let mut bench = on_bad_line(LineDisturbance::Flips, true, true);
     (0..400).for_each(|_| bench.tick().unwrap());
-    let lately = |bench: &Bench<BadLine>| bench.rig().evidence().line.lost_or_damaged_lately;
+    let lately = |bench: &Bench<BadLine>| bench.rig.evidence().line.lost_or_damaged_lately;
     let before = lately(&bench);
     assert!(before > 0);
-    let now = bench.now();
-    bench.rig_mut().note_stalled(now);
+    let now = bench.now;
+    bench.rig.note_stalled(now);
     assert!(lately(&bench) >= before, "what was lost is known still");
-    assert_eq!(bench.rig().link_error(), None);
-    let against_the_line = bench.rig().evidence().line.lost_or_damaged;
+    assert_eq!(bench.rig.link_error(), None);
+    let against_the_line = bench.rig.evidence().line.lost_or_damaged;
     (0..100).for_each(|_| bench.tick().unwrap());
     assert!(lately(&bench) > before, "what is lost after is known, too");
-    let line = bench.rig().evidence().line;
+    let line = bench.rig.evidence().line;
     assert_eq!(line.lost_or_damaged, against_the_line);
 }
 
@@ -131,16 +131,16 @@ fn what_a_line_lost_before_and_after_a_standstill_still_explains_events() {
 fn a_line_is_silent_from_a_standstill_until_the_unit_is_heard() {
     let mut bench = bench(FakeUnit::default());
     bench.run_ms(4_000);
-    let silent = |bench: &Bench<FakeUnit>| bench.rig().evidence().line.silent;
+    let silent = |bench: &Bench<FakeUnit>| bench.rig.evidence().line.silent;
     assert!(!silent(&bench));
-    let now = bench.now();
-    bench.rig_mut().note_stalled(now);
+    let now = bench.now;
+    bench.rig.note_stalled(now);
     assert!(silent(&bench));
     bench.run_ms(100);
     assert!(!silent(&bench), "the unit is there");
-    bench.link_mut().dead = Channel::ALL.to_vec();
-    let now = bench.now();
-    bench.rig_mut().note_stalled(now);
+    bench.link.dead = Channel::ALL.to_vec();
+    let now = bench.now;
+    bench.rig.note_stalled(now);
     bench.run_ms(500);
     assert!(silent(&bench), "the line was pulled");
 }
@@ -154,16 +154,16 @@ fn on_a_good_line_nothing_is_harmed() {
     bench.apply(Stimulus::Wayside(WaysideCondition::Corrupt));
     bench.run_ms(20_000);
     bench.apply(Stimulus::Wayside(WaysideCondition::Good));
-    bench.link_mut().dead = vec![Channel::Twc, Channel::Tcms];
+    bench.link.dead = vec![Channel::Twc, Channel::Tcms];
     bench.run_ms(10_000);
-    bench.link_mut().restart();
+    bench.link.restart();
     bench.run_ms(10_000);
     bench.apply(Stimulus::PtuSilent { on: true });
     bench.run_ms(5_000);
     bench.apply(Stimulus::PtuSilent { on: false });
     bench.run_ms(10_000);
-    assert_eq!(bench.rig().evidence().line, LineState::default());
-    assert_eq!(bench.rig().link_error(), None);
+    assert_eq!(bench.rig.evidence().line, LineState::default());
+    assert_eq!(bench.rig.link_error(), None);
 }
 
 /// Goal: a unit that refuses frames because its own clock gains is at fault, not the line. Method: a clock
@@ -172,9 +172,9 @@ fn on_a_good_line_nothing_is_harmed() {
 fn frames_that_are_late_to_a_fast_clock_are_not_the_lines() {
     let mut bench = bench(FakeUnit::with(|it| it.clock_gains = 0.017));
     bench.run_ms(120_000);
-    assert!(bench.link().link.counters().rejected_total() > 200);
-    assert_eq!(bench.rig().evidence().line, LineState::default());
-    assert_eq!(bench.rig().link_error(), None);
+    assert!(bench.link.link.counters.rejected_total() > 200);
+    assert_eq!(bench.rig.evidence().line, LineState::default());
+    assert_eq!(bench.rig.link_error(), None);
 }
 
 /// Goal: a fast clock is at fault, not the line, also after the tester's computer stood still, when the clock is
@@ -185,38 +185,38 @@ fn a_fast_clock_is_measured_and_stays_wrong_over_a_stall() {
     let mut bench = bench(FakeUnit::with(|it| it.clock_gains = 0.03));
     bench.run_ms(10_000);
     assert_eq!(
-        bench.rig().evidence().clock_wrong_by_permille,
+        bench.rig.evidence().clock_wrong_by_permille,
         None,
         "not yet"
     );
     bench.run_ms(10_000);
-    assert_eq!(bench.rig().evidence().clock_wrong_by_permille, Some(30));
+    assert_eq!(bench.rig.evidence().clock_wrong_by_permille, Some(30));
     for _ in 0..30 {
-        let now = bench.now();
-        bench.rig_mut().note_stalled(now);
+        let now = bench.now;
+        bench.rig.note_stalled(now);
         bench.run_ms(4_000);
     }
-    assert!(bench.link().link.counters().rejected_total() > 200);
-    assert_eq!(bench.rig().evidence().line, LineState::default());
+    assert!(bench.link.link.counters.rejected_total() > 200);
+    assert_eq!(bench.rig.evidence().line, LineState::default());
 }
 
 #[test]
 fn a_log_that_is_never_answered_is_an_error_with_the_count_of_questions() {
     let mut bench = bench(FakeUnit::default());
     bench.run_ms(5_000);
-    assert_eq!(bench.rig().evidence().log, LogState::Read);
-    bench.link_mut().answers_log = false;
-    bench.link_mut().log_event(7);
+    assert_eq!(bench.rig.evidence().log, LogState::Read);
+    bench.link.answers_log = false;
+    bench.link.log_event(7);
     bench.run_ms(1_000);
-    assert_eq!(bench.rig().evidence().log, LogState::Unanswered);
-    assert_eq!(bench.rig().link_error(), None, "not yet");
+    assert_eq!(bench.rig.evidence().log, LogState::Unanswered);
+    assert_eq!(bench.rig.link_error(), None, "not yet");
     bench.run_ms(5_000);
     let error = "the unit's log could not be read: asked 20 times, no answer";
     assert_eq!(link_error(&bench), error);
-    bench.link_mut().answers_log = true;
+    bench.link.answers_log = true;
     bench.run_ms(1_000);
-    assert_eq!(bench.rig().evidence().log, LogState::Read);
-    assert_eq!(bench.rig().link_error(), None);
+    assert_eq!(bench.rig.evidence().log, LogState::Read);
+    assert_eq!(bench.rig.link_error(), None);
 }
 
 /// A unit whose log is empty and is never answered: whether it could be read is not known.
@@ -224,7 +224,7 @@ fn a_log_that_is_never_answered_is_an_error_with_the_count_of_questions() {
 fn a_unit_that_never_shows_its_log_is_an_error_though_nothing_is_in_it() {
     let mut bench = bench(FakeUnit::with(|it| it.answers_log = false));
     bench.run_ms(2_000);
-    assert_eq!(bench.rig().evidence().log, LogState::Unanswered);
+    assert_eq!(bench.rig.evidence().log, LogState::Unanswered);
     bench.run_ms(5_000);
     let error = link_error(&bench);
     assert!(error.ends_with("times, no answer"), "{error}");
@@ -234,7 +234,7 @@ fn a_unit_that_never_shows_its_log_is_an_error_though_nothing_is_in_it() {
 #[test]
 fn a_log_without_the_entries_it_should_have_is_an_error() {
     let mut bench = bench(FakeUnit::with(|it| it.entries_per_cycle = 0));
-    bench.link_mut().log_event(7);
+    bench.link.log_event(7);
     bench.run_ms(60_000);
     let error = link_error(&bench);
     assert!(
@@ -251,17 +251,17 @@ fn a_log_without_end_is_bounded_counted_and_an_error() {
     let (mut taken, mut logged) = (0, 0_u64);
     for _ in 0..1_000 {
         for _ in 0..50 {
-            bench.link_mut().log_event(400);
+            bench.link.log_event(400);
             logged += 1;
         }
         bench.run_ms(10);
-        taken += bench.rig_mut().take_events().len() as u64;
+        taken += bench.rig.take_events().len() as u64;
     }
     assert!(
         (256..256 + 10 * 40 + 1).contains(&taken),
         "{taken} of {logged}"
     );
-    let not_kept = bench.rig().evidence().not_kept;
+    let not_kept = bench.rig.evidence().not_kept;
     assert!(not_kept > 10_000, "{not_kept}");
     let error = link_error(&bench);
     assert!(error.starts_with("the unit logs without end"), "{error}");
@@ -273,8 +273,8 @@ fn entries_that_were_gone_before_they_could_be_read_are_an_error_unless_they_are
     unit.log_event(1);
     let mut bench = bench(unit);
     bench.run_ms(4_000);
-    assert_eq!(bench.rig().link_error(), None);
-    let unit = bench.link_mut();
+    assert_eq!(bench.rig.link_error(), None);
+    let unit = &mut bench.link;
     unit.oldest += 300;
     unit.log_event(1);
     bench.run_ms(4_000);
@@ -311,13 +311,13 @@ fn another_unit_on_the_same_line_is_an_error_from_then_on() {
         unit.identity.serial[..3].copy_from_slice(b"A-1");
         let mut bench = bench(unit);
         bench.run_ms(4_000);
-        assert_eq!(bench.rig().link_error(), None);
-        let before = bench.link().identity;
-        change(&mut bench.link_mut().identity);
+        assert_eq!(bench.rig.link_error(), None);
+        let before = bench.link.identity;
+        change(&mut bench.link.identity);
         bench.run_ms(4_000);
         let error = format!("another unit answers: {told}");
         assert_eq!(link_error(&bench), error);
-        bench.link_mut().identity = before;
+        bench.link.identity = before;
         bench.run_ms(4_000);
         assert_eq!(
             link_error(&bench),
@@ -330,15 +330,15 @@ fn another_unit_on_the_same_line_is_an_error_from_then_on() {
 #[test]
 fn failed_self_test_items_are_known_from_identity_and_status() {
     let mut bench = bench(FakeUnit::default());
-    bench.link_mut().self_test = SelfTest::TRA;
-    bench.link_mut().identity.self_test = SelfTest::MEMORY;
+    bench.link.self_test = SelfTest::TRA;
+    bench.link.identity.self_test = SelfTest::MEMORY;
     bench.run_ms(3_000);
     let both = SelfTest::TRA | SelfTest::MEMORY;
-    assert_eq!(bench.rig().evidence().self_test, both);
+    assert_eq!(bench.rig.evidence().self_test, both);
     // The self-test result from before the restart does not hold.
-    bench.link_mut().restart();
+    bench.link.restart();
     bench.run_ms(4_000);
-    assert_eq!(bench.rig().evidence().self_test, SelfTest::empty());
+    assert_eq!(bench.rig.evidence().self_test, SelfTest::empty());
 }
 
 /// Sends one frame each scan that this end must refuse although it came through whole.
@@ -370,8 +370,8 @@ fn a_wrong_baud_rate_is_suspected_only_where_no_check_sequence_fits() {
 fn a_unit_whose_frames_drown_in_noise_is_not_reported_as_silent_only() {
     let mut bench = bench(FakeUnit::default());
     bench.run_ms(4_000);
-    bench.link_mut().dead = Channel::ALL.to_vec();
-    bench.link_mut().noise = b"noise~";
+    bench.link.dead = Channel::ALL.to_vec();
+    bench.link.noise = b"noise~";
     bench.run_ms(2_000);
     let error = link_error(&bench);
     assert!(
@@ -386,15 +386,15 @@ fn a_unit_that_restarts_repeatedly_is_not_reported_as_a_bad_line() {
     let mut bench = bench(FakeUnit::default());
     bench.run_ms(4_000);
     for (down_ms, up_ms) in [(50, 900), (700, 0)] {
-        bench.link_mut().dead = Channel::ALL.to_vec();
+        bench.link.dead = Channel::ALL.to_vec();
         bench.run_ms(down_ms);
-        bench.link_mut().restart();
+        bench.link.restart();
         bench.run_ms(up_ms);
     }
-    bench.link_mut().dead = Channel::ALL.to_vec();
+    bench.link.dead = Channel::ALL.to_vec();
     bench.run_ms(200);
     // The unit may be about to be heard again.
-    assert_eq!(bench.rig().link_error(), None);
+    assert_eq!(bench.rig.link_error(), None);
     bench.run_ms(9_000);
     let error = link_error(&bench);
     assert!(error.contains("the unit starts again and again"), "{error}");

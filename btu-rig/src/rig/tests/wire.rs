@@ -51,9 +51,9 @@ fn no_cycle_exceeds_the_budget() {
             bench.apply(Stimulus::PtuTwc(STATION));
         }
         bench.run_ms(500);
-        assert!(bench.rig().settled().is_ok());
+        assert!(bench.rig.settled().is_ok());
     }
-    let bytes = &bench.link().bytes_per_scan;
+    let bytes = &bench.link.bytes_per_scan;
     let worst = bytes
         .windows(5)
         .map(|cycle| cycle.iter().sum::<usize>())
@@ -65,7 +65,7 @@ fn no_cycle_exceeds_the_budget() {
 fn frames_keep_their_periods() {
     let mut bench = bench(FakeUnit::default());
     bench.run_ms(10_000);
-    let rig = bench.rig_mut();
+    let rig = &mut bench.rig;
     // As many as the fake unit answers: 100 I/O a second, 20 TCMS, 4 TWC.
     let counters = *rig.counters();
     assert_eq!(counters.accepted(Channel::Io), 1000);
@@ -74,8 +74,8 @@ fn frames_keep_their_periods() {
     bench.apply(Stimulus::Wayside(WaysideCondition::Corrupt));
     bench.apply(Stimulus::Tcms(TcmsCondition::Silent));
     bench.run_ms(10_000);
-    assert_eq!(bench.rig().counters().accepted(Channel::Twc), 40);
-    assert_eq!(bench.rig().counters().accepted(Channel::Io), 2000);
+    assert_eq!(bench.rig.counters().accepted(Channel::Twc), 40);
+    assert_eq!(bench.rig.counters().accepted(Channel::Io), 2000);
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn the_same_seed_gives_the_same_bytes() {
             condition,
         });
         bench.run_ms(5000);
-        bench.link().all_bytes.clone()
+        bench.link.all_bytes.clone()
     };
     assert_eq!(run(5), run(5));
     assert_ne!(run(5), run(6));
@@ -119,7 +119,7 @@ fn a_bad_connection_is_named_after_the_time_for_first_contact() {
         for _ in 0..300 {
             bench.tick().unwrap();
         }
-        assert_eq!(bench.rig().link_error(), None);
+        assert_eq!(bench.rig.link_error(), None);
         bench.tick().unwrap();
         let error = link_error(&bench);
         assert!(error.contains(text), "{error}");
@@ -132,14 +132,14 @@ fn a_bad_connection_is_named_after_the_time_for_first_contact() {
 fn a_standstill_of_the_testers_computer_is_no_silence_of_the_unit() {
     let mut bench = bench(FakeUnit::default());
     bench.run_ms(4000);
-    bench.link_mut().dead = vec![Channel::Ptu, Channel::Io];
+    bench.link.dead = vec![Channel::Ptu, Channel::Io];
     for _ in 0..300 {
         bench.tick().unwrap();
-        let now = bench.now();
-        bench.rig_mut().note_stalled(now);
+        let now = bench.now;
+        bench.rig.note_stalled(now);
     }
     bench.run_ms(1400);
-    assert_eq!(bench.rig().link_error(), None);
+    assert_eq!(bench.rig.link_error(), None);
     bench.run_ms(200);
     let error = link_error(&bench);
     assert!(error.starts_with("unit silent for 1.6 s"), "{error}");
@@ -149,13 +149,13 @@ fn a_standstill_of_the_testers_computer_is_no_silence_of_the_unit() {
 fn silence_of_the_io_channel_is_an_error_and_of_tcms_is_a_finding() {
     let mut bench = bench(FakeUnit::default());
     bench.run_ms(4000);
-    bench.link_mut().dead = vec![Channel::Tcms, Channel::Twc];
+    bench.link.dead = vec![Channel::Tcms, Channel::Twc];
     bench.run_ms(4000);
-    assert_eq!(bench.rig().link_error(), None);
-    bench.link_mut().dead = vec![Channel::Io];
+    assert_eq!(bench.rig.link_error(), None);
+    bench.link.dead = vec![Channel::Io];
     // A unit that starts again is heard again after a second.
     bench.run_ms(1400);
-    assert_eq!(bench.rig().link_error(), None);
+    assert_eq!(bench.rig.link_error(), None);
     bench.run_ms(200);
     let error = "unit silent for 1.6 s on the I/O channel";
     assert_eq!(link_error(&bench), error);

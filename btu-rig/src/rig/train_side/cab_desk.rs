@@ -37,25 +37,25 @@ pub struct CabDesk {
     pub faults: CabDeskFaults,
     pub brakes_cut_out: CarSet,
     pub inverters_cut_out: CarSet,
-    switches: Switches,
+    pub switches: Switches,
     acknowledge_until: Instant,
     start_until: Instant,
     eb_loop: bool,
     eb_loop_fed: bool,
-    number: Entry,
-    wheel: Entry,
+    pub number: Entry,
+    pub wheel: Entry,
 }
 
 /// Value keyed in last, 0 = as the unit is configured, and the frames of it still to be sent.
 #[derive(Clone, Copy, Debug, Default)]
-struct Entry {
+pub struct Entry {
     value: u16,
     frames: u8,
     due: Instant,
 }
 
 impl Entry {
-    fn key_in(&mut self, now: Instant, value: u16) {
+    pub fn key_in(&mut self, now: Instant, value: u16) {
         *self = Self {
             value,
             frames: ENTRY_FRAMES,
@@ -75,7 +75,7 @@ impl Entry {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Switches(u16);
+pub struct Switches(u16);
 
 impl Default for Switches {
     /// The dead man is held, and the contact line takes regenerated power.
@@ -88,12 +88,12 @@ impl Default for Switches {
 }
 
 impl Switches {
-    fn set(&mut self, switch: TrainSwitch, on: bool) {
+    pub fn set(&mut self, switch: TrainSwitch, on: bool) {
         let bit = 1 << switch as u16;
         self.0 = if on { self.0 | bit } else { self.0 & !bit };
     }
 
-    fn on(self, switch: TrainSwitch) -> bool {
+    pub fn on(self, switch: TrainSwitch) -> bool {
         self.0 & (1 << switch as u16) != 0
     }
 }
@@ -152,16 +152,6 @@ impl CabDesk {
         self.start_until = now + PRESSED;
     }
 
-    /// Keys a train number in.
-    pub fn key_in(&mut self, now: Instant, number: u16) {
-        self.number.key_in(now, number);
-    }
-
-    /// Keys a wheel diameter in, 0.1 mm.
-    pub fn key_in_wheel(&mut self, now: Instant, diameter_01mm: u16) {
-        self.wheel.key_in(now, diameter_01mm);
-    }
-
     /// Entries that are due to be sent.
     pub fn entries_due(&mut self, now: Instant) -> [Option<Message>; 2] {
         let number = self.number.due(now);
@@ -170,15 +160,6 @@ impl CabDesk {
             number.map(|train_number| CabEntries { train_number }.into()),
             wheel.map(|diameter_01mm| WheelEntry { diameter_01mm }.into()),
         ]
-    }
-
-    /// Turns a switch of the train.
-    pub fn switch(&mut self, switch: TrainSwitch, on: bool) {
-        self.switches.set(switch, on);
-    }
-
-    pub fn is_on(&self, switch: TrainSwitch) -> bool {
-        self.switches.on(switch)
     }
 
     /// Cuts equipment of a car, by its place from 0, out or in.
@@ -244,7 +225,7 @@ impl CabDesk {
     /// The main reservoir's pressure switch says that pressure is low.
     pub fn main_reservoir_low(&self) -> bool {
         let said = self.faults.main_reservoir_low;
-        said.unwrap_or_else(|| self.is_on(TrainSwitch::MainReservoirLow))
+        said.unwrap_or_else(|| self.switches.on(TrainSwitch::MainReservoirLow))
     }
 
     /// The head control relay of the first cab.
@@ -271,15 +252,15 @@ impl CabDesk {
             reverser: self.reverser,
             mode_switch: self.mode_switch,
             controller,
-            dead_man: self.is_on(TrainSwitch::DeadMan),
-            emergency_button: self.is_on(TrainSwitch::Button1),
-            forced_release: self.is_on(TrainSwitch::ForcedRelease),
+            dead_man: self.switches.on(TrainSwitch::DeadMan),
+            emergency_button: self.switches.on(TrainSwitch::Button1),
+            forced_release: self.switches.on(TrainSwitch::ForcedRelease),
         };
         // Nobody drives from the other cab: its desk is as it was left.
         let other = CabInputs {
-            hcr: self.is_on(TrainSwitch::OtherCab),
+            hcr: self.switches.on(TrainSwitch::OtherCab),
             controller: tcms.at(Lever::Neutral),
-            emergency_button: self.is_on(TrainSwitch::Button2),
+            emergency_button: self.switches.on(TrainSwitch::Button2),
             ..CabInputs::default()
         };
         [first, other]

@@ -22,7 +22,7 @@ const MAX_DISPLACED: f64 = 0.3;
 /// One channel's generator.
 #[derive(Debug)]
 pub struct Tacho {
-    condition: TachoCondition,
+    pub condition: TachoCondition,
     metres_per_pulse: f64,
     random: Random,
     /// Distance at which the present condition began, and the phase there: no error adds up.
@@ -37,7 +37,8 @@ pub struct Tacho {
     spurious_per_s: f64,
     /// Time until the next spurious pulse, s.
     noise_in_s: f64,
-    count: u16,
+    /// Pulses so far, wrapping.
+    pub count: u16,
     age_us: f64,
 }
 
@@ -120,10 +121,6 @@ impl Tacho {
         }
     }
 
-    pub fn condition(&self) -> TachoCondition {
-        self.condition
-    }
-
     /// Whether it tells of a wheel that turns backward, or does not, that it does.
     pub fn tells_backward(&self, backward: bool) -> bool {
         backward != (self.condition == TachoCondition::Reversed)
@@ -171,11 +168,6 @@ impl Tacho {
         self.noise_in_s = (self.noise_in_s - scan_s).max(0.0);
     }
 
-    /// Pulses so far, wrapping.
-    pub fn count(&self) -> u16 {
-        self.count
-    }
-
     /// Age of the last pulse, µs, at most 65535.
     pub fn age_us(&self) -> u16 {
         self.age_us.round() as u16
@@ -202,12 +194,12 @@ mod tests {
         wheel.travel(850.03, Speed::from_kmh(60.0), 0.83).unwrap();
         let mut counts = [0u64; 2];
         while !wheel.settled() {
-            let before = [one.count(), two.count()];
+            let before = [one.count, two.count];
             wheel.step();
-            one.step(wheel.motion());
-            two.step(wheel.motion());
-            counts[0] += u64::from(one.count().wrapping_sub(before[0]));
-            counts[1] += u64::from(two.count().wrapping_sub(before[1]));
+            one.step(&wheel.motion);
+            two.step(&wheel.motion);
+            counts[0] += u64::from(one.count.wrapping_sub(before[0]));
+            counts[1] += u64::from(two.count.wrapping_sub(before[1]));
         }
         let expected = 850.03 / PULSE_M;
         for (count, phase) in counts.into_iter().zip(PHASES) {
@@ -224,17 +216,17 @@ mod tests {
             wheel.go_to(Speed::from_kmh(kmh), 3.0);
             for scan in 0..2000u32 {
                 wheel.step();
-                tacho.step(wheel.motion());
+                tacho.step(&wheel.motion);
                 if scan == 1900 {
                     assert!(wheel.settled());
                 }
             }
-            let (count, age) = (tacho.count(), f64::from(tacho.age_us()));
+            let (count, age) = (tacho.count, f64::from(tacho.age_us()));
             for _ in 0..10 {
                 wheel.step();
-                tacho.step(wheel.motion());
+                tacho.step(&wheel.motion);
             }
-            let pulses = f64::from(tacho.count().wrapping_sub(count));
+            let pulses = f64::from(tacho.count.wrapping_sub(count));
             let seconds = (100_000.0 + age - f64::from(tacho.age_us())) / 1e6;
             let measured = pulses * PULSE_M / seconds;
             assert!(
@@ -252,11 +244,11 @@ mod tests {
         wheel.go_to(Speed::from_kmh(30.0), 0.5);
         let mut last_edge_us = f64::NEG_INFINITY;
         for scan in 1..3000u32 {
-            let before = tacho.count();
+            let before = tacho.count;
             wheel.step();
-            tacho.step(wheel.motion());
+            tacho.step(&wheel.motion);
             let edge_us = f64::from(scan) * 1e4 - f64::from(tacho.age_us());
-            if tacho.count() != before {
+            if tacho.count != before {
                 assert!(edge_us > last_edge_us && tacho.age_us() <= 10_000);
                 last_edge_us = edge_us;
             }
@@ -268,16 +260,16 @@ mod tests {
         let (mut wheel, [mut good, mut bad]) = (Wheel::default(), channels());
         wheel.go_to(Speed::from_mps(10.0), 1000.0);
         let mut run = |good: &mut Tacho, bad: &mut Tacho| {
-            let before = (good.count(), bad.count());
+            let before = (good.count, bad.count);
             for _ in 0..1000 {
                 wheel.step();
-                good.step(wheel.motion());
-                bad.step(wheel.motion());
+                good.step(&wheel.motion);
+                bad.step(&wheel.motion);
             }
             (
-                f64::from(good.count().wrapping_sub(before.0)),
-                f64::from(bad.count().wrapping_sub(before.1)),
-                wheel.motion().distance_m,
+                f64::from(good.count.wrapping_sub(before.0)),
+                f64::from(bad.count.wrapping_sub(before.1)),
+                wheel.motion.distance_m,
             )
         };
         let (a, b, distance) = run(&mut good, &mut bad);
@@ -315,10 +307,10 @@ mod tests {
         wheel.go_to(Speed::from_mps(PULSE_M / 0.0405), 1000.0);
         let mut edges_us = Vec::new();
         for scan in 1..2000u32 {
-            let before = tacho.count();
+            let before = tacho.count;
             wheel.step();
-            tacho.step(wheel.motion());
-            if tacho.count() != before {
+            tacho.step(&wheel.motion);
+            if tacho.count != before {
                 edges_us.push(f64::from(scan) * 1e4 - f64::from(tacho.age_us()));
             }
         }
@@ -345,9 +337,9 @@ mod tests {
         tacho.set_sensors(&sensors, 100, &mut Random::new(5));
         for _ in 0..100_000 {
             wheel.step();
-            tacho.step(wheel.motion());
+            tacho.step(&wheel.motion);
         }
-        let pulses = i32::from(tacho.count());
+        let pulses = i32::from(tacho.count);
         assert!((pulses - 500).abs() < 70, "{pulses}");
     }
 }

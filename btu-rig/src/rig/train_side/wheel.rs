@@ -48,10 +48,13 @@ impl Default for Plan {
 pub struct Wheel {
     /// Size of the speed, m/s.
     speed_mps: f64,
-    backward: bool,
+    /// The wheel turns backward, or would.
+    pub backward: bool,
     plan: Plan,
-    motion: Motion,
-    axle: Motion,
+    /// The train's motion in the last scan.
+    pub motion: Motion,
+    /// The tachometers' axle's.
+    pub axle: Motion,
     forward_at_rest: bool,
 }
 
@@ -229,11 +232,6 @@ impl Wheel {
         self.speed_mps == 0.0 && self.settled()
     }
 
-    /// The wheel turns backward, or would.
-    pub fn backward(&self) -> bool {
-        self.backward
-    }
-
     /// Size of its speed.
     pub fn speed(&self) -> Speed {
         Speed::from_mps(self.speed_mps)
@@ -246,16 +244,6 @@ impl Wheel {
         } else {
             self.speed_mps
         }
-    }
-
-    /// The train's motion in the last scan.
-    pub fn motion(&self) -> &Motion {
-        &self.motion
-    }
-
-    /// The tachometers' axle's.
-    pub fn axle(&self) -> &Motion {
-        &self.axle
     }
 }
 
@@ -280,7 +268,7 @@ mod tests {
         let scans = run_until_settled(&mut wheel);
         assert!((2500..=2501).contains(&scans), "{scans}");
         let late = scans as f64 * 0.01 - 25.0;
-        assert!((wheel.motion().distance_m - (250.0 + late * 20.0)).abs() < 1e-6);
+        assert!((wheel.motion.distance_m - (250.0 + late * 20.0)).abs() < 1e-6);
         assert_eq!(wheel.speed(), Speed::from_mps(20.0));
     }
 
@@ -297,9 +285,9 @@ mod tests {
                 .travel(distance, Speed::from_mps(speed), accel)
                 .unwrap();
             run_until_settled(&mut wheel);
-            assert_eq!(wheel.motion().distance_m, distance);
+            assert_eq!(wheel.motion.distance_m, distance);
             wheel.step();
-            assert_eq!(wheel.motion().position_m, distance);
+            assert_eq!(wheel.motion.position_m, distance);
             assert!(wheel.standing());
         }
     }
@@ -309,11 +297,11 @@ mod tests {
         let mut wheel = Wheel::default();
         wheel.go_to(Speed::from_mps(10.0), 1.0);
         run_until_settled(&mut wheel);
-        let from = wheel.motion().distance_m;
+        let from = wheel.motion.distance_m;
         assert!(wheel.travel(49.0, Speed::from_mps(5.0), 1.0).is_err());
         wheel.travel(60.0, Speed::from_mps(5.0), 1.0).unwrap();
         run_until_settled(&mut wheel);
-        assert_eq!(wheel.motion().distance_m, from + 60.0);
+        assert_eq!(wheel.motion.distance_m, from + 60.0);
         assert!(wheel.standing());
     }
 
@@ -326,7 +314,7 @@ mod tests {
         assert!(wheel.set_backward(false).is_err());
         wheel.stop();
         run_until_settled(&mut wheel);
-        assert!(!wheel.backward() && wheel.standing());
-        assert!(wheel.motion().position_m < 0.0);
+        assert!(!wheel.backward && wheel.standing());
+        assert!(wheel.motion.position_m < 0.0);
     }
 }

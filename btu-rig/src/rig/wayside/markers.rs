@@ -18,14 +18,16 @@ pub struct Markers {
     /// Markers along the way, by position on the rig's own scale.
     along_m: [Option<f64>; 4],
     /// Distance of each marker from its place.
-    offsets_m: [f64; 4],
+    pub offsets_m: [f64; 4],
     /// Marker and age at the coming stamp, µs, and whether it was asked for instead of passed.
     pending: VecDeque<(u8, f64, bool)>,
-    last: u8,
-    edges: u8,
+    /// Marker entered last; 0 = none yet.
+    pub last: u8,
+    /// Markers entered so far, wrapping.
+    pub edges: u8,
     age_us: f64,
     /// Marker that was asked for and pulses in this scan.
-    asked: Option<u8>,
+    pub asked: Option<u8>,
 }
 
 impl Default for Markers {
@@ -79,11 +81,6 @@ impl Markers {
         }
     }
 
-    /// Sets how far from its place in the track database each marker really lies.
-    pub fn set_offsets(&mut self, offsets_m: [f64; 4]) {
-        self.offsets_m = offsets_m;
-    }
-
     /// Takes the markers along the way away.
     pub fn lift(&mut self) {
         self.along_m = [None; 4];
@@ -125,21 +122,6 @@ impl Markers {
             .filter_map(|(psm, (at, offset))| Some((psm, at.as_ref()? + offset)))
     }
 
-    /// A marker that was asked for and pulses in this scan.
-    pub fn asked(&self) -> Option<u8> {
-        self.asked
-    }
-
-    /// Marker entered last; 0 = none yet.
-    pub fn last(&self) -> u8 {
-        self.last
-    }
-
-    /// Markers entered so far, wrapping.
-    pub fn edges(&self) -> u8 {
-        self.edges
-    }
-
     /// Age of the last edge, µs, at most 65535.
     pub fn age_us(&self) -> u16 {
         self.age_us.round() as u16
@@ -164,12 +146,12 @@ mod tests {
         wheel.travel(850.03, Speed::from_kmh(60.0), 0.8).unwrap();
         let mut seen = Vec::new();
         while !wheel.settled() {
-            let before = markers.edges();
+            let before = markers.edges;
             wheel.step();
-            markers.step(wheel.motion());
-            if markers.edges() != before {
+            markers.step(&wheel.motion);
+            if markers.edges != before {
                 let since = f64::from(markers.age_us()) / 1e6 * wheel.speed().mps();
-                seen.push((markers.last(), wheel.motion().position_m - since));
+                seen.push((markers.last, wheel.motion.position_m - since));
             }
         }
         assert_eq!(seen.len(), 4);
@@ -209,20 +191,17 @@ mod tests {
         }
         assert!(markers.pulse(1).is_err());
         wheel.step();
-        markers.step(wheel.motion());
+        markers.step(&wheel.motion);
+        assert_eq!((markers.last, markers.edges, markers.age_us()), (1, 1, 0));
+        markers.step(&wheel.motion);
         assert_eq!(
-            (markers.last(), markers.edges(), markers.age_us()),
-            (1, 1, 0)
-        );
-        markers.step(wheel.motion());
-        assert_eq!(
-            (markers.last(), markers.edges(), markers.age_us()),
+            (markers.last, markers.edges, markers.age_us()),
             (3, 2, 10_000)
         );
         markers.clear();
         for _ in 0..20 {
-            markers.step(wheel.motion());
+            markers.step(&wheel.motion);
         }
-        assert_eq!((markers.edges(), markers.age_us()), (2, u16::MAX));
+        assert_eq!((markers.edges, markers.age_us()), (2, u16::MAX));
     }
 }

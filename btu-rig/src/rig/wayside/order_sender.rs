@@ -13,7 +13,8 @@ const GIVEN_UP_AFTER: u8 = 8;
 pub struct OrderSender {
     orders: Option<OrderData>,
     unanswered: u8,
-    answered: Option<bool>,
+    /// Whether the unit reports to orders, once that is known.
+    pub answered: Option<bool>,
 }
 
 impl OrderSender {
@@ -26,11 +27,6 @@ impl OrderSender {
     /// The order that is sent.
     pub fn order(&self) -> TrainOrder {
         self.orders.map(|orders| orders.order).unwrap_or_default()
-    }
-
-    /// Whether the unit reports to orders, once that is known.
-    pub fn answered(&self) -> Option<bool> {
-        self.answered
     }
 
     /// The message that is due with the wayside's period; `train` is the number of the train.
@@ -81,7 +77,7 @@ mod tests {
         sender.on_report();
         let sent = (0..20).filter(|_| sender.due(8001).is_some()).count();
         assert_eq!(sent, usize::from(GIVEN_UP_AFTER));
-        assert_eq!(sender.answered(), Some(false));
+        assert_eq!(sender.answered, Some(false));
         sender.set(Some(ORDERS));
         assert!(sender.due(8001).is_some(), "asked again");
     }

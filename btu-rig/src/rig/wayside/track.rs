@@ -11,7 +11,7 @@ const FAR_BEHIND_M: f64 = -1e4;
 /// A section laid along the track ahead of the rig.
 #[derive(Clone, Debug)]
 pub struct Track {
-    section: Section,
+    pub section: Section,
     /// Position of the section's start on the rig's own scale, m.
     starts_at_m: f64,
     /// Gradient, ‰, uphill positive; level before the first listed gradient.
@@ -52,10 +52,6 @@ impl Track {
             section,
             starts_at_m,
         }
-    }
-
-    pub fn section(&self) -> &Section {
-        &self.section
     }
 
     /// Position in the section of a position on the rig's own scale, m.

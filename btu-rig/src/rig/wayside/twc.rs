@@ -19,8 +19,8 @@ const NO_FIXED_SPEED: u8 = 255;
 /// The wayside equipment of one loop.
 #[derive(Debug)]
 pub struct Wayside {
-    condition: WaysideCondition,
-    data: StationData,
+    pub condition: WaysideCondition,
+    pub data: StationData,
     pub orders: OrderSender,
     next_due: Instant,
     random: Random,
@@ -47,22 +47,6 @@ impl Wayside {
         self.condition = WaysideCondition::Good;
         self.data = StationData::at_departure(section);
         self.orders.set(None);
-    }
-
-    pub fn set_data(&mut self, data: StationData) {
-        self.data = data;
-    }
-
-    pub fn data(&self) -> &StationData {
-        &self.data
-    }
-
-    pub fn set_condition(&mut self, condition: WaysideCondition) {
-        self.condition = condition;
-    }
-
-    pub fn condition(&self) -> WaysideCondition {
-        self.condition
     }
 
     /// Sends the frames that are due, if any, to the train of this number.
@@ -147,7 +131,7 @@ mod tests {
     fn corrupt_frames_are_refused_and_spare_their_neighbours() {
         let line = Line::from_toml(include_str!("../../../../scripts/lines/line8.toml")).unwrap();
         let mut wayside = Wayside::new(&line.sections[0], Random::new(3));
-        wayside.set_condition(WaysideCondition::Corrupt);
+        wayside.condition = WaysideCondition::Corrupt;
         let (mut bench, mut unit) = (Link::new(End::Bench), Link::new(End::Unit));
         let mut now = Instant::ZERO;
         for _ in 0..10_000 {
@@ -159,8 +143,8 @@ mod tests {
             while unit.poll(now).is_some() {}
             now += PERIOD;
         }
-        assert_eq!(unit.counters().accepted(Channel::Twc), 0);
-        assert_eq!(unit.counters().accepted(Channel::Ptu), 20_000);
-        assert!(unit.counters().rejected_total() >= 10_000);
+        assert_eq!(unit.counters.accepted(Channel::Twc), 0);
+        assert_eq!(unit.counters.accepted(Channel::Ptu), 20_000);
+        assert!(unit.counters.rejected_total() >= 10_000);
     }
 }

@@ -180,10 +180,10 @@ proptest! {
             for _ in 0..*times {
                 now += Duration::from_ms(*ms);
                 if let Some(frame) = frame {
-                    tcms.receive(now, frame);
+                    tcms.atc.receive(now, frame);
                 }
                 let told = tcms.step(now, &inputs);
-                let view = tcms.view();
+                let view = &tcms.view;
                 let efforts = told.motor_n.iter().chain(&told.air_n);
                 prop_assert!(efforts.chain([&told.demand, &told.load_kg]).all(|n| n.is_finite()));
                 prop_assert!((-1.0..=1.0).contains(&told.demand));

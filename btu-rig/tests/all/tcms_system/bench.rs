@@ -85,7 +85,7 @@ impl Bench {
 
     /// Puts the lever of the first cab somewhere.
     pub fn lever(&mut self, lever: Lever) {
-        self.inputs.cabs[0].controller = self.tcms.data().at(lever);
+        self.inputs.cabs[0].controller = self.tcms.data.at(lever);
     }
 
     /// All axles at a speed.
@@ -99,7 +99,7 @@ impl Bench {
             if self.now.since(self.sent) >= CYCLE {
                 self.sent = self.now;
                 if let Some(order) = &self.order {
-                    self.tcms.receive(self.now, order);
+                    self.tcms.atc.receive(self.now, order);
                 }
             }
             self.follow();
@@ -135,7 +135,7 @@ impl Bench {
     }
 
     pub fn view(&self) -> &TcmsView {
-        self.tcms.view()
+        &self.tcms.view
     }
 
     /// The full service brake is on.

@@ -10,7 +10,7 @@ use super::bench::Bench;
 #[test]
 fn commands_count_only_from_the_cab_whose_relay_is_energised() {
     let mut bench = Bench::new();
-    let data = bench.tcms.data().clone();
+    let data = bench.tcms.data.clone();
     bench.inputs.cabs[1].controller = data.at(Lever::Power(4));
     bench.run(500);
     assert!(!bench.powers(), "the other cab's lever is ignored");

@@ -65,7 +65,7 @@ impl Store {
             // Indexes are filled in random order, which needs more of their pages in memory than usual.
             set_cache(CACHE)?;
             self.write(DOING, |conn| {
-                let merge = || Merge::begin(other.backend(), self.backend(), conn)?.all(copy);
+                let merge = || Merge::begin(&other.backend, &self.backend, conn)?.all(copy);
                 merge().map_err(|error| self.error_of(other, error))
             })
         });
@@ -82,20 +82,20 @@ impl Store {
     fn copy_of(&self, other: &Store) -> Result<Option<CopyOf>, StoreError> {
         const DOING: &str = "comparing seals";
         let look = || {
-            let own = own_file_id(other.backend())?;
-            Ok((own, compare_all_chains(other.backend(), self.backend())?))
+            let own = own_file_id(&other.backend)?;
+            Ok((own, compare_all_chains(&other.backend, &self.backend)?))
         };
         let (own, chains) = look().map_err(|error: SqlError| other.failed(DOING, error))?;
         let known = || {
             Ok((
-                own_file_id(self.backend())?,
-                known_heads::seen_by(self.backend())?,
+                own_file_id(&self.backend)?,
+                known_heads::seen_by(&self.backend)?,
             ))
         };
         let (ours, known) = known().map_err(|error: SqlError| self.failed(DOING, error))?;
         // An older copy of this file may come back; that of another file was put back.
         let whole = own.filter(|own| Some(*own) != ours);
-        let broken = known_heads::broken(other.backend(), &known, whole);
+        let broken = known_heads::broken(&other.backend, &known, whole);
         let broken = broken.map_err(|error| other.failed(DOING, error))?;
         if let Some((_, what)) = broken.into_iter().next() {
             return Err(StoreError::Altered {

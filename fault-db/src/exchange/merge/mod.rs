@@ -14,7 +14,7 @@ use super::sync::Difference;
 use super::tables::TableId;
 use super::to_file::FileApplier;
 use crate::backend::Refusal;
-use crate::backend::{Backend, SqlResult, values};
+use crate::backend::{Backend, SqlResult, from_row, values};
 use crate::exchange::domain::{Refusals, shown_id};
 use crate::history::event_graph::{fault_of, settle};
 use crate::history::recurrence::HighWaterMark;
@@ -153,11 +153,7 @@ impl<'a> Merge<'a> {
         let mut after = i64::MIN;
         loop {
             let entries = self.theirs.select(&sql, &values![after], |row| {
-                Ok(Entry {
-                    seq: row.get(0)?,
-                    parent: row.get(1)?,
-                    id: row.get(2)?,
-                })
+                Ok(from_row!(row => Entry: seq, parent, id))
             })?;
             if entries.is_empty() {
                 return Ok(());

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::outcome::{Difference, SyncOutcome};
 use crate::backend::Refusal;
-use crate::backend::{Backend, Server, SqlResult, values};
+use crate::backend::{Backend, Server, SqlResult, from_row, values};
 use crate::exchange::change_set::{ChangeSet, Counts, ENOUGH_BYTES, MOST_ENTRIES};
 use crate::exchange::checksum::DAMAGED;
 use crate::exchange::domain::shown_id;
@@ -39,18 +39,16 @@ pub(super) fn entries(
          WHERE o.seq > ?1 AND o.seq <= ?2 AND (o.what = 'trace') = ?3 ORDER BY o.seq LIMIT ?4",
         &values![after, until, traces, MOST_ENTRIES],
         |row| {
-            Ok(Entry {
-                seq: row.get(0)?,
+            Ok(from_row!(row => Entry:
+                seq, _, row, id;
                 of: match row.get::<&str>(1)? {
                     "run" => TableId::Run,
                     "event" => TableId::Event,
                     "note" => TableId::Note,
                     _ => TableId::Trace,
                 },
-                row: row.get(2)?,
-                id: row.get(3)?,
-                digests: row.get::<Option<Vec<u8>>>(4)?.into_iter().collect(),
-            })
+                digests: row.get::<Option<Vec<u8>>>(4)?.into_iter().collect()
+            ))
         },
     )?;
     for entry in entries.iter_mut().filter(|entry| entry.of == TableId::Run) {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::backend::values;
+use crate::backend::{from_row, values};
 use crate::error::StoreError;
 use crate::store::Store;
 
@@ -30,13 +30,7 @@ impl Store {
                 WHERE o.seq > CASE o.what WHEN 'trace' THEN s.sent_traces ELSE s.sent END)
              FROM sync_server s ORDER BY s.last_at_us DESC, s.id",
             &values![],
-            |row| {
-                Ok(LastSync {
-                    server: row.get(0)?,
-                    at_us: row.get(1)?,
-                    waiting: row.get(2)?,
-                })
-            },
+            |row| Ok(from_row!(row => LastSync: server, at_us, waiting)),
         )
     }
 }

@@ -46,7 +46,7 @@ impl Store {
         const DOING: &str = "beginning a sync";
         let mut file_id = self.file_id()?;
         let wire = server.server()?;
-        let id = server_id(server.backend()).map_err(|error| server.failed(DOING, error))?;
+        let id = server_id(&server.backend).map_err(|error| server.failed(DOING, error))?;
         let id = id.ok_or_else(|| StoreError::ServerForeign(server.path().to_path_buf()))?;
         let known = self.change(DOING, |file| {
             let prepare = || {
@@ -59,12 +59,12 @@ impl Store {
         if options.as_copy {
             let (minted, at_us) = (self.mint()?, (options.now_us)());
             let parted = self.change(DOING, |file| {
-                seal_chains::rename_copy(file, server.backend(), file_id, minted, at_us)
+                seal_chains::rename_copy(file, &server.backend, file_id, minted, at_us)
                     .map_err(|error| self.either(server, DOING, error))
             })?;
             file_id = parted.unwrap_or(file_id);
         }
-        let chains = seal_chains::look(self.backend(), server.backend(), file_id);
+        let chains = seal_chains::look(&self.backend, &server.backend, file_id);
         let chains = chains.map_err(|error| self.either(server, DOING, error))?;
         if let Some(stands) = &chains.refused {
             return Err(chain_error(self.path(), stands));
@@ -152,7 +152,7 @@ impl Sync<'_> {
             let mut cursors = self.cursors;
             let outcome = self.server.change(SENDING, |backend| {
                 let mut send = || {
-                    let batch = Batch::gather(self.file.backend(), self.wire, &entries)?;
+                    let batch = Batch::gather(&self.file.backend, self.wire, &entries)?;
                     *cursors.of(traces) = batch.through;
                     done += batch.entries;
                     let new = self.applier(self.laptop.seq).apply(&batch.set)?;
@@ -170,7 +170,7 @@ impl Sync<'_> {
 
     fn applier(&self, laptop: i64) -> ServerApplier<'_> {
         ServerApplier {
-            backend: self.server.backend(),
+            backend: &self.server.backend,
             server: self.wire,
             laptop,
         }
@@ -182,7 +182,7 @@ impl Sync<'_> {
         for mut chain in std::mem::take(&mut self.chains) {
             loop {
                 let sent = server.change(SENDING, |_| {
-                    seal_chains::send(file.backend(), &self.applier(0), &mut chain)
+                    seal_chains::send(&file.backend, &self.applier(0), &mut chain)
                         .map_err(|error| file.either(server, SENDING, error))
                 })?;
                 match sent {
@@ -268,7 +268,7 @@ impl Sync<'_> {
                 continue;
             }
             let added = self.file.write(RECEIVING, |conn| {
-                receive::add(self.file.backend(), conn, &batch.set)
+                receive::add(&self.file.backend, conn, &batch.set)
                     .map_err(|error| self.file.failed(RECEIVING, error))
             })?;
             self.outcome.add(added);
@@ -313,7 +313,7 @@ impl Sync<'_> {
         doing: &'static str,
         ask: impl FnOnce(&Backend) -> SqlResult<T>,
     ) -> Result<T, StoreError> {
-        ask(self.file.backend()).map_err(|error| self.file.failed(doing, error))
+        ask(&self.file.backend).map_err(|error| self.file.failed(doing, error))
     }
 
     fn of_server<T>(
@@ -321,7 +321,7 @@ impl Sync<'_> {
         doing: &'static str,
         ask: impl FnOnce(&Backend) -> SqlResult<T>,
     ) -> Result<T, StoreError> {
-        ask(self.server.backend()).map_err(|error| self.server.failed(doing, error))
+        ask(&self.server.backend).map_err(|error| self.server.failed(doing, error))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::store::Store;
 
 /// Enters the runs of dead programs with their traces: they never finish by themselves.
 pub(super) fn enqueue_interrupted_runs(store: &Store) -> SqlResult<()> {
-    let file = store.backend();
+    let file = &store.backend;
     let unfinished = file.select(
         "SELECT seq, id FROM run WHERE verdict IS NULL
             AND seq NOT IN (SELECT row FROM outbox WHERE what = 'run')",

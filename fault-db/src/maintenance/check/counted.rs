@@ -131,12 +131,12 @@ pub(super) fn rebuild(store: &Store, at_us: i64) -> Result<Vec<String>, StoreErr
             }
             let work = || -> SqlResult<()> {
                 for (fault, _) in &faults {
-                    recompute_fault(store.backend(), *fault)?;
+                    recompute_fault(&store.backend, *fault)?;
                 }
                 if !differed.is_empty() {
                     let differed = differed.clone();
                     let payload = RecountedPayload { at_us, differed };
-                    append_statement(store.backend(), RECOUNTED, id, &payload)?;
+                    append_statement(&store.backend, RECOUNTED, id, &payload)?;
                 }
                 Ok(())
             };

@@ -116,7 +116,7 @@ impl Store {
     /// On a server: every run against its seal, the seals against each other, and the triggers that make its
     /// tables append-only.
     pub fn check(&self) -> Result<CheckReport, StoreError> {
-        if let Backend::Server(_) = self.backend() {
+        if let Backend::Server(_) = &self.backend {
             return server::check(self);
         }
         let conn = self.file()?;
@@ -192,7 +192,7 @@ impl Store {
         drop(found);
 
         let found = Findings::new(problems, ProblemKind::Seal, Advice::Altered);
-        let runs = chain::check(self.backend(), found, &mut report.remarks);
+        let runs = chain::check(&self.backend, found, &mut report.remarks);
         (report.runs, report.signed) =
             runs.map_err(|error| self.failed("checking seals", error))?;
         report.head = self.head()?;

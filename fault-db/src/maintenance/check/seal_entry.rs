@@ -1,7 +1,7 @@
 //! Reads the entries of the chains in order, and checks each one's position and hash.
 
 use super::damage::{Damage, SealPlace, time};
-use crate::backend::{Backend, SqlResult, values};
+use crate::backend::{Backend, SqlResult, from_row, values};
 use crate::id::Id;
 use crate::seal::chained;
 
@@ -89,15 +89,6 @@ pub(super) fn seals_after(backend: &Backend, last: Option<&Seal>) -> SqlResult<V
          FROM seal s WHERE (s.origin, s.ordinal) > (?1, ?2) ORDER BY s.origin, s.ordinal LIMIT {SEALS_PER_BATCH}"
     );
     backend.select(&sql, &values![origin, ordinal], |row| {
-        Ok(Seal {
-            origin: row.get(0)?,
-            ordinal: row.get(1)?,
-            what: row.get(2)?,
-            id: row.get(3)?,
-            payload: row.get(4)?,
-            digest: row.get(5)?,
-            hash: row.get(6)?,
-            row: row.get(7)?,
-        })
+        Ok(from_row!(row => Seal: origin, ordinal, what, id, payload, digest, hash, row))
     })
 }

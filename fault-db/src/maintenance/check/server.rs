@@ -27,7 +27,7 @@ pub(super) fn check(store: &Store) -> Result<CheckReport, StoreError> {
         head: None,
         signed: Vec::new(),
     };
-    let backend = store.backend();
+    let backend = &store.backend;
     let mut found = Findings::new(
         &mut report.problems,
         ProblemKind::Schema,

@@ -8,7 +8,7 @@ use sha2::{Digest as _, Sha256};
 use super::chain::{ChainSummary, check_traces_and_recordings};
 use super::seal_entry::clock_error;
 use super::{Advice, Findings, ProblemKind};
-use crate::backend::{Backend, SqlResult, values};
+use crate::backend::{Backend, SqlResult, from_row, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::seal::events_and_notes::{EventPayload, event_digest, is_of_its_fault, note_digest};
@@ -60,7 +60,7 @@ impl Store {
             |row| row.get(0),
         )?;
         let run = seq.ok_or_else(|| StoreError::not_found("run", id))?;
-        let mut look = Look::at(self.backend(), (id, run));
+        let mut look = Look::at(&self.backend, (id, run));
         look.all().map_err(|error| self.failed(DOING, error))?;
         Ok(look.found)
     }
@@ -70,7 +70,7 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub fn signatures(&self, run: Id) -> Result<Vec<String>, StoreError> {
-        let read = signatures_of(self.backend(), run);
+        let read = signatures_of(&self.backend, run);
         let read = read.map_err(|error| self.failed("reading signatures", error))?;
         Ok(read.into_iter().map(|(text, _)| text).collect())
     }
@@ -383,13 +383,7 @@ fn seals(backend: &Backend, what: &str, id: Id) -> SqlResult<Vec<SealRow>> {
         "SELECT origin, ordinal, says, digest, hash FROM seal WHERE id = ?1 AND what = ?2 ORDER BY origin, ordinal",
         &values![id, what],
         |row| {
-            Ok(SealRow {
-                origin: row.get(0)?,
-                ordinal: row.get(1)?,
-                payload: row.get(2)?,
-                digest: row.get(3)?,
-                hash: row.get(4)?,
-            })
+            Ok(from_row!(row => SealRow: origin, ordinal, payload, digest, hash))
         },
     )
 }

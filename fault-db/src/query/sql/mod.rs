@@ -87,7 +87,7 @@ impl Store {
         bounds: QueryBounds,
         goes_on: impl FnMut() -> bool + Send + 'static,
     ) -> Result<QueryResult, StoreError> {
-        match self.backend() {
+        match &self.backend {
             Backend::File(_) => file::answer(self, sql, bounds, goes_on),
             Backend::Server(server) => {
                 let mut goes_on = goes_on;

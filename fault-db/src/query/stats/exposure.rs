@@ -39,7 +39,7 @@ impl Observed {
                 (SELECT r.line FROM run r WHERE r.unit = u.seq ORDER BY r.started_at_us DESC LIMIT 1),
                 (SELECT r.train FROM run r WHERE r.unit = u.seq ORDER BY r.started_at_us DESC LIMIT 1)
             FROM unit u WHERE u.seq = coalesce(?1, u.seq)";
-        let all = store.select("listing units", sql, &values![resolved.unit()], |row| {
+        let all = store.select("listing units", sql, &values![resolved.unit], |row| {
             let first: Option<i64> = row.get(1)?;
             let line: Option<String> = row.get(2)?;
             let train: Option<String> = row.get(3)?;
@@ -53,7 +53,7 @@ impl Observed {
         let mut units = Vec::new();
         for (unit, first, line, train) in all {
             let Some(first_us) = first else { continue };
-            let is_meant = resolved.unit().is_none_or(|meant| meant == unit)
+            let is_meant = resolved.unit.is_none_or(|meant| meant == unit)
                 && filter.line.as_ref().is_none_or(|meant| *meant == line)
                 && filter.train.as_ref().is_none_or(|meant| *meant == train);
             if is_meant {

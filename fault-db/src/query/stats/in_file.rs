@@ -22,9 +22,9 @@ pub(super) fn count(
     let spans: Vec<_> = spans.iter().map(Span::of).collect();
     let mut counting = Counting {
         filter,
-        unit: resolved.unit(),
-        codes: resolved.codes(),
-        lrus: resolved.lrus(),
+        unit: resolved.unit,
+        codes: resolved.codes.as_deref(),
+        lrus: resolved.lrus.as_deref(),
         faults: resolved.faults_by_text(backend)?,
         runs: resolved.runs(backend)?,
         by: query.by,

@@ -110,7 +110,7 @@ impl Store {
         query: &StatQuery,
         spans: &[std::ops::Range<i64>],
     ) -> Result<Vec<Vec<FaultStat>>, StoreError> {
-        if let Backend::Server(_) = self.backend() {
+        if let Backend::Server(_) = &self.backend {
             let in_span = |span: &std::ops::Range<i64>| {
                 let mut query = query.clone();
                 query.filter.since_us = Some(span.start);
@@ -131,7 +131,7 @@ impl Store {
             }
         };
         let spans: Vec<_> = spans.iter().map(within).collect();
-        let counted = in_file::count(self.backend(), &resolved, query, &spans)
+        let counted = in_file::count(&self.backend, &resolved, query, &spans)
             .map_err(|error| self.failed(DOING, error))?;
         let in_spans = counted.into_iter().zip(&spans);
         let in_spans = in_spans.map(|(counted, span)| {
@@ -161,7 +161,7 @@ impl Store {
         let counted = self.count(&resolved, query, &span)?;
         let mut total = Counts::default();
         if with_total {
-            match self.backend() {
+            match &self.backend {
                 Backend::File(_) => counted.values().for_each(|key| total.add_key(key)),
                 // A server tells the number of units of a key, not which they are.
                 Backend::Server(_) => {
@@ -191,7 +191,7 @@ impl Store {
         query: &StatQuery,
         span: &CountedSpan,
     ) -> Result<CountsByKey, StoreError> {
-        let backend = self.backend();
+        let backend = &self.backend;
         let counted = match backend {
             Backend::File(_) => {
                 let spans = std::slice::from_ref(span);

@@ -4,7 +4,7 @@ use super::super::fault_filter::{FilteredTable, Resolved};
 use super::cases::{Case, CaseRepair, RepairTimes, cases_of};
 use super::counts::{Bins, CountsByKey, Key, Repairs, Units};
 use super::{StatKey, StatQuery};
-use crate::backend::{Backend, SqlResult};
+use crate::backend::{Backend, SqlResult, from_row};
 
 /// Counts what the filter selects, in its span of time.
 pub(super) fn count(
@@ -143,12 +143,7 @@ fn add_repairs(
     );
     backend.each(&sql, conditions.values(), |row| {
         let counts = counted.entry(Key::from_field(row.field(0)?)).or_default();
-        counts.repairs = Repairs {
-            all: row.get(1)?,
-            us: row.get(2)?,
-            back: row.get(3)?,
-            young: row.get(4)?,
-        };
+        counts.repairs = from_row!(row => Repairs: _, all, us, back, young);
         Ok(())
     })
 }
@@ -201,15 +196,12 @@ fn read(backend: &Backend, resolved: &Resolved<'_>) -> SqlResult<Vec<(Key, bool,
     let mut seqs: Vec<i64> = Vec::new();
     let mut faults = backend.select(&sql, conditions.values(), |row| {
         seqs.push(row.get(7)?);
-        let case = Case {
+        let case = from_row!(row => Case:
+            _, _, unit, first_us, last_us, closed_us;
             place: 0,
-            unit: row.get(2)?,
-            first_us: row.get(3)?,
-            last_us: row.get(4)?,
-            closed_us: row.get(5)?,
             is_repaired: row.get::<i64>(6)? > 0,
-            repairs: Vec::new(),
-        };
+            repairs: Vec::new()
+        );
         Ok((
             Key::from_field(row.field(0)?),
             row.get::<i64>(1)? == 1,
@@ -223,11 +215,9 @@ fn read(backend: &Backend, resolved: &Resolved<'_>) -> SqlResult<Vec<(Key, bool,
     );
     backend.each(&sql, conditions.values(), |row| {
         if let Ok(place) = seqs.binary_search(&row.get(0)?) {
-            faults[place].2.repairs.push(CaseRepair {
-                at_us: row.get(1)?,
-                opened_us: row.get(2)?,
-                back_us: row.get(3)?,
-            });
+            faults[place].2.repairs.push(from_row!(row => CaseRepair:
+                _, at_us, opened_us, back_us
+            ));
         }
         Ok(())
     })?;

@@ -11,36 +11,25 @@ pub use controllers::{
     FuzzyConfig, GainUnit, ObserverConfig, PiConfig, ProfileConfig, PssConfig, ServoConfig,
 };
 
-/// The speed controllers that can be chosen.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum ControllerKind {
-    /// S-curve profile and servo tracking controller [S0 §3.1].
-    Servo,
-    /// Jerk-limited profile and proportional-integral controller (S1).
-    Pi,
-    /// Jerk-limited profile and Mamdani fuzzy controller (S1).
-    Fuzzy,
-    /// Limit less a margin until the station stop's own curve is lower [S2 §3.2].
-    Pss,
+crate::labelled! {
+    /// The speed controllers that can be chosen.
+    #[derive(
+        Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+    )]
+    #[serde(rename_all = "snake_case")]
+    pub enum ControllerKind: name {
+        /// S-curve profile and servo tracking controller [S0 §3.1].
+        Servo = "servo",
+        /// Jerk-limited profile and proportional-integral controller (S1).
+        Pi = "pi",
+        /// Jerk-limited profile and Mamdani fuzzy controller (S1).
+        Fuzzy = "fuzzy",
+        /// Limit less a margin until the station stop's own curve is lower [S2 §3.2].
+        Pss = "pss",
+    }
 }
 
 impl ControllerKind {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Servo, Self::Pi, Self::Fuzzy, Self::Pss];
-
-    /// Name in files, commands and reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Servo => "servo",
-            Self::Pi => "pi",
-            Self::Fuzzy => "fuzzy",
-            Self::Pss => "pss",
-        }
-    }
-
     /// The controller called `name`.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name() == name)

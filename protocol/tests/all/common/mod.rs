@@ -45,7 +45,7 @@ pub fn only_frame(stream: &[u8]) -> (Header, Vec<u8>) {
         .expect("a good frame");
     let payload = payload.to_vec();
     assert!(decoder.next_frame().is_none());
-    assert_eq!(decoder.garbage(), 0);
+    assert_eq!(decoder.garbage, 0);
     (header, payload)
 }
 

@@ -307,7 +307,7 @@ fn read_table(
             column.push(match sample {
                 Ok(sample) => sample,
                 // What no trace has is left out; its texts say nothing here.
-                Err(_) if !signal.is_of_a_trace() => f64::NAN,
+                Err(_) if !signal.is_of_a_trace => f64::NAN,
                 Err(what) => return Err(records.wrong_cell(*place, &headings[*place], &what)),
             });
         }
@@ -334,7 +334,7 @@ fn signals<R: BufRead>(
     {
         let mut signal = known.signal(heading);
         if !names.insert(signal.channel.name.clone()) {
-            if signal.is_of_a_trace() {
+            if signal.is_of_a_trace {
                 return Err(records.wrong_cell(place, heading, "it comes twice"));
             }
             signal.channel = plain(&format!("{heading} (column {})", place + 1));

@@ -19,7 +19,8 @@ pub(super) const OWN: &str = " (own column)";
 pub(super) struct Known {
     pub channel: Channel,
     words: HashMap<String, f64>,
-    is_of_a_trace: bool,
+    /// Whether it is one of the signals that were known, not just a number of that name.
+    pub is_of_a_trace: bool,
 }
 
 #[derive(Default)]
@@ -43,11 +44,6 @@ impl Known {
             words,
             is_of_a_trace: true,
         }
-    }
-
-    /// Whether it is one of the signals that were known, not just a number of that name.
-    pub fn is_of_a_trace(&self) -> bool {
-        self.is_of_a_trace
     }
 
     /// The number of a word, if it has that.

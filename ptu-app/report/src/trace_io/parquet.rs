@@ -4,13 +4,12 @@
 //! has [`TraceInfo`](super::TraceInfo) under its name.
 
 use std::io::Write;
-use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
 use fault_db::{Channel, ChannelKind};
 use parquet::basic::{Compression, LogicalType, Repetition, TimeUnit, Type as Physical, ZstdLevel};
-use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
@@ -50,16 +49,26 @@ pub(super) fn put(
         let mut group = file.next_row_group().map_err(failed)?;
         let mut place = 0;
         while let Some(mut column) = group.next_column().map_err(failed)? {
-            match place {
-                0 => put_seconds(&mut column, chosen, rows.clone()).map_err(failed)?,
-                1 => put_utc(&mut column, chosen, rows.clone()).map_err(failed)?,
-                place => {
-                    let place = place - 2;
-                    let samples = chosen.column(place, rows.clone())?;
-                    put_samples(&mut column, &about.channels[place], &samples).map_err(failed)?;
+            let written = match place {
+                0 => {
+                    let seconds = rows.clone().map(|row| about.time_us(row) as f64 / 1e6);
+                    put_values::<DoubleType>(&mut column, seconds, None)
                 }
-            }
-            column.close().map_err(failed)?;
+                1 => {
+                    let later_us = |row: usize| (row as i64).saturating_mul(about.period_us);
+                    let utc_us = rows
+                        .clone()
+                        .map(|row| about.t0_us.saturating_add(later_us(row)));
+                    put_values::<Int64Type>(&mut column, utc_us, None)
+                }
+                place => {
+                    let samples = chosen.column(place - 2, rows.clone())?;
+                    put_samples(&mut column, &about.channels[place - 2], &samples)
+                }
+            };
+            written
+                .and_then(|()| column.close().map(drop))
+                .map_err(failed)?;
             place += 1;
         }
         group.close().map_err(failed)?;
@@ -94,37 +103,15 @@ fn schema(channels: &[Channel]) -> Result<Type, ParquetError> {
         .build()
 }
 
-fn put_seconds(
+/// Writes the values of a column; `known` says in which rows they are.
+fn put_values<T: DataType>(
     column: &mut SerializedColumnWriter<'_>,
-    chosen: &TracePart<'_>,
-    rows: Range<usize>,
+    values: impl Iterator<Item = T::T>,
+    known: Option<&[i16]>,
 ) -> Result<(), ParquetError> {
-    let times: Vec<f64> = rows
-        .map(|row| chosen.about.time_us(row) as f64 / 1e6)
-        .collect();
-    column
-        .typed::<DoubleType>()
-        .write_batch(&times, None, None)?;
-    Ok(())
-}
-
-fn put_utc(
-    column: &mut SerializedColumnWriter<'_>,
-    chosen: &TracePart<'_>,
-    rows: Range<usize>,
-) -> Result<(), ParquetError> {
-    let about = &chosen.about;
-    let times: Vec<i64> = rows
-        .map(|row| {
-            about
-                .t0_us
-                .saturating_add((row as i64).saturating_mul(about.period_us))
-        })
-        .collect();
-    column
-        .typed::<Int64Type>()
-        .write_batch(&times, None, None)?;
-    Ok(())
+    let values: Vec<_> = values.collect();
+    let written = column.typed::<T>().write_batch(&values, known, None);
+    written.map(drop)
 }
 
 fn put_samples(
@@ -133,31 +120,18 @@ fn put_samples(
     samples: &[f64],
 ) -> Result<(), ParquetError> {
     let known: Vec<i16> = samples.iter().map(|s| i16::from(!s.is_nan())).collect();
-    let present = || samples.iter().copied().filter(|sample| !sample.is_nan());
+    let present = samples.iter().copied().filter(|sample| !sample.is_nan());
     let known = Some(known.as_slice());
     match &channel.kind {
-        ChannelKind::Number { .. } => {
-            let values: Vec<f64> = present().collect();
-            column
-                .typed::<DoubleType>()
-                .write_batch(&values, known, None)?;
-        }
+        ChannelKind::Number { .. } => put_values::<DoubleType>(column, present, known),
         ChannelKind::Bit => {
-            let values: Vec<bool> = present().map(|sample| sample != 0.0).collect();
-            column
-                .typed::<BoolType>()
-                .write_batch(&values, known, None)?;
+            put_values::<BoolType>(column, present.map(|sample| sample != 0.0), known)
         }
         ChannelKind::Enum { .. } => {
             let word =
                 |sample| word(channel, sample).map_or_else(|| sample.to_string(), str::to_owned);
-            let values: Vec<ByteArray> = present()
-                .map(|sample| ByteArray::from(word(sample).into_bytes()))
-                .collect();
-            column
-                .typed::<ByteArrayType>()
-                .write_batch(&values, known, None)?;
+            let words = present.map(|sample| ByteArray::from(word(sample).into_bytes()));
+            put_values::<ByteArrayType>(column, words, known)
         }
     }
-    Ok(())
 }

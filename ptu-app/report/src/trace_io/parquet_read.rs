@@ -231,7 +231,7 @@ fn samples(
                 let word = word.as_utf8().map_err(|error| error.to_string())?;
                 known
                     .sample(word, false)
-                    .or_else(|what| match known.is_of_a_trace() {
+                    .or_else(|what| match known.is_of_a_trace {
                         true => Err(what),
                         // What no trace has is left out; its texts say nothing here.
                         false => Ok(f64::NAN),

@@ -57,13 +57,14 @@ pub fn toggled(entry: &str) -> String {
 /// A trace as it is looked at.
 #[derive(Debug)]
 pub struct TracePlot {
-    opened: Arc<OpenTrace>,
-    axis: Axis,
-    camera: VisibleRange,
-    lanes: Vec<Lane>,
+    pub opened: Arc<OpenTrace>,
+    pub axis: Axis,
+    pub camera: VisibleRange,
+    /// Lanes from top to bottom.
+    pub lanes: Vec<Lane>,
     cursors: [Option<usize>; 2],
-    close: bool,
-    behind: Option<OverlayTrace>,
+    pub close: bool,
+    pub behind: Option<OverlayTrace>,
     /// Views before each zoom, the latest last.
     before: Vec<Window>,
     /// Statistics of these rows, by lane; empty until asked for.
@@ -73,7 +74,7 @@ pub struct TracePlot {
 impl TracePlot {
     /// All of a trace over time, with these signals; with the usual ones if there are none.
     pub fn new(opened: Arc<OpenTrace>, signals: &[String]) -> Self {
-        let axis = Axis::time(opened.view.data(), opened.view.trigger_row() as i64);
+        let axis = Axis::time(&opened.view.data, opened.view.trigger_row() as i64);
         let mut scene = Self {
             camera: camera(&axis, &opened.view),
             axis,
@@ -89,34 +90,12 @@ impl TracePlot {
         scene
     }
 
-    pub fn opened(&self) -> &Arc<OpenTrace> {
-        &self.opened
-    }
-
     pub fn view(&self) -> &TraceView {
         &self.opened.view
     }
 
-    pub fn axis(&self) -> &Axis {
-        &self.axis
-    }
-
-    pub fn camera(&mut self) -> &mut VisibleRange {
-        &mut self.camera
-    }
-
     pub fn window(&self) -> Window {
-        self.camera.window()
-    }
-
-    /// Lanes from top to bottom.
-    pub fn lanes(&self) -> &[Lane] {
-        &self.lanes
-    }
-
-    /// The trace behind, if one is shown.
-    pub fn behind(&self) -> Option<&OverlayTrace> {
-        self.behind.as_ref()
+        self.camera.window
     }
 
     /// Counts time or distance; false when the trace tells no distance. The same rows stay in view.
@@ -259,11 +238,6 @@ impl TracePlot {
         ticks::range(all)
     }
 
-    /// Axes of quantities are as long as what is in view needs; otherwise as the whole trace does.
-    pub fn close(&mut self) -> &mut bool {
-        &mut self.close
-    }
-
     pub fn rows_in_view(&self) -> Range<usize> {
         self.axis.rows_in(self.window())
     }
@@ -331,7 +305,7 @@ impl TracePlot {
 
 fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
     let least = match axis.kind() {
-        Kind::Time => FEWEST_ROWS * view.data().period_us as f64 / 1e6,
+        Kind::Time => FEWEST_ROWS * view.data.period_us as f64 / 1e6,
         Kind::Distance => LEAST_WAY_M,
     };
     VisibleRange::new(axis.whole(), least)
@@ -341,8 +315,8 @@ fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
 fn axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Option<Axis> {
     let zero_row = (view.trigger_row() as i64).saturating_sub(shift_rows);
     match kind {
-        Kind::Time => Some(Axis::time(view.data(), zero_row)),
-        Kind::Distance => Axis::distance(view.data(), zero_row),
+        Kind::Time => Some(Axis::time(&view.data, zero_row)),
+        Kind::Distance => Axis::distance(&view.data, zero_row),
     }
 }
 

@@ -12,7 +12,7 @@ use super::runs::Runs;
 /// A trace made ready to be drawn.
 #[derive(Debug)]
 pub struct TraceView {
-    data: TraceData,
+    pub data: TraceData,
     summaries: Vec<Summary>,
 }
 
@@ -39,10 +39,6 @@ impl TraceView {
             .map(|(channel, samples)| Summary::of(channel, samples))
             .collect();
         Self { data, summaries }
-    }
-
-    pub fn data(&self) -> &TraceData {
-        &self.data
     }
 
     /// Place of the signal of this name; `None` when the trace has no such signal.

@@ -8,7 +8,7 @@ const BEYOND: f64 = 0.02;
 /// Part of the axis in view, and its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibleRange {
-    window: Window,
+    pub window: Window,
     whole: Window,
     least: f64,
 }
@@ -26,10 +26,6 @@ impl VisibleRange {
             whole,
             least: least.min(whole.length()),
         }
-    }
-
-    pub fn window(&self) -> Window {
-        self.window
     }
 
     pub fn fit(&mut self) {
@@ -94,26 +90,26 @@ mod tests {
     #[test]
     fn zooming_keeps_the_point_under_the_pointer() {
         let mut camera = camera();
-        let under = camera.window().at(0.25);
+        let under = camera.window.at(0.25);
         camera.zoom(0.25, 0.5);
-        assert!((camera.window().at(0.25) - under).abs() < 1e-9);
-        assert!((camera.window().length() - 52.0).abs() < 1e-9);
+        assert!((camera.window.at(0.25) - under).abs() < 1e-9);
+        assert!((camera.window.length() - 52.0).abs() < 1e-9);
     }
 
     #[test]
     fn the_view_is_limited_to_the_trace_and_to_the_smallest_window() {
         let mut camera = camera();
         camera.zoom(0.0, 1e-9);
-        assert!((camera.window().length() - 1.0).abs() < 1e-9);
+        assert!((camera.window.length() - 1.0).abs() < 1e-9);
         camera.pan(1e9);
-        assert!((camera.window().to - 102.0).abs() < 1e-9);
+        assert!((camera.window.to - 102.0).abs() < 1e-9);
         camera.zoom(0.5, 1e9);
-        assert_eq!(camera.window().length(), 104.0);
+        assert_eq!(camera.window.length(), 104.0);
         camera.show(10.0, 20.0);
-        let window = camera.window();
+        let window = camera.window;
         assert!((window.from - 9.0).abs() < 1e-9 && (window.to - 21.0).abs() < 1e-9);
         camera.fit();
-        assert_eq!(camera.window().from, -2.0);
+        assert_eq!(camera.window.from, -2.0);
         // Ends that rounding puts past each other when all of it is in view.
         for length in 1..2000 {
             let to = f64::from(length) * 0.05;

@@ -77,12 +77,12 @@ impl UnitAboard {
 
     /// Gives the unit the flash that the unit had before; no scan may have been made yet.
     pub fn set_flash(&mut self, flash: Box<dyn BlockDevice>) {
-        self.train.link_mut().set_flash(flash);
+        self.train.link.set_flash(flash);
     }
 
     /// Draws arm challenges of the unit from another seed; no scan may have been made yet.
     pub fn draw_challenges(&mut self, seed: u64) {
-        self.train.link_mut().draw_challenges(seed);
+        self.train.link.draw_challenges(seed);
     }
 
     /// Puts the standing train at the departure station of a section, over its loop and under the section's codes;
@@ -106,8 +106,8 @@ impl UnitAboard {
     /// # Errors
     /// The stimulus is impossible for the train, or is for a tester alone.
     pub fn apply(&mut self, stimulus: &Stimulus) -> Result<(), Refusal> {
-        let now = self.train.now();
-        self.train.rig_mut().apply(now, stimulus)
+        let now = self.train.now;
+        self.train.rig.apply(now, stimulus)
     }
 
     /// Pushes the train up to a speed, backward below 0; 0 brings it to rest, and there it is left to itself.
@@ -119,7 +119,7 @@ impl UnitAboard {
             let text = format!("a train is pushed at {MAX_PUSH_KMH} km/h at most");
             return Err(Refusal(text));
         }
-        let now_mps = self.train.rig().truth().speed_mps;
+        let now_mps = self.train.rig.truth().speed_mps;
         if now_mps * to.mps() < 0.0 {
             let text = "the train moves the other way: bring it to rest first";
             return Err(Refusal(text.to_owned()));
@@ -138,39 +138,39 @@ impl UnitAboard {
 
     /// Switches the unit's supply off, or on again: it is powered up again then.
     pub fn set_power(&mut self, on: bool) {
-        let now = self.train.now();
-        self.train.link_mut().set_power(now, on);
+        let now = self.train.now;
+        self.train.link.set_power(now, on);
     }
 
     /// The unit has its supply.
     pub fn powered(&self) -> bool {
-        self.train.link().powered()
+        self.train.link.powered()
     }
 
     /// The rig around the unit, for looking at true motion, contacts and mode.
     pub fn rig(&self) -> &Rig {
-        self.train.rig()
+        &self.train.rig
     }
 
     /// Time of the last scan.
     pub fn now(&self) -> Instant {
-        self.train.now()
+        self.train.now
     }
 
     /// Another tester is connected from now on.
     pub fn reset_connection(&mut self) {
-        self.train.link_mut().reset_maintenance();
+        self.train.link.reset_maintenance();
     }
 
     /// Frames of testers that the unit accepted since it was powered up.
     pub fn frames_accepted(&self) -> u64 {
-        self.train.link().maintenance_accepted()
+        self.train.link.maintenance_accepted()
     }
 
     /// One scan of unit and train.
     fn scan(&mut self) -> Result<(), LinkTrouble> {
         self.train.tick()?;
-        if self.comes_to_rest && self.train.rig().motion_settled() {
+        if self.comes_to_rest && self.train.rig.motion_settled() {
             self.comes_to_rest = false;
             must(self.apply(&Stimulus::Direction { backward: false }));
             must(self.apply(&Stimulus::TrainDriven { on: true }));
@@ -186,9 +186,9 @@ impl UnitLink for UnitAboard {
         to_unit: &[u8],
         from_unit: &mut Vec<u8>,
     ) -> Result<(), LinkTrouble> {
-        self.train.link_mut().receive_maintenance(to_unit);
+        self.train.link.receive_maintenance(to_unit);
         self.scan()?;
-        self.train.link_mut().take_maintenance(from_unit);
+        self.train.link.take_maintenance(from_unit);
         Ok(())
     }
 }

@@ -61,8 +61,8 @@ impl UnitAboard {
         });
         let outcome = loop {
             self.scan()?;
-            let now = self.train.now();
-            if let Some(outcome) = drive.step(now, self.train.rig_mut()) {
+            let now = self.train.now;
+            if let Some(outcome) = drive.step(now, &mut self.train.rig) {
                 break outcome;
             }
         };

@@ -23,7 +23,8 @@ pub(super) const MOST_BYTES: u64 = 1 << 30;
 /// Runs by their names, and the file that keeps them, if one does.
 pub(super) struct KeptRuns<R> {
     runs: BTreeMap<String, R>,
-    file: Option<RunsFile>,
+    /// The file that keeps them.
+    pub file: Option<RunsFile>,
 }
 
 /// The file, open at its end.
@@ -124,11 +125,6 @@ impl<R> KeptRuns<R> {
     /// Takes a run out.
     pub fn take(&mut self, name: &str) -> Option<R> {
         self.runs.remove(name)
-    }
-
-    /// The file that keeps them.
-    pub fn file(&self) -> Option<&RunsFile> {
-        self.file.as_ref()
     }
 }
 

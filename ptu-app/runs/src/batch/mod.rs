@@ -80,7 +80,7 @@ pub fn make<R: Serialize + DeserializeOwned + Send + Sync>(
     let before = ours.len() - missing.len();
     let run_one = |i: usize| {
         let run = run(missing[i])?;
-        if let Some(file) = known.file()
+        if let Some(file) = known.file.as_ref()
             && !file.append(&record::of_run(plan.name(missing[i]), &run))
         {
             // The campaign stops if a run could not be kept.
@@ -95,7 +95,7 @@ pub fn make<R: Serialize + DeserializeOwned + Send + Sync>(
         &mut |done| tell(before + done),
         run_one,
     );
-    if let Some(failure) = known.file().and_then(RunsFile::take_failure) {
+    if let Some(failure) = known.file.as_ref().and_then(RunsFile::take_failure) {
         return Err(failure);
     }
     for (i, run) in made {
@@ -104,7 +104,7 @@ pub fn make<R: Serialize + DeserializeOwned + Send + Sync>(
         }
     }
     let is_whole = ours.iter().all(|i| known.has(&plan.name(*i)));
-    if is_whole && let Some(file) = known.file() {
+    if is_whole && let Some(file) = known.file.as_ref() {
         file.put_in_order(&head)?;
     }
     if is_whole && keep.shard.is_some() {

@@ -161,7 +161,7 @@ fn a_run_is_kept_for_its_name_alone_and_for_its_scripts_alone() {
     let head = head("a", 9);
     let open = |head: &Head| KeptRuns::<Vec<String>>::open(&file, head);
     let kept = open(&head).expect("no file yet");
-    let appended = kept.file().expect("its file");
+    let appended = kept.file.as_ref().expect("its file");
     for number in 1..9 {
         assert!(appended.append(&of_run(head.plan.name(number), &result(number))));
     }

@@ -155,8 +155,8 @@ impl BenchThread {
         orders: &Receiver<Order>,
     ) -> WatchEnd {
         keep_time();
-        self.live_state.enter_idle(session.bench().rig());
-        let mut restarts = session.bench().rig().unit_restarts();
+        self.live_state.enter_idle(&session.bench.rig);
+        let mut restarts = session.bench.rig.unit_restarts();
         let mut asked = None;
         let mut arm_at = None;
         let mut safe_until = None;
@@ -173,7 +173,7 @@ impl BenchThread {
                 {
                     self.end_stop(&mut safe_until);
                     let mut wait = Duration::ZERO;
-                    let rig = session.bench().rig();
+                    let rig = &session.bench.rig;
                     let bench = rig.connection() == Some(Connection::Btu);
                     if bench && rig.sample().get(Signal::MaintenanceKey) != Some(1.0) {
                         self.apply(session, &Stimulus::MaintenanceKey { on: true });
@@ -187,7 +187,7 @@ impl BenchThread {
                     safe_until = Some(session.now() + SAFE_WITHIN);
                     self.live_state.invalidate_orders();
                     let now = session.now();
-                    session.bench().rig_mut().make_safe(now);
+                    session.bench.rig.make_safe(now);
                 }
                 Ok(Order::Run(order, stop)) => return WatchEnd::Run(order, stop),
                 Ok(Order::Disconnect) => return WatchEnd::Disconnect,
@@ -200,7 +200,7 @@ impl BenchThread {
                 |entry, _, _| self.tell(BenchEvent::Logged(*entry)),
                 |_| false,
             );
-            if session.bench().rig().safe() {
+            if session.bench.rig.safe() {
                 self.end_stop(&mut safe_until);
             } else if safe_until.is_some_and(|until| session.now() >= until) {
                 safe_until = None;
@@ -211,7 +211,7 @@ impl BenchThread {
                 asked = self.apply(session, &Stimulus::PtuArm);
             }
             // The rig reports a refusal until the next stimulus; tell it once.
-            if let Err(why) = session.bench().rig().settled()
+            if let Err(why) = session.bench.rig.settled()
                 && let Some(asked) = asked.take()
             {
                 self.tell(BenchEvent::NotDone { asked, why: why.0 });
@@ -219,7 +219,7 @@ impl BenchThread {
             if let Some(why) = session.link_error() {
                 return WatchEnd::LinkLost(why);
             }
-            let now_restarts = session.bench().rig().unit_restarts();
+            let now_restarts = session.bench.rig.unit_restarts();
             if now_restarts != restarts {
                 restarts = now_restarts;
                 self.tell(BenchEvent::UnitRestarted);
@@ -245,7 +245,7 @@ impl BenchThread {
     fn apply<L: UnitLink>(&self, session: &mut Session<L>, stimulus: &Stimulus) -> Option<String> {
         let now = session.now();
         let asked = stimulus.to_string();
-        match session.bench().rig_mut().apply(now, stimulus) {
+        match session.bench.rig.apply(now, stimulus) {
             Ok(()) => Some(asked),
             Err(why) => {
                 self.tell(BenchEvent::NotDone { asked, why: why.0 });
@@ -335,7 +335,7 @@ mod tests {
             }
         };
         let mut worker = BenchWorker::new(Arc::new(wake)).expect("a thread");
-        assert!(live_state.set(worker.live_state().clone()).is_ok());
+        assert!(live_state.set(worker.live_state.clone()).is_ok());
         let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
         let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
         let choice = BenchChoice::default();

@@ -2,7 +2,7 @@
 //! requests to a run (pause, single step, answers).
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
 use std::time;
 
 use btu_rig::procedure::Runner;
@@ -15,6 +15,7 @@ use protocol::{Duration, Instant};
 
 use super::waking::{Waking, Watched};
 use super::{LinkQuality, Wake};
+use crate::pool::held;
 use crate::run::RunControl;
 
 /// Rows are kept for this long.
@@ -218,9 +219,4 @@ impl RunControl for LiveState {
             runner.answer(answer);
         }
     }
-}
-
-/// Locks a mutex even if a thread panicked while holding it: the data are consistent at any time.
-fn held<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
-    lock.lock().unwrap_or_else(PoisonError::into_inner)
 }

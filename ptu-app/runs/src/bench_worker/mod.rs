@@ -60,10 +60,11 @@ enum Order {
 /// The window's side of a bench thread. Dropping it stops the run, makes outputs safe and disarms.
 pub struct BenchWorker {
     orders: Option<Sender<Order>>,
-    live_state: Arc<LiveState>,
+    /// State of the run that the operator acts on: pause, single step, answers.
+    pub live_state: Arc<LiveState>,
     events: Receiver<BenchEvent>,
     /// Stops the run that was ordered last.
-    stop: Stop,
+    pub stop: Stop,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -143,21 +144,6 @@ impl BenchWorker {
         self.live_state.clear_requests();
         self.stop = Stop::default();
         self.send(Order::Run(Box::new(order), self.stop.clone()));
-    }
-
-    /// Stops the run: the first press ends the step and goes on to clean-up, the second cuts that short.
-    pub fn stop_run(&self) {
-        self.stop.press();
-    }
-
-    /// How often the present run was asked to stop.
-    pub fn stop_presses(&self) -> u32 {
-        self.stop.presses()
-    }
-
-    /// State of the run that the operator acts on: pause, single step, answers.
-    pub fn live_state(&self) -> &Arc<LiveState> {
-        &self.live_state
     }
 
     /// The latest cycle and the rows before it; held for as short a time as possible.

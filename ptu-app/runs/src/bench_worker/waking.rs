@@ -184,7 +184,7 @@ mod tests {
             to: Speed::from_kmh(60.0),
             accel_mps2: 1.0,
         };
-        session.bench().rig_mut().apply(now, &go).expect("it goes");
+        session.bench.rig.apply(now, &go).expect("it goes");
         let (moving, latest) = idle_s(&mut session, 10);
         assert!((90..=101).contains(&moving), "{moving} times in 10 s");
         assert!(latest <= protocol::Duration::from_ms(100), "{latest:?}");

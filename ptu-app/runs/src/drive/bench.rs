@@ -44,11 +44,11 @@ pub fn drive(bench: &DriveBench, plan: DrivePlan, seed: u64) -> Outcome {
     let mut drive = Drive::new(plan);
     loop {
         let ticked = bench.tick();
-        let now = bench.now();
+        let now = bench.now;
         if let Err(why) = ticked {
             return drive.abandon(Ending::LinkLost(why));
         }
-        if let Some(outcome) = drive.step(now, bench.rig_mut()) {
+        if let Some(outcome) = drive.step(now, &mut bench.rig) {
             return outcome;
         }
     }

@@ -112,7 +112,7 @@ impl Request {
         let set = self
             .settings
             .iter()
-            .find(|setting| setting.key() == CONTROLLER_KEY);
+            .find(|setting| setting.key == CONTROLLER_KEY);
         match set.filter(|_| !self.controllers.is_empty()) {
             Some(setting) => Err(Failure::usage(DriveTrouble::ControllerTwice(
                 setting.to_string(),

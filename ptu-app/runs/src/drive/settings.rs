@@ -14,7 +14,8 @@ use crate::failure::{Failure, RunTrouble, did_you_mean};
 /// One key and its new value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
-    key: String,
+    /// The key that is set.
+    pub key: String,
     value: Value,
     /// The value as it was given.
     text: String,
@@ -34,11 +35,6 @@ impl Setting {
             value,
             text,
         }
-    }
-
-    /// The key that is set.
-    pub fn key(&self) -> &str {
-        &self.key
     }
 
     fn apply(&self, table: &mut Table) -> Result<(), String> {

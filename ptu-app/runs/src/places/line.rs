@@ -7,7 +7,7 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Read, Result, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::mpsc::{Receiver, channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use btu_rig::rig::InstrumentFault;
@@ -61,11 +61,6 @@ impl Reading {
 
 /// A line of one or several instruments.
 pub(super) type SharedLine = Arc<Mutex<Line>>;
-
-/// The line, for one exchange.
-pub(super) fn locked(line: &SharedLine) -> MutexGuard<'_, Line> {
-    line.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// The lines of a bench, kept to this program.
 #[derive(Default)]

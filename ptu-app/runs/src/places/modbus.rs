@@ -12,9 +12,10 @@ use rmodbus::{ErrorKind, ModbusProto};
 
 use super::file::{Places, Point};
 use super::instrument::{Reach, Watchdog};
-use super::line::{SharedLine, io_fault, locked};
+use super::line::{SharedLine, io_fault};
 use super::points::UnitInput;
 use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted};
+use crate::pool::held;
 
 /// Bytes of an answer that say how many there are, over TCP and RTU.
 const HEAD: [usize; 2] = [6, 3];
@@ -94,7 +95,7 @@ impl Module {
             error: error.to_string(),
         };
         generate(&mut request, &mut out).map_err(|error| refused(&request, error))?;
-        let mut line = locked(&self.line);
+        let mut line = held(&self.line);
         if self.proto == ModbusProto::Rtu {
             line.await_silence();
         }

@@ -10,10 +10,11 @@ use protocol::signal::Signal;
 use toml::Spanned;
 
 use super::file::{Places, Point};
-use super::line::{SharedLine, io_fault, locked};
+use super::line::{SharedLine, io_fault};
 use super::model::{Model, filled};
 use super::points::UnitInput;
 use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted, span};
+use crate::pool::held;
 
 /// Number of the error that says that its queue is full (SCPI-99 21.8.11).
 const QUEUE_OVERFLOW: i32 = -350;
@@ -71,19 +72,19 @@ impl Scpi {
     }
 
     fn say(&self, text: &str) -> Result<(), InstrumentFault> {
-        let sent = locked(&self.line).write_all(format!("{text}\n").as_bytes());
+        let sent = held(&self.line).write_all(format!("{text}\n").as_bytes());
         sent.map_err(|error| io_fault(&error))
     }
 
     fn ask(&mut self, question: &str) -> Result<String, InstrumentFault> {
-        locked(&self.line).forget();
+        held(&self.line).forget();
         self.say(question)?;
         self.answer(question, Instant::now() + ANSWERS_WITHIN)
     }
 
     /// The next line.
     fn answer(&mut self, question: &str, until: Instant) -> Result<String, InstrumentFault> {
-        let mut line = locked(&self.line);
+        let mut line = held(&self.line);
         let end = loop {
             if let Some(end) = self.came.iter().position(|byte| *byte == b'\n') {
                 break end;

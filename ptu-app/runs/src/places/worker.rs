@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -10,6 +10,7 @@ use btu_rig::rig::InstrumentFault;
 use protocol::signal::Signal;
 
 use super::points::UnitInput;
+use crate::pool::held;
 
 /// Longest time for an answer: less than what all have to become safe in.
 pub(super) const ANSWERS_WITHIN: Duration = Duration::from_millis(400);
@@ -81,7 +82,7 @@ impl Worker {
             let ended = kept(|| work(&worked, timing, &mut *instrument));
             // Whatever happened before: outputs are not left on.
             let off = kept(|| instrument.off());
-            let mut state = lock(&worked.0);
+            let mut state = held(&worked.0);
             if let Some(why) = ended.err().or(off.err()) {
                 state
                     .fault
@@ -99,7 +100,7 @@ impl Worker {
 
     /// Wants this from now on.
     pub fn feed(&self, wanted: &Wanted) {
-        let mut state = lock(&self.shared.0);
+        let mut state = held(&self.shared.0);
         state.fed = Some(Instant::now());
         if state.wanted != *wanted {
             state.wanted.clone_from(wanted);
@@ -109,7 +110,7 @@ impl Worker {
 
     /// Tells each signal that the instrument read last.
     pub fn readings(&self, mut each: impl FnMut(Signal, f64)) -> Result<(), InstrumentFault> {
-        let state = lock(&self.shared.0);
+        let state = held(&self.shared.0);
         state
             .read
             .iter()
@@ -119,12 +120,12 @@ impl Worker {
 
     /// How long the longest cycle was beyond what is stated, since this was last asked.
     pub fn take_late(&self) -> protocol::Duration {
-        span(std::mem::take(&mut lock(&self.shared.0).late))
+        span(std::mem::take(&mut held(&self.shared.0).late))
     }
 
     /// Waits until it has read for the first time.
     pub fn has_read(&self, within: Duration) -> Result<(), InstrumentFault> {
-        let state = lock(&self.shared.0);
+        let state = held(&self.shared.0);
         let waits = |state: &mut State| !state.has_read && state.fault.is_none();
         let waited = self.shared.1.wait_timeout_while(state, within, waits);
         let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
@@ -137,7 +138,7 @@ impl Worker {
 
     /// Switches its outputs off and waits for that, no longer than this.
     pub fn end(&mut self, within: Duration) {
-        let mut state = lock(&self.shared.0);
+        let mut state = held(&self.shared.0);
         // It was waited for once.
         if std::mem::replace(&mut state.ends, true) {
             return;
@@ -155,10 +156,6 @@ impl Worker {
     }
 }
 
-fn lock(state: &Mutex<State>) -> MutexGuard<'_, State> {
-    state.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 fn work(
     (shared, changed): &(Mutex<State>, Condvar),
     timing: Timing,
@@ -170,7 +167,7 @@ fn work(
     loop {
         let began = Instant::now();
         let (wanted, fed) = {
-            let state = lock(shared);
+            let state = held(shared);
             let fed = state.fed.is_some_and(|at| at.elapsed() < patience);
             if state.ends || state.fault.is_some() {
                 break;
@@ -198,7 +195,7 @@ fn work(
             }),
             _ => Ok(()),
         });
-        let mut state = lock(shared);
+        let mut state = held(shared);
         state.read.clone_from(&read);
         if took > timing.uncertainty {
             state.late = state.late.max(took - timing.uncertainty);

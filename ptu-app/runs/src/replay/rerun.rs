@@ -28,16 +28,18 @@ pub struct Rerunning {
     pub operator: String,
 }
 
-/// How closely a replay follows the recorded trace.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReplayMatch {
-    /// The original and its good twin are the same, and so is the replay.
-    Sound,
-    /// The replay deviates as the original did: the fault shows again.
-    Reproduced,
-    /// The replay equals the good twin: the fault does not show.
-    AsTwin,
-    Otherwise,
+protocol::labelled! {
+    /// How closely a replay follows the recorded trace.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum ReplayMatch: key {
+        /// The original and its good twin are the same, and so is the replay.
+        Sound = "sound",
+        /// The replay deviates as the original did: the fault shows again.
+        Reproduced = "reproduced",
+        /// The replay equals the good twin: the fault does not show.
+        AsTwin = "as_good_twin",
+        Otherwise = "otherwise",
+    }
 }
 
 impl Say for ReplayMatch {
@@ -62,15 +64,6 @@ impl Say for ReplayMatch {
 }
 
 impl ReplayMatch {
-    pub fn key(self) -> &'static str {
-        match self {
-            Self::Sound => "sound",
-            Self::Reproduced => "reproduced",
-            Self::AsTwin => "as_good_twin",
-            Self::Otherwise => "otherwise",
-        }
-    }
-
     /// The verdict on the unit: it is good when it does as the good twin.
     fn verdict(self) -> Verdict {
         match self {
@@ -152,7 +145,7 @@ pub fn rerun(
         wall_time_us,
     })?;
     Ok(Rerun {
-        run_id: writer.id(),
+        run_id: writer.id,
         trace_id,
         serial,
         likeness,

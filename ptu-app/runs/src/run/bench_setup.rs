@@ -251,7 +251,7 @@ impl Connected {
         let found = match self {
             Self::Sim(setup) if setup.harness == Harness::None => Some(Connection::Ptu),
             Self::Sim(_) => Some(Connection::Btu),
-            Self::Port(session, ..) => session.bench().rig().connection(),
+            Self::Port(session, ..) => session.bench.rig.connection(),
         };
         found.unwrap_or(Connection::Btu)
     }

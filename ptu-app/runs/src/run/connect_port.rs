@@ -56,10 +56,10 @@ impl BenchSetup {
         let mut rig = self.rig(self.seed, Instant::ZERO);
         rig.set_harness(self.harness);
         let mut bench = Bench::new(rig, link);
-        bench.rig_mut().leave_log_before_contact();
+        bench.rig.leave_log_before_contact();
         // In lock step the unit's clock stands between scans.
         if !matches!(self.endpoint, Endpoint::LockStep(_)) {
-            bench.rig_mut().tell_time(TimeOfDay {
+            bench.rig.tell_time(TimeOfDay {
                 at: Instant::ZERO,
                 utc_us: now_us(),
                 uncertainty_ms: ClockState::now().uncertainty_ms(),
@@ -84,8 +84,8 @@ impl BenchSetup {
             });
         }
         let identity = identity?;
-        let connection = session.bench().rig().connection();
-        session.set_max_lag(self.max_lag(connection));
+        let connection = session.bench.rig.connection();
+        session.max_lag = Some(self.max_lag(connection));
         Ok(ReadyUnit {
             session,
             identity,
@@ -122,36 +122,40 @@ impl BenchSetup {
         let mut first = None;
         let ready = session.idle(READY_WITHIN, &mut seen, |bench| {
             // The unit's clock goes while it starts up.
-            first = first.or(bench.rig().unit_stamp_ms());
-            let identity = bench.rig().identity();
+            first = first.or(bench.rig.unit_stamp_ms());
+            let identity = bench.rig.identity();
             identity.is_some_and(|identity| wrong(identity) || started(bench))
         });
         let at = || self.endpoint.clone();
-        if let Some(why) = session.bench().rig().turned_away() {
+        if let Some(why) = session.bench.rig.turned_away() {
             return Err(NoUnit::Taken(at(), why).into());
         }
-        if let Some(why) = session.link_failure().filter(|why| !why.is_of_the_bench()) {
+        if let Some(why) = session
+            .link_error
+            .as_ref()
+            .filter(|why| !why.is_of_the_bench())
+        {
             return Err(NoUnit::PortFailed(why.clone()).into());
         }
         self.link_holds(session)?;
-        let Some(identity) = session.bench().rig().identity().copied().filter(|_| ready) else {
+        let Some(identity) = session.bench.rig.identity().copied().filter(|_| ready) else {
             return Err(NoUnit::NotReady(at(), READY_WITHIN).into());
         };
         self.check_identity(&identity)?;
         let now = session.now();
-        if session.bench().rig().connection() == Some(Connection::Btu) {
+        if session.bench.rig.connection() == Some(Connection::Btu) {
             // A brake latched since the last tester left needs its acknowledgement.
-            let _ = session.bench().rig_mut().apply(now, &Stimulus::Acknowledge);
+            let _ = session.bench.rig.apply(now, &Stimulus::Acknowledge);
         }
         self.check_clock(session, first, &mut seen)?;
         session.idle(LOG_WITHIN, &mut seen, |bench| {
-            let rig = bench.rig();
+            let rig = &bench.rig;
             rig.evidence().log == LogState::Read || rig.link_error().is_some()
         });
         self.link_holds(session)?;
-        let failed = session.bench().rig().evidence().self_test;
+        let failed = session.bench.rig.evidence().self_test;
         if !failed.is_empty() {
-            let sample = session.bench().rig().sample().clone();
+            let sample = session.bench.rig.sample().clone();
             found.push(fault_watch::of_self_test(failed, session.now(), &sample));
         }
         Ok(identity)
@@ -180,7 +184,7 @@ impl BenchSetup {
     ) -> Result<(), Failure> {
         let mut times_faster = 1.0;
         session.idle(CLOCK_DOUBTED, seen, |bench| {
-            let Some((at, stamp_ms)) = bench.rig().unit_stamp_ms() else {
+            let Some((at, stamp_ms)) = bench.rig.unit_stamp_ms() else {
                 return false;
             };
             let (first_at, first_ms) = *first.get_or_insert((at, stamp_ms));

@@ -100,8 +100,8 @@ impl Stop {
     }
 
     fn apply(&mut self, stimulus: Stimulus) {
-        let now = self.bench.now();
-        let done = self.bench.rig_mut().apply(now, &stimulus);
+        let now = self.bench.now;
+        let done = self.bench.rig.apply(now, &stimulus);
         done.unwrap_or_else(|refusal| panic!("{stimulus}: {refusal:?}"));
     }
 
@@ -112,7 +112,7 @@ impl Stop {
     }
 
     fn is(&self, signal: Signal, code: u8) -> bool {
-        self.bench.rig().sample().get(signal) == Some(f64::from(code))
+        self.bench.rig.sample().get(signal) == Some(f64::from(code))
     }
 
     /// The bench turns the wheels by so many metres.
@@ -142,7 +142,7 @@ impl Stop {
 
     /// From this far past the stop point, or before it where negative.
     fn recover(&mut self, from_m: f64, switch: ModeSwitch) -> Recovery {
-        let to_stop_m = self.bench.rig().truth().to_stop_m.expect("a section");
+        let to_stop_m = self.bench.rig.truth().to_stop_m.expect("a section");
         self.travel(from_m + to_stop_m, 6.0);
         if self.backward {
             self.backward = false;
@@ -159,7 +159,7 @@ impl Stop {
         self.apply(held);
         self.apply(Stimulus::ModeSwitch(switch));
         self.run(1_000);
-        let sample = self.bench.rig().sample();
+        let sample = self.bench.rig.sample();
         let refusals = sample.get(Signal::Refusals);
         assert_eq!(refusals, Some(f64::from(Refusals::NO_DEPARTURE.bits())));
         // The holding brake has the train before it is on the gradient.
@@ -185,7 +185,7 @@ impl Stop {
         let (mut runs, mut stands) = (false, Duration::ZERO);
         for _ in 0..9_000 {
             self.bench.tick().expect("the embedded unit answers");
-            let kmh = self.bench.rig().truth().speed_mps.abs() * 3.6;
+            let kmh = self.bench.rig.truth().speed_mps.abs() * 3.6;
             if kmh == 0.0 {
                 stands += protocol::SCAN;
             } else {
@@ -197,7 +197,7 @@ impl Stop {
             let run = self.is(Signal::Mode, Mode::AutomaticRun.code());
             if runs && !run && self.is(Signal::AtoState, AtoState::Stop.code()) {
                 seen.aligned = self.is(Signal::Aligned, 1);
-                seen.error_m = -self.bench.rig().truth().to_stop_m.expect("a section");
+                seen.error_m = -self.bench.rig.truth().to_stop_m.expect("a section");
                 return seen;
             }
             runs |= run;

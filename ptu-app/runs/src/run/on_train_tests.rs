@@ -231,7 +231,7 @@ fn the_suite_of_a_laptop_passes_on_a_good_train_within_the_bytes_of_its_line() {
     }
     assert!(timed > 0, "times are measured");
     let seconds = session.now().since(Instant::ZERO + SWITCHED_OFF).as_secs();
-    let line = session.bench().link();
+    let line = &session.bench.link;
     assert!(line.safe, "braked and barred all the time");
     for (name, traffic, least) in [("to", &line.to_unit, 0.0), ("from", &line.from_unit, 0.05)] {
         let ptu = Channel::Ptu.code();
@@ -272,8 +272,8 @@ fn what_happens_to_the_train_meanwhile_is_an_error_and_no_fault() {
         assert_eq!(came.verdict, Some(Verdict::Error), "{what}");
         assert!(came.message.contains(words), "{what}");
         assert_eq!(came.faults, [""; 0], "{what}");
-        assert!(session.bench().link().safe, "{what}");
-        let train = session.bench().link().train.rig().sample();
+        assert!(session.bench.link.safe, "{what}");
+        let train = session.bench.link.train.rig().sample();
         if happens == Happens::Moves {
             assert_eq!(train.get(Signal::Eb), Some(1.0), "{what}");
         }
@@ -286,7 +286,7 @@ fn a_train_that_is_not_at_rest_is_refused_with_the_reason() {
     let laptop = Laptop::new(&[]);
     let mut session = laptop.on_train(Happens::Nothing);
     let key = Stimulus::MaintenanceKey { on: false };
-    let train = &mut session.bench().link_mut().train;
+    let train = &mut session.bench.link.train;
     train.apply(&key).expect("done");
     let came = laptop.run("ptu/markers", &mut session);
     assert_eq!(came.verdict, Some(Verdict::Error), "{}", came.message);

@@ -10,7 +10,8 @@ const KEPT: usize = 8;
 pub(super) struct RepetitionTally {
     of: u32,
     begun: bool,
-    over: u32,
+    /// Number of repetitions that are over: the place of the present one, from 0.
+    pub(super) over: u32,
     verdict: Verdict,
     findings: Vec<Findings>,
     /// Differing results beyond [`KEPT`].
@@ -28,11 +29,6 @@ impl RepetitionTally {
             findings: Vec::new(),
             more: 0,
         }
-    }
-
-    /// Number of repetitions that are over: the place of the present one, from 0.
-    pub(super) fn over(&self) -> u32 {
-        self.over
     }
 
     pub(super) fn left(&self) -> bool {

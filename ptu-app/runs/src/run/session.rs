@@ -26,14 +26,14 @@ const IN_TIME: Duration = Duration::from_us(2 * SCAN.as_us());
 
 /// A bench, its recorder and its pace.
 pub struct Session<L: UnitLink> {
-    bench: Bench<L>,
+    pub bench: Bench<L>,
     pace: Pace,
     stop: Stop,
     recorder: Recorder,
     sample: Sample,
-    link_error: Option<LinkTrouble>,
+    pub link_error: Option<LinkTrouble>,
     /// Permitted lag of the bench behind the wall clock; `None` for a unit in virtual time.
-    max_lag: Option<Duration>,
+    pub max_lag: Option<Duration>,
     /// Largest lag beyond `max_lag` since it was last taken.
     stalled: Option<Duration>,
     in_step: InStep,
@@ -99,11 +99,6 @@ impl<L: UnitLink> Session<L> {
         self
     }
 
-    /// Sets the lag of [`Self::with_max_lag`] once it is known how the unit is reached.
-    pub fn set_max_lag(&mut self, max_lag: Duration) {
-        self.max_lag = Some(max_lag);
-    }
-
     /// Replaces the stop that ends runs on this session.
     pub fn set_stop(&mut self, stop: &Stop) {
         self.stop = stop.clone();
@@ -113,14 +108,9 @@ impl<L: UnitLink> Session<L> {
         self.pace = pace;
     }
 
-    /// The bench, to be changed between scans.
-    pub fn bench(&mut self) -> &mut Bench<L> {
-        &mut self.bench
-    }
-
     /// Bench time.
     pub fn now(&self) -> Instant {
-        self.bench.now()
+        self.bench.now
     }
 
     /// Scans until `done` or for `at_most`; events of the unit go to `seen`. False when time ran
@@ -131,11 +121,11 @@ impl<L: UnitLink> Session<L> {
         mut seen: impl FnMut(&UnitEvent, Instant, &Sample),
         mut done: impl FnMut(&Bench<L>) -> bool,
     ) -> bool {
-        let until = self.bench.now() + at_most;
-        while self.bench.now() < until && self.stop.presses() == 0 && self.link_error.is_none() {
+        let until = self.bench.now + at_most;
+        while self.bench.now < until && self.stop.presses() == 0 && self.link_error.is_none() {
             self.scan(&mut |_| {});
             for entry in self.take_events() {
-                seen(&entry, self.bench.now(), &self.sample);
+                seen(&entry, self.bench.now, &self.sample);
             }
             if done(&self.bench) {
                 return true;
@@ -167,7 +157,7 @@ impl<L: UnitLink> Session<L> {
             }
             self.scan(cut);
             for entry in self.take_events() {
-                seen(&entry, self.bench.now(), &self.sample);
+                seen(&entry, self.bench.now, &self.sample);
             }
         }
     }
@@ -177,22 +167,17 @@ impl<L: UnitLink> Session<L> {
         self.max_lag.map_or(Duration::ZERO, |_| self.pace.behind())
     }
 
-    /// Reason for which nothing can be sent or received any more; none if the link works.
-    pub fn link_failure(&self) -> Option<&LinkTrouble> {
-        self.link_error.as_ref()
-    }
-
     /// Reason for which nothing can be judged, if there is one: the unit cannot be reached, another one
     /// answers, or its log cannot be read.
     pub fn link_error(&self) -> Option<LinkTrouble> {
         self.link_error
             .clone()
-            .or_else(|| self.bench.rig().link_error())
+            .or_else(|| self.bench.rig.link_error())
     }
 
     /// New entries of the unit's log. What it logged before this bench was heard is history.
     fn take_events(&mut self) -> Vec<UnitEvent> {
-        let rig = self.bench.rig_mut();
+        let rig = &mut self.bench.rig;
         let mut events = rig.take_events();
         if rig.unit_restarts() == 0
             && let Some(first) = rig.events_at_contact().filter(|_| !self.fresh_unit)
@@ -209,22 +194,22 @@ impl<L: UnitLink> Session<L> {
             self.link_error.get_or_insert(failure);
         }
         self.keep_in_step();
-        let late = self.bench.link_mut().take_late();
+        let late = self.bench.link.take_late();
         let behind = self.behind().max(late);
         let is_late = late > Duration::ZERO || self.max_lag.is_some_and(|at_most| behind > at_most);
         // A link that broke is late, too, and to repeat the step does not repair it.
         if is_late && self.link_error.is_none() {
             self.stalled = self.stalled.max(Some(behind));
-            let now = self.bench.now();
-            self.bench.rig_mut().note_stalled(now);
+            let now = self.bench.now;
+            self.bench.rig.note_stalled(now);
         }
-        self.sample.clone_from(self.bench.rig().sample());
-        let now = self.bench.now();
+        self.sample.clone_from(self.bench.rig.sample());
+        let now = self.bench.now;
         if !now.as_us().is_multiple_of(CYCLE.as_us()) {
             return;
         }
         if let Some(run_control) = &self.run_control {
-            run_control.after_cycle(now, self.bench.rig());
+            run_control.after_cycle(now, &self.bench.rig);
         }
         if let Some(rows) = &mut self.rows {
             rows.push(Row {
@@ -265,28 +250,26 @@ impl<L: UnitLink> Session<L> {
         refused: &mut Vec<String>,
     ) -> Option<TraceData> {
         // A unit that falls silent is what some traces show: only a broken connection ends it early.
-        while self.bench.now() < window.until
-            && self.stop.presses() == 0
-            && self.link_error.is_none()
+        while self.bench.now < window.until && self.stop.presses() == 0 && self.link_error.is_none()
         {
             self.scan(&mut |_| {});
             self.take_events();
-            let now = self.bench.now();
-            let refusals = player.play(now, self.bench.rig_mut());
+            let now = self.bench.now;
+            let refusals = player.play(now, &mut self.bench.rig);
             refused.extend(refusals.into_iter().map(|refusal| refusal.0));
         }
-        let partial = self.bench.now() < window.until;
+        let partial = self.bench.now < window.until;
         let cut = self.recorder.cut(window.from, window.trigger, partial)?;
         Some(trace_data(&cut))
     }
 
     /// Brings the bench to the quiescent state, for as long as that may take.
     pub fn make_safe(&mut self) -> bool {
-        let until = self.bench.now() + SAFE_WITHIN;
-        while self.bench.now() < until && self.link_error().is_none() {
-            let now = self.bench.now();
-            self.bench.rig_mut().make_safe(now);
-            if self.bench.rig().safe() {
+        let until = self.bench.now + SAFE_WITHIN;
+        while self.bench.now < until && self.link_error().is_none() {
+            let now = self.bench.now;
+            self.bench.rig.make_safe(now);
+            if self.bench.rig.safe() {
                 return true;
             }
             self.scan(&mut |_| {});

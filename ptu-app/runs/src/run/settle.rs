@@ -43,15 +43,15 @@ pub(super) fn between_procedures<L: UnitLink>(session: &mut Session<L>) -> Vec<F
 pub(crate) fn settled<L: UnitLink>() -> impl FnMut(&Bench<L>) -> bool {
     let mut quiet_since = None;
     move |bench| {
-        if !started(bench) || !bench.rig().log_up_to_date() {
+        if !started(bench) || !bench.rig.log_up_to_date() {
             return false;
         }
-        let since = *quiet_since.get_or_insert(bench.now());
-        bench.now().since(since) >= SETTLE
+        let since = *quiet_since.get_or_insert(bench.now);
+        bench.now.since(since) >= SETTLE
     }
 }
 
 /// The unit has started, and has said what can be known of it on this connection.
 pub(super) fn started<L: UnitLink>(bench: &Bench<L>) -> bool {
-    bench.rig().sample().get(Signal::Started) == Some(1.0) && bench.rig().knows_what_is_told()
+    bench.rig.sample().get(Signal::Started) == Some(1.0) && bench.rig.knows_what_is_told()
 }

@@ -60,21 +60,21 @@ fn pulses_are_counted_with_their_direction() {
             wave.pulse((all as u32 - made) as u16, last, scan > 500);
             made = all as u32;
             for place in 0..scan_samples {
-                let before = input.count();
+                let before = input.count;
                 let [a, b] = wave.step();
                 input.take(a as f32, b as f32);
-                if input.count() != before {
+                if input.count != before {
                     let at = f64::from((scan - 1) * scan_samples + place);
-                    edges.push(at - f64::from(input.since()));
+                    edges.push(at - f64::from(input.since));
                     // The first pulse after the turn is where the last one before it was, and one may be on its way.
                     turned += u32::from(scan > 500);
                     if turned != 2 {
-                        assert_eq!(input.backward(), turned > 2, "{per_s}/s in scan {scan}");
+                        assert_eq!(input.backward, turned > 2, "{per_s}/s in scan {scan}");
                     }
                 }
             }
         }
-        assert!(made.abs_diff(u32::from(input.count())) <= 1, "{per_s}/s");
+        assert!(made.abs_diff(u32::from(input.count)) <= 1, "{per_s}/s");
         let whole = (edges[edges.len() - 1] - edges[1]) / (edges.len() - 2) as f64;
         assert!((whole * per_s / line_hz - 1.0).abs() < 1e-3, "{per_s}/s");
     }

@@ -50,7 +50,7 @@ impl Envelope {
         self.taken += 1;
         if let Some(value) = self.downmix.take(sample_mv) {
             self.values.push_back(value.abs().into());
-            if self.values.len() as f64 > LONGEST_S * f64::from(self.downmix.envelope_hz()) {
+            if self.values.len() as f64 > LONGEST_S * f64::from(self.downmix.envelope_hz) {
                 self.values.pop_front();
             }
         }
@@ -64,7 +64,7 @@ impl Envelope {
 
     /// Rate, Hz, and level, mV rms, of the code that was there from when to when, s, at about this rate.
     pub(super) fn fit(&self, [from_s, to_s]: [f64; 2], about_hz: f64) -> Option<(f64, f64)> {
-        let value_hz = f64::from(self.downmix.envelope_hz());
+        let value_hz = f64::from(self.downmix.envelope_hz);
         let now_s = self.taken as f64 / self.sample_hz;
         let back = |at_s: f64| (((now_s - at_s) * value_hz).max(0.0)) as usize;
         let last = self.values.len().checked_sub(back(to_s))?;

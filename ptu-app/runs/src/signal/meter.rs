@@ -55,7 +55,7 @@ const EDGE: f64 = 0.375;
 /// Takes samples together, without what is too high for so few.
 #[derive(Clone)]
 pub(super) struct Decimator {
-    by: usize,
+    pub(super) by: usize,
     taps: Vec<f32>,
     line: Vec<f32>,
 }
@@ -79,10 +79,6 @@ impl Decimator {
             taps: taps.collect(),
             line: vec![0.0; length - by],
         }
-    }
-
-    pub(super) fn by(&self) -> usize {
-        self.by
     }
 
     pub(super) fn take(&mut self, samples: &[f32]) -> Vec<f32> {

@@ -34,7 +34,7 @@ const MOST_CURVES: usize = 200;
 #[derive(Clone, Debug)]
 pub struct Columns<T> {
     /// Values in each column.
-    each: u64,
+    pub each: u64,
     /// Values in the last one.
     last: u64,
     most: usize,
@@ -83,11 +83,6 @@ impl<T: Merge> Columns<T> {
     pub fn values(&self) -> &[T] {
         &self.values
     }
-
-    /// Values that each column covers.
-    pub fn each(&self) -> u64 {
-        self.each
-    }
 }
 
 /// Least and greatest value of a column.
@@ -130,7 +125,8 @@ impl Merge for Levels {
 #[derive(Clone)]
 pub struct Picture {
     sample_hz: f64,
-    carrier_hz: f64,
+    /// Frequency of the carrier whose level is the envelope, Hz.
+    pub carrier_hz: f64,
     wave: Columns<Span>,
     spectrum: Spectrum,
     downmix: Downmix,
@@ -170,24 +166,19 @@ impl Picture {
 
     /// The waveform, mV, and seconds of a column.
     pub fn wave(&self) -> (&[Span], f64) {
-        (self.wave.values(), self.wave.each() as f64 / self.sample_hz)
-    }
-
-    /// Frequency of the carrier whose level is the envelope, Hz.
-    pub fn carrier_hz(&self) -> f64 {
-        self.carrier_hz
+        (self.wave.values(), self.wave.each as f64 / self.sample_hz)
     }
 
     /// Level of the carrier, mV rms, and seconds of a column.
     pub fn envelope(&self) -> (&[Span], f64) {
-        let each_s = self.levels.each() as f64 / f64::from(self.downmix.envelope_hz());
+        let each_s = self.levels.each as f64 / f64::from(self.downmix.envelope_hz);
         (self.levels.values(), each_s)
     }
 
     /// Spectra over time, dB over 1 mV rms, and seconds of each.
     pub fn spectra(&self) -> (&[Vec<f32>], f64) {
         let Spectrum { columns, hop, .. } = &self.spectrum;
-        let each_s = columns.each() as f64 * *hop as f64 / self.sample_hz;
+        let each_s = columns.each as f64 * *hop as f64 / self.sample_hz;
         (columns.values(), each_s)
     }
 
@@ -309,7 +300,7 @@ impl Spectrum {
         }
         self.count += 1;
         // Of a long recording nothing is looked at twice.
-        let hops = match self.columns.each() {
+        let hops = match self.columns.each {
             1 => 1,
             _ => length / self.hop,
         };

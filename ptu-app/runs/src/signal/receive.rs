@@ -93,7 +93,7 @@ impl<'a> Receivers<'a> {
 
     /// Samples of a block; only the last may have less.
     pub fn block(&self) -> usize {
-        ASKED_IN_BLOCK * self.asked_every * self.slower.first().map_or(1, Decimator::by)
+        ASKED_IN_BLOCK * self.asked_every * self.slower.first().map_or(1, |slower| slower.by)
     }
 
     /// Takes a block of samples, mV, of each channel.

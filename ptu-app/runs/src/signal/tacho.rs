@@ -53,13 +53,13 @@ struct Sensor {
 
 impl Sensor {
     fn take(&mut self, [a, b]: [f32; 2], teeth: u32) {
-        let before = self.input.count();
+        let before = self.input.count;
         self.input.take(a, b);
         self.samples += 1;
         let high = self.input.high();
         // A line that is high from the beginning on has not risen.
-        if self.input.count() != before && self.samples > 1 {
-            self.pulse(self.samples as f64 - f64::from(self.input.since()), teeth);
+        if self.input.count != before && self.samples > 1 {
+            self.pulse(self.samples as f64 - f64::from(self.input.since), teeth);
         }
         if self.was_high[0] && !high[0] {
             self.fell_backward = !high[1];
@@ -74,7 +74,7 @@ impl Sensor {
     }
 
     fn pulse(&mut self, at: f64, teeth: u32) {
-        let backward = self.input.backward();
+        let backward = self.input.backward;
         let way = if backward { -1 } else { 1 };
         match backward {
             true => self.told.backward += 1,

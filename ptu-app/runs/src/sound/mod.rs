@@ -25,24 +25,14 @@ pub use stream::{Stream, TAKES_MS};
 /// Channels of a card that are used.
 pub const CHANNELS: usize = 2;
 
-/// One of the two channels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Side {
-    /// The first, or left one: speed codes.
-    Atp,
-    /// The second, or right one: TWC.
-    Twc,
-}
-
-impl Side {
-    /// Both, in the order of the channels.
-    pub const ALL: [Self; CHANNELS] = [Self::Atp, Self::Twc];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Atp => "atp",
-            Self::Twc => "twc",
-        }
+protocol::labelled! {
+    /// One of the two channels.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Side: name {
+        /// The first, or left one: speed codes.
+        Atp = "atp",
+        /// The second, or right one: TWC.
+        Twc = "twc",
     }
 }

@@ -1,7 +1,7 @@
 //! A run's waveforms to a sound card, as they are made.
 
 use std::io::Write;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use ato_under_test::serve::{Pair, Steady, TAPS};
@@ -9,6 +9,7 @@ use btu_rig::rig::InstrumentFault;
 
 use super::carried::Carried;
 use super::{CHANNELS, SAMPLE_HZ, programs};
+use crate::pool::held;
 use crate::stop::Stop;
 
 /// Samples that are written together, and those that wait besides: 10 and 20 ms.
@@ -76,13 +77,13 @@ impl Stream {
                         bytes.extend((kept as i16).to_le_bytes());
                     }
                 }
-                lock(&played.0).clipped += clipped;
+                held(&played.0).clipped += clipped;
                 let written = carried.input.as_mut().map(|input| input.write_all(&bytes));
                 if !matches!(written, Some(Ok(()))) {
                     let said = carried.last_words();
                     let why =
                         said.map_or(InstrumentFault::PlayerEnded, InstrumentFault::Disconnected);
-                    lock(&played.0).ended.get_or_insert(why);
+                    held(&played.0).ended.get_or_insert(why);
                     return;
                 }
             }
@@ -96,7 +97,7 @@ impl Stream {
 
     /// Takes the samples of a scan, mV, unless too many wait.
     pub fn feed(&self, samples: &[Pair]) {
-        let mut state = lock(&self.shared.0);
+        let mut state = held(&self.shared.0);
         if state.steady.waiting() > STUCK {
             state.ended.get_or_insert(InstrumentFault::TakesNoSamples);
         } else {
@@ -108,12 +109,12 @@ impl Stream {
 
     /// How long what is fed now takes until it is heard, ms.
     pub fn takes_ms(&self) -> u64 {
-        ON_THE_WAY_MS + lock(&self.shared.0).steady.waiting() as u64 / 48
+        ON_THE_WAY_MS + held(&self.shared.0).steady.waiting() as u64 / 48
     }
 
     /// Samples that were cut off since this was asked last; else why nothing is played any more.
     pub fn clipped(&self) -> Result<u64, InstrumentFault> {
-        let mut state = lock(&self.shared.0);
+        let mut state = held(&self.shared.0);
         match &state.ended {
             Some(why) => Err(why.clone()),
             None => Ok(std::mem::take(&mut state.clipped)),
@@ -122,7 +123,7 @@ impl Stream {
 
     /// Ends at once: nothing that waits is heard.
     pub fn end(&mut self) {
-        lock(&self.shared.0).ends = true;
+        held(&self.shared.0).ends = true;
         self.stop.press_once();
         self.shared.1.notify_all();
         if let Some(thread) = self.thread.take() {
@@ -140,15 +141,11 @@ impl Drop for Stream {
 /// The samples to be played next; `None` at the end.
 fn next((shared, changed): &(Mutex<State>, Condvar)) -> Option<[Pair; TOGETHER]> {
     let waits = |state: &mut State| !state.ends && state.steady.waiting() < TOGETHER + BESIDES;
-    let waited = changed.wait_while(lock(shared), waits);
+    let waited = changed.wait_while(held(shared), waits);
     let mut state = waited.unwrap_or_else(PoisonError::into_inner);
     let mut samples = [Pair::default(); TOGETHER];
     state.steady.take(&mut samples);
     (!state.ends).then_some(samples)
-}
-
-fn lock(state: &Mutex<State>) -> MutexGuard<'_, State> {
-    state.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]
@@ -174,6 +171,6 @@ mod tests {
         assert_eq!(stream.clipped(), Ok(0));
         (0..9).for_each(|_| stream.feed(&half));
         assert_eq!(stream.clipped(), Err(InstrumentFault::TakesNoSamples));
-        assert!(lock(&stream.shared.0).steady.waiting() < 2 * STUCK);
+        assert!(held(&stream.shared.0).steady.waiting() < 2 * STUCK);
     }
 }

@@ -79,7 +79,7 @@ pub fn serve(
         .map_err(|error| Failure::bench(RunTrouble::NotServed(error.to_string())))?;
     let typed = Typed::listen();
     stdio::note(&cab::help());
-    stdio::answer(wire.name())?;
+    stdio::answer(&wire.name)?;
     let mut train = Train {
         aboard,
         cab: Cab::new(&setup.config.content),

@@ -163,8 +163,8 @@ pub fn read_log<L: UnitLink>(
             + session.stored().map_or(0, |(events, _)| events.overwritten),
         not_kept: session.not_kept(),
         restarts,
-        status: session.status().unwrap_or(StatusBits::empty()),
-        mode: session.mode(),
+        status: session.status.unwrap_or(StatusBits::empty()),
+        mode: session.mode,
         broken_off,
         stored,
     })

@@ -66,7 +66,7 @@ impl QueryArguments {
             let most = self.max_rows;
             stdio::note(&fill(Words::shown().terminal.first_rows, &[("n", &most)]));
         }
-        if self.output.is_json() {
+        if self.output.form.is_json() {
             return print_json(&answer);
         }
         let columns = columns(&answer);

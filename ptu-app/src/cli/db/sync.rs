@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use clap::Args;
 use fault_db::{Address, Store, StoreError, SyncOptions, SyncOutcome, SyncPhase, SyncProgress};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use serde_json::json;
 
 use crate::cli::{Database, Json, answered};
@@ -13,7 +13,7 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::platform::computer_name;
 use ptu_runs::stop::Stop;
-use ptu_runs::{clock, stdio};
+use ptu_runs::{clock, progress, stdio};
 
 /// Send this laptop's history to a server, and receive what others recorded about its faults
 ///
@@ -145,30 +145,15 @@ impl ProgressLine {
 
     fn begin(&mut self, progress: SyncProgress) {
         let what = Words::shown().care.phase(progress.phase);
-        if let Some(bar) = self.bar.take() {
-            bar.finish_and_clear();
-        }
+        self.bar = None;
         if !stdio::draws() {
             stdio::note(what);
             return;
         }
-        let style = match progress.total {
+        let form = match progress.total {
             0 => "{pos}  {elapsed}  {msg}",
             _ => "{bar:30} {pos}/{len}  {elapsed}  {msg}",
         };
-        let style =
-            ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
-        let bar = ProgressBar::new(progress.total)
-            .with_style(style)
-            .with_message(what);
-        self.bar = Some(bar);
-    }
-}
-
-impl Drop for ProgressLine {
-    fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+        self.bar = Some(progress::bar(progress.total, form).with_message(what));
     }
 }

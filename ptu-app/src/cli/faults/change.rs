@@ -1,7 +1,7 @@
 //! Changes to a fault that people make: `ptu faults state`, `repair`, `cause` and `note`.
 
 use clap::Args;
-use fault_db::{CauseRecord, ChangedFault, FaultState, RepairRecord, Store};
+use fault_db::{CaseFault, CauseRecord, FaultState, RepairRecord, Store};
 
 use super::part;
 use crate::cli::{ScriptsOption, print_out};
@@ -178,7 +178,7 @@ fn is_now(fault: &str, state: FaultState) -> String {
 }
 
 /// The fault that was named, and what was settled with it.
-pub fn changed((named, rest): &(ChangedFault, Vec<ChangedFault>)) -> String {
+pub fn changed((named, rest): &(CaseFault, Vec<CaseFault>)) -> String {
     let mut text = is_now(&named.id.short(), named.state);
     for fault in rest {
         let of = [

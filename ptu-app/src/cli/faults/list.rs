@@ -45,11 +45,11 @@ impl ListArguments {
         self.output.save()?;
         if faults.is_empty() {
             let said = self.filter.nothing(store)?;
-            if self.output.is_table() {
+            if self.output.form.is_table() {
                 return print_out(&said);
             }
         }
-        if more && !self.output.is_table() {
+        if more && !self.output.form.is_table() {
             let said = Words::shown().terminal.first_n;
             stdio::note(&fill(said, &[("n", &self.limit)]));
         }

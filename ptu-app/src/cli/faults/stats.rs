@@ -132,7 +132,7 @@ impl StatsArguments {
             now_us: clock::now_us(),
             back_within_days: self.back_within,
         };
-        let (stats, together) = match (self.by, self.output.is_table()) {
+        let (stats, together) = match (self.by, self.output.form.is_table()) {
             (GroupBy::Month, _) => {
                 let months = by_month(store, &query)?.into_iter();
                 (months.map(|month| month.stat).collect(), None)
@@ -148,7 +148,7 @@ impl StatsArguments {
         self.output.save()?;
         if stats.is_empty() {
             let said = self.filter.nothing(store)?;
-            if self.output.is_table() {
+            if self.output.form.is_table() {
                 return print_out(&said);
             }
         }

@@ -78,7 +78,7 @@ impl TrendArguments {
         if let Some(file) = &self.plot {
             whole_file::write(file, kind::HTML, trend_plot::page(&trend))?;
         }
-        if self.output.is_json() {
+        if self.output.form.is_json() {
             return crate::cli::print_json(&json(&trend));
         }
         self.output.print(keys(&trend), &rows(&trend), || {

@@ -109,13 +109,13 @@ impl Window {
         window.frame(&[Key::F9]);
         window.frames_until(|window| {
             window.frame(&[]);
-            window.app.units().chosen().phase() == Phase::Idle
+            window.app.units.chosen().phase() == Phase::Idle
         });
         let speed = Stimulus::Speed {
             to: Speed::from_kmh(60.0),
             accel_mps2: 0.5,
         };
-        let bench = &window.app.units().chosen().bench;
+        let bench = &window.app.units.chosen().bench;
         bench.apply(speed).expect("permitted");
         let began = Instant::now();
         window.frames_until(|window| {
@@ -235,8 +235,8 @@ fn report_memory() {
     if let (Some(before), Some(after)) = (before, after) {
         println!(
             "{} rows of {} signals take {:.1} MiB",
-            view.data().rows(),
-            view.data().channels.len(),
+            view.data.rows(),
+            view.data.channels.len(),
             after - before
         );
     }

@@ -31,7 +31,7 @@ fn contents(ui: &mut Ui, context: &PageContext<'_>) {
     let quiet = Palette::of(ui).quiet;
     let name = format!("{} {}", words.frame.title, env!("CARGO_PKG_VERSION"));
     ui.label(RichText::new(name).strong());
-    let paths = context.queries.paths();
+    let paths = &context.queries.paths;
     Grid::new("about").num_columns(2).show(ui, |ui| {
         let row = |ui: &mut Ui, what: &str, value: String| {
             ui.label(RichText::new(what).color(quiet));

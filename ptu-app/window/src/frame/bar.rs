@@ -234,7 +234,7 @@ fn link(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Ite
     let words = &words.frame;
     let share = unit.bench.live().link.share();
     let (look, icon, said) = match unit.phase() {
-        _ if unit.is_lost() => (Look::Warned, ICON_LINK_OFF, words.link_gone.to_owned()),
+        _ if unit.lost => (Look::Warned, ICON_LINK_OFF, words.link_gone.to_owned()),
         Phase::Offline => (Look::State, ICON_LINK_OFF, words.not_connected.to_owned()),
         Phase::Connecting => (Look::State, ICON_LINK, words.connecting.to_owned()),
         _ if share.is_none() => (Look::State, ICON_LINK, words.connected.to_owned()),
@@ -298,7 +298,7 @@ fn states(context: &PageContext<'_>, with_words: bool, items: &mut Vec<Item>) {
         items.push(warned(differs.clone(), differs));
     }
     if context.only_reads().is_some() {
-        let server = context.queries.paths().database.display().to_string();
+        let server = context.queries.paths.database.display().to_string();
         let said = fill(words.care.reads, &[("server", &server)]);
         let hint = format!("{said}. {}", words.care.is_server);
         items.push(warned(said, hint));
@@ -333,7 +333,7 @@ fn right(context: &PageContext<'_>, without: Without) -> Vec<Item> {
         let find = Face::new(Look::Quiet, "").icon(ICON_SEARCH).small(key);
         items.push((What::Find, find.named(words.find_anything)));
     }
-    let n = context.messages.all().len();
+    let n = context.messages.all.len();
     let count = if n > 0 { n.to_string() } else { String::new() };
     let bell = Face::new(Look::Quiet, count).icon(ICON_NOTIFICATIONS);
     items.push((What::Bell, bell.named(words.messages)));

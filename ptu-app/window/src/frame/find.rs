@@ -1,11 +1,11 @@
 //! Finds anything by a few of its letters: a fault, a step, a unit, a page, an action. It opens and chooses; it arms and runs nothing.
 
+use crate::parts::{over_page, selectable};
 use std::sync::Arc;
 
 use btu_rig::procedure::Procedure;
 use eframe::egui::{
-    Align2, FontId, Key, Modifiers, Rect, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, pos2,
-    vec2,
+    Align2, FontId, Key, Modifiers, Rect, Role, ScrollArea, TextEdit, Ui, WidgetInfo, pos2, vec2,
 };
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
@@ -15,7 +15,6 @@ use fault_db::{FaultFilter, FaultSummary};
 
 use super::{Frame, rail};
 use crate::parts::lane::cut_text;
-use crate::parts::over_page;
 use crate::request::Request;
 use crate::{Density, Destination, Page, PageContext, Palette, Sizes};
 use ptu_report::naming::{DOT, PartNames};
@@ -33,7 +32,7 @@ const FAULTS: u32 = 500;
 /// Typed text, and the lists in which it is looked for.
 #[derive(Default)]
 pub struct Find {
-    open: bool,
+    pub open: bool,
     typed: String,
     /// The row that Enter takes.
     at: usize,
@@ -81,10 +80,6 @@ impl Find {
                 Ok((faults, PartNames::of(&paths.scripts)))
             }));
         }
-    }
-
-    pub fn is_open(&self) -> bool {
-        self.open
     }
 
     /// Draws it while it is open, with the steps of these procedures; does what was chosen.
@@ -313,16 +308,8 @@ impl Row {
     fn show(&self, ui: &mut Ui, chosen: bool, moved: bool) -> bool {
         let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
         let size = vec2(ui.available_width(), sizes.target);
-        let (rect, response) = ui.allocate_exact_size(size, Sense::click());
         let name = [&*self.name, &*self.more].join(DOT);
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &name));
-        if chosen || response.hovered() {
-            let ground = match chosen {
-                true => palette.chosen,
-                false => palette.hover,
-            };
-            ui.painter().rect_filled(rect, 6.0, ground);
-        }
+        let (rect, response) = selectable(ui, size, (&name, chosen));
         if chosen && moved {
             response.scroll_to_me(None);
         }

@@ -30,17 +30,10 @@ pub struct Undo {
 impl Undo {
     /// Tells when it is done.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
-        if !self.under_way.poll() {
-            return;
-        }
         let frame = &context.words.frame;
-        match std::mem::take(&mut self.under_way) {
-            Request::Failed(why) => context.messages.trouble(frame.not_undone, why.clone()),
-            Request::Ready(written) => {
-                let said = fill(frame.undone, &[("what", &self.what)]);
-                context.messages.tell_taken_back(said, written);
-            }
-            Request::Idle | Request::Pending(_) => {}
+        if let Some(written) = self.under_way.take(frame.not_undone, context.messages) {
+            let said = fill(frame.undone, &[("what", &self.what)]);
+            context.messages.tell_taken_back(said, written);
         }
     }
 
@@ -73,7 +66,7 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
     let place = undoable.map(|(place, ..)| place);
     let words = context.words;
     let (mut noted, mut seen, mut taken_back) = (false, false, None);
-    let all = context.messages.all();
+    let all = &context.messages.all;
     let trouble = context.messages.unread_trouble();
     let last = context.messages.latest_note(place, now_s);
     // The case shows itself what its run came to.
@@ -142,7 +135,7 @@ pub fn bell(response: &Response, context: &mut PageContext<'_>) {
     let words = context.words;
     Popup::menu(response).show(|ui| {
         ui.set_min_width(WIDE);
-        let all = context.messages.all();
+        let all = &context.messages.all;
         if all.is_empty() {
             ui.label(words.common.nothing);
             return;

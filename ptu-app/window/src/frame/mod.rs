@@ -37,11 +37,11 @@ const AROUND: f32 = 12.0;
 /// State of the frame while the window is open.
 #[derive(Default)]
 pub struct Frame {
-    setup: Setup,
+    pub setup: Setup,
     about: About,
     care: HistoryMaintenance,
     undo: messages::Undo,
-    find: Find,
+    pub find: Find,
     is_wide: bool,
     /// The rail has no room for the history.
     is_low: bool,
@@ -52,7 +52,7 @@ impl Frame {
     pub fn keys(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
         keys::keys(ui.ctx(), context);
         let key = |key| ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, key));
-        if key(Key::K) && (self.find.is_open() || !dialog_is_open(ui.ctx())) {
+        if key(Key::K) && (self.find.open || !dialog_is_open(ui.ctx())) {
             self.find.toggle(context);
         }
         self.is_wide ^= key(Key::B);
@@ -78,16 +78,6 @@ impl Frame {
             .resizable(false);
         rail.frame(ground.inner_margin(4))
             .show(ui, |ui| rail::rail(self, ui, context));
-    }
-
-    /// Something is being looked for.
-    pub fn finds(&self) -> bool {
-        self.find.is_open()
-    }
-
-    /// Opens what the unit is set up for.
-    pub fn set_up(&mut self) {
-        self.setup.open();
     }
 
     /// Bar of a locked window, with the name that opens it.

@@ -1,8 +1,8 @@
 //! The rail of the pages: an icon, the key and the name of each; below them the history and the menu.
 
+use crate::parts::selectable;
 use eframe::egui::{
-    Align, Align2, FontId, Layout, Popup, Rect, RectAlign, Response, Role, Sense, Ui, WidgetInfo,
-    pos2, vec2,
+    Align, Align2, FontId, Layout, Popup, Rect, RectAlign, Response, Ui, pos2, vec2,
 };
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
@@ -12,7 +12,6 @@ use egui_material_icons::icons::{
 };
 
 use super::{Frame, menu};
-use crate::parts::focus_ring;
 use crate::{Density, Page, PageContext, Palette, Sizes};
 
 /// Width of a window whose rail has names beside the icons, and that width, points.
@@ -80,22 +79,12 @@ pub fn rail(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
 fn shown(ui: &mut Ui, high: f32, place: &RailEntry<'_>) -> Response {
     let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
     let size = vec2(ui.available_width(), high);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let enabled = ui.is_enabled();
-    response.widget_info(|| WidgetInfo::selected(Role::Button, enabled, place.chosen, place.name));
+    let (rect, response) = selectable(ui, size, (place.name, place.chosen));
     let (icon, ink) = match place.chosen {
         true => (palette.accent, palette.ink),
         false => (palette.second, palette.second),
     };
     let painter = ui.painter();
-    if place.chosen || response.hovered() {
-        let ground = if place.chosen {
-            palette.chosen
-        } else {
-            palette.hover
-        };
-        painter.rect_filled(rect, 6.0, ground);
-    }
     if place.chosen {
         let at = Rect::from_x_y_ranges(rect.left() - 4.0..=rect.left() - 1.0, rect.y_range());
         let painter = painter.with_clip_rect(at);
@@ -153,7 +142,6 @@ fn shown(ui: &mut Ui, high: f32, place: &RailEntry<'_>) -> Response {
             palette.quiet,
         );
     }
-    focus_ring(ui, rect.shrink(3.0), &response);
     response.on_hover_text(place.name)
 }
 

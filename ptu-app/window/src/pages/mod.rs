@@ -11,10 +11,9 @@ mod signals;
 mod statistics;
 mod traces;
 
-use std::sync::Arc;
-
-use btu_rig::procedure::Procedure;
 use eframe::egui::Ui;
+
+use procedures::Wanted;
 
 use super::Page;
 use super::page_context::{Destination, PageContext};
@@ -26,7 +25,7 @@ pub use case::case_steps;
 pub struct Pages {
     case: case::CasePage,
     bench: bench::BenchPage,
-    procedures: procedures::ProceduresPage,
+    pub procedures: procedures::ProceduresPage,
     drive: drive::DrivePage,
     traces: traces::TracesPage,
     faults: faults::FaultsPage,
@@ -64,16 +63,6 @@ impl Pages {
         }
     }
 
-    /// The procedures of the chosen unit, once they are loaded.
-    pub fn procedures(&mut self, context: &PageContext<'_>) -> &[Arc<Procedure>] {
-        self.procedures.loaded(context)
-    }
-
-    /// A run that broke off can go on: the scripts are those it is of.
-    pub fn goes_on(&self, context: &PageContext<'_>) -> bool {
-        self.procedures.goes_on(context)
-    }
-
     /// Leads the person to a destination; returns the page to show.
     pub fn go_to(&mut self, to: Destination, context: &mut PageContext<'_>) -> Page {
         match to {
@@ -90,11 +79,11 @@ impl Pages {
                 Page::Diagnosis
             }
             Destination::Fault(id) => {
-                self.faults.open(id, context);
+                self.faults.open(id);
                 Page::Faults
             }
             Destination::Life(serial) => {
-                self.statistics.show_life(&serial);
+                self.statistics.life.open(&serial);
                 Page::Statistics
             }
             Destination::Faults(of) => {
@@ -102,21 +91,26 @@ impl Pages {
                 Page::Faults
             }
             Destination::FindPart(symptom) => {
-                self.procedures.find_part(symptom, true, context);
+                let adaptive = true;
+                self.procedures
+                    .want(Wanted::Part { symptom, adaptive }, context);
                 Page::Case
             }
             Destination::RunAll(symptom) => {
-                self.procedures.find_part(symptom, false, context);
+                let adaptive = false;
+                self.procedures
+                    .want(Wanted::Part { symptom, adaptive }, context);
                 Page::Case
             }
             Destination::Prove { procedures, part } => {
-                self.procedures.prove(procedures, part, context);
+                self.procedures
+                    .want(Wanted::Prove { procedures, part }, context);
                 Page::Case
             }
             // The frame has opened it.
             Destination::Setup => context.settings.page,
             Destination::GoOn => {
-                self.procedures.go_on(context);
+                self.procedures.want(Wanted::Rest, context);
                 context.settings.page
             }
             Destination::ChooseStep { procedure, step } => {

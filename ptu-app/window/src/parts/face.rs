@@ -296,6 +296,23 @@ pub fn dashed_outline(edge: Rect, stroke: Stroke, dash: f32) -> Vec<Shape> {
     Shape::dashed_line(&corners, stroke, dash, DASH_GAP)
 }
 
+/// Room for something of which one may be chosen, under its name for screen readers: with the ground of what is chosen
+/// or pointed at, and the mark of what has the keyboard.
+pub fn selectable(ui: &mut Ui, size: Vec2, (name, chosen): (&str, bool)) -> (Rect, Response) {
+    let palette = Palette::of(ui);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let enabled = ui.is_enabled();
+    response.widget_info(|| WidgetInfo::selected(Role::Button, enabled, chosen, name));
+    let ground = match chosen {
+        true => palette.chosen,
+        false if response.hovered() => palette.hover,
+        false => Color32::TRANSPARENT,
+    };
+    ui.painter().rect_filled(rect, 6.0, ground);
+    focus_ring(ui, rect.shrink(3.0), &response);
+    (rect, response)
+}
+
 /// Marks what has the keyboard.
 pub fn focus_ring(ui: &Ui, rect: Rect, response: &Response) {
     if response.has_focus() {

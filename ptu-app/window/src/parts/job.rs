@@ -1,6 +1,6 @@
 //! Work that takes minutes, on a thread of its own: how far it is, a button that stops it, and what it came to.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use eframe::egui::{RichText, Ui};
 
@@ -10,6 +10,7 @@ use crate::{DataPaths, PageContext, Palette};
 use ptu_report::words::Words;
 use ptu_runs::bench_worker::Wake;
 use ptu_runs::failure::{Failure, Trouble};
+use ptu_runs::pool::held;
 use ptu_runs::stop::Stop;
 
 /// Result of work, in words.
@@ -18,6 +19,17 @@ pub struct Done {
     pub notes: Vec<String>,
     /// Why the work was not done to its end.
     pub broken_off: Option<Trouble>,
+}
+
+impl Done {
+    /// Work that was done to its end.
+    pub fn all(text: String, notes: Vec<String>) -> Self {
+        Self {
+            text,
+            notes,
+            broken_off: None,
+        }
+    }
 }
 
 /// The work, while it goes on and after it.
@@ -40,7 +52,7 @@ pub struct Told {
 impl Told {
     /// Says how far the work is.
     pub fn say(&self, how_far: String) {
-        *self.said.lock().unwrap_or_else(PoisonError::into_inner) = how_far;
+        *held(&self.said) = how_far;
         if let Some(wake) = &self.wake {
             wake();
         }
@@ -61,7 +73,7 @@ impl Job {
     ) {
         let queries = context.queries;
         if self.thread.is_none() {
-            match QueryWorker::new(queries.paths().clone(), queries.wake().clone()) {
+            match QueryWorker::new(queries.paths.clone(), queries.wake.clone()) {
                 Ok(thread) => self.thread = Some(thread),
                 Err(failure) => return context.messages.trouble(failed, failure.message),
             }
@@ -69,7 +81,7 @@ impl Job {
         self.told = Told {
             stop: Stop::default(),
             said: Arc::new(Mutex::new(said)),
-            wake: Some(queries.wake().clone()),
+            wake: Some(queries.wake.clone()),
         };
         self.done = None;
         let told = self.told.clone();
@@ -80,23 +92,14 @@ impl Job {
 
     /// Takes what it came to; true when it has been done, to its end or not.
     pub fn poll(&mut self, context: &mut PageContext<'_>, failed: &str) -> bool {
-        if !self.under_way.poll() {
+        let Some(done) = self.under_way.take(failed, context.messages) else {
             return false;
+        };
+        if let Some(why) = &done.broken_off {
+            context.messages.trouble(failed, why.clone());
         }
-        match std::mem::take(&mut self.under_way) {
-            Request::Ready(done) => {
-                if let Some(why) = &done.broken_off {
-                    context.messages.trouble(failed, why.clone());
-                }
-                self.done = Some(done);
-                true
-            }
-            Request::Failed(why) => {
-                context.messages.trouble(failed, why.clone());
-                false
-            }
-            Request::Idle | Request::Pending(_) => false,
-        }
+        self.done = Some(done);
+        true
     }
 
     /// Progress of the work, with a button that stops it, if it can be stopped.
@@ -107,8 +110,7 @@ impl Job {
             if stops && ui.button(words.memory.stop).clicked() {
                 self.told.stop.press_once();
             }
-            let said = self.told.said.lock();
-            ui.label(&*said.unwrap_or_else(PoisonError::into_inner));
+            ui.label(&*held(&self.told.said));
         });
     }
 

@@ -12,9 +12,8 @@ use ptu_runs::record::pull_reading;
 use ptu_runs::stop::Stop;
 use ptu_runs::unit_log::AskedUnit;
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stored {
-    #[default]
     Log,
     /// The record of automatic runs.
     Runs,
@@ -23,29 +22,20 @@ pub enum Stored {
 /// The button, and what becomes of it. Reading takes minutes: it has a thread of its own.
 #[derive(Default)]
 pub struct MemoryReader {
-    stored: Stored,
     job: Job,
 }
 
 impl MemoryReader {
-    /// A button for one of the two.
-    pub fn of(stored: Stored) -> Self {
-        Self {
-            stored,
-            ..Self::default()
-        }
-    }
-
-    /// Shows it; true when something was stored.
-    pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) -> bool {
-        let stored = self.job.poll(context, context.words.memory.failed);
+    /// Shows the button for one of the two; true when something was stored here.
+    pub fn show(&mut self, ui: &mut Ui, stored: Stored, context: &mut PageContext<'_>) -> bool {
+        let has_stored = self.job.poll(context, context.words.memory.failed);
         let words = context.words;
         if self.job.is_under_way() {
             self.job.progress(ui, words, true);
-            return stored;
+            return has_stored;
         }
         let asked = asked(context);
-        let text = match self.stored {
+        let text = match stored {
             Stored::Log => words.memory.import,
             Stored::Runs => words.memory.pull,
         };
@@ -58,20 +48,15 @@ impl MemoryReader {
             clicked
         });
         if let (Some(true), Ok(asked)) = (clicked, asked) {
-            self.begin(asked, context);
+            let unit = context.units.chosen().choice.endpoint.clone();
+            let said = fill(words.memory.reading, &[("unit", &unit)]);
+            self.job
+                .begin(context, (said, words.memory.failed), move |paths, told| {
+                    read(&asked, stored, paths, &told.stop, words)
+                });
         }
         self.job.result(ui);
-        stored
-    }
-
-    fn begin(&mut self, asked: AskedUnit, context: &mut PageContext<'_>) {
-        let (stored, words) = (self.stored, context.words);
-        let unit = context.units.chosen().choice.endpoint.clone();
-        let said = fill(words.memory.reading, &[("unit", &unit)]);
-        self.job
-            .begin(context, (said, words.memory.failed), move |paths, told| {
-                read(&asked, stored, paths, &told.stop, words)
-            });
+        has_stored
     }
 }
 

@@ -40,7 +40,7 @@ pub use dialog::{dialog, dialog_is_open, last_row, over_page};
 pub use edit::{
     caption, field, find_edit, go_on, name_edit, name_input, note_edit, path_edit, typed,
 };
-pub use face::{Face, Look, dashed_outline, focus_ring};
+pub use face::{Face, Look, dashed_outline, focus_ring, selectable};
 pub use file::{file_place, usual_folder};
 pub use job::{Done, Job, Told};
 pub use limit_bar::{limit_bar, limit_scale, limits_within, value_text};

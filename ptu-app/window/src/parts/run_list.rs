@@ -1,13 +1,13 @@
 //! A list of runs to choose from, the latest first.
 
+use crate::parts::selectable;
 use eframe::egui::{FontId, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 use egui_material_icons::icons::{ICON_DO_NOT_DISTURB_ON, ICON_PLAY_CIRCLE};
 use fault_db::{Id, RunFilter, RunState, RunSummary};
 
 use super::lane::cut_text;
-use super::{Side, find_edit, focus_ring, verdict_look};
-use crate::request::CachedResponse;
-use crate::request::Request;
+use super::{Side, find_edit, verdict_look};
+use crate::request::FollowingResponse;
 use crate::{PageContext, Palette, Sizes};
 use ptu_report::count_text;
 use ptu_report::naming::DOT;
@@ -21,9 +21,7 @@ const MOST: u32 = 2_000;
 
 #[derive(Default)]
 pub struct RunList {
-    runs: CachedResponse<Vec<RunSummary>>,
-    /// Version of the data at the last query; none = not asked yet.
-    version: Option<(usize, u64)>,
+    runs: FollowingResponse<(), Vec<RunSummary>>,
     find: String,
     /// Run chosen by a person, until a run ends or another unit is connected.
     chosen: Option<Id>,
@@ -97,17 +95,7 @@ impl RunList {
         let chosen = self.shown;
         let words = context.words;
         find_edit(ui, &mut self.find, words.procedures.find, f32::INFINITY);
-        let runs = match self.runs.get() {
-            Request::Ready(runs) => runs,
-            Request::Failed(why) => {
-                ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
-                return None;
-            }
-            Request::Idle | Request::Pending(_) => {
-                ui.label(words.common.loading);
-                return None;
-            }
-        };
+        let runs = self.runs.get().shown(ui, words)?;
         let find = self.find.trim().to_lowercase();
         let shown: Vec<_> = runs.iter().filter(|run| matches(run, &find)).collect();
         if shown.is_empty() {
@@ -152,18 +140,13 @@ impl RunList {
 
     /// Asks for the list at first, and when the data have changed since.
     fn keep_up(&mut self, context: &PageContext<'_>) {
-        let version = context.data_version();
-        if self.version != Some(version) {
-            self.version = Some(version);
-            self.runs.request(context.queries.run(|paths| {
-                let filter = RunFilter {
-                    limit: Some(MOST),
-                    ..RunFilter::default()
-                };
-                Ok(paths.read()?.runs(&filter)?)
-            }));
-        }
-        self.runs.poll();
+        self.runs.keep_up(((), true), context, |paths, ()| {
+            let filter = RunFilter {
+                limit: Some(MOST),
+                ..RunFilter::default()
+            };
+            Ok(paths.read()?.runs(&filter)?)
+        });
         self.follow(context);
         // The shown run stays until the newer list is there.
         if !self.runs.is_stale() {
@@ -191,18 +174,7 @@ fn row(ui: &mut Ui, words: &Words, run: &RunSummary, chosen: bool) -> bool {
         (None, _) => ((ICON_DO_NOT_DISTURB_ON, palette.warn), common.interrupted),
     };
     let size = vec2(ui.available_width(), row_high(ui));
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let enabled = ui.is_enabled();
-    response.widget_info(|| WidgetInfo::selected(Role::Button, enabled, chosen, &name));
-    if chosen || response.hovered() {
-        let ground = if chosen {
-            palette.chosen
-        } else {
-            palette.hover
-        };
-        ui.painter().rect_filled(rect, 4.0, ground);
-    }
-    focus_ring(ui, rect.shrink(3.0), &response);
+    let (rect, response) = selectable(ui, size, (&name, chosen));
     let (first, second) = rect
         .shrink2(vec2(8.0, 4.0))
         .split_top_bottom_at_fraction(0.5);

@@ -42,23 +42,12 @@ pub struct RunNoteForm {
 impl RunNoteForm {
     /// Thing on which a note has just been stored.
     pub fn poll(&mut self, words: &Words, messages: &mut Messages) -> Option<NoteOn> {
-        if !self.under_way.poll() {
-            return None;
+        let noted = self.under_way.take(words.report.note_not_saved, messages)?;
+        messages.note(words.report.note_saved);
+        if self.on == Some(noted.id()) {
+            self.text.clear();
         }
-        match std::mem::take(&mut self.under_way) {
-            Request::Failed(why) => {
-                messages.trouble(words.report.note_not_saved, why.clone());
-                None
-            }
-            Request::Ready(noted) => {
-                messages.note(words.report.note_saved);
-                if self.on == Some(noted.id()) {
-                    self.text.clear();
-                }
-                Some(noted)
-            }
-            Request::Idle | Request::Pending(_) => None,
-        }
+        Some(noted)
     }
 
     /// The field with its button, for a note on this.
@@ -89,7 +78,7 @@ impl RunNoteForm {
         ui.add(note_edit(&mut self.text, wide))
             .labelled_by(label.id);
         let (who, text) = (who.trim().to_owned(), self.text.trim().to_owned());
-        let writes = !queries.paths().is_server();
+        let writes = !queries.paths.is_server();
         let may = writes && !who.is_empty() && !text.is_empty() && self.under_way.is_idle();
         let why = match writes {
             true => words.report.note_hint,

@@ -1,16 +1,15 @@
 //! A table: a heading, and rows of one line each, of which only those in view are made. The whole row is clicked; arrows move, Enter opens.
 
+use crate::parts::selectable;
 use std::borrow::Cow;
 use std::ops::Range;
 
 use btu_rig::procedure::Measurement;
 use eframe::egui::text::{LayoutJob, TextWrapping};
-use eframe::egui::{
-    Color32, FontId, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
-};
+use eframe::egui::{Color32, FontId, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use egui_material_icons::MaterialIcon;
 
-use super::{focus_ring, limits_within};
+use super::limits_within;
 use crate::{Palette, Sizes};
 
 /// Between two columns, points.
@@ -98,22 +97,13 @@ impl Table<'_> {
     pub fn row(&self, ui: &mut Ui, (name, chosen): (&str, bool), cells: &[Cell<'_>]) -> Response {
         let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
         let size = vec2(ui.available_width() - self.end, Self::high(ui));
-        let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-        let enabled = ui.is_enabled();
-        response.widget_info(|| WidgetInfo::selected(Role::Button, enabled, chosen, name));
+        let (rect, response) = selectable(ui, size, (name, chosen));
         if !ui.is_rect_visible(rect) {
             return response;
         }
-        let ground = match chosen {
-            true => palette.chosen,
-            false if response.hovered() => palette.hover,
-            false => Color32::TRANSPARENT,
-        };
-        ui.painter().rect_filled(rect, 0.0, ground);
         let line = Stroke::new(1.0, palette.grid);
         ui.painter()
             .hline(rect.x_range(), rect.bottom() - 0.5, line);
-        focus_ring(ui, rect.shrink(3.0), &response);
         let columns = self.columns.iter().zip(self.places(ui, rect));
         for (cell, (column, place)) in cells.iter().zip(columns) {
             let Some(place) = place else { continue };

@@ -12,7 +12,7 @@ const BOX: f32 = 90.0;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct UnitFilter {
     connected: Option<String>,
-    taken: Option<String>,
+    pub taken: Option<String>,
 }
 
 impl UnitFilter {
@@ -42,12 +42,7 @@ impl UnitFilter {
         self.taken = unit;
     }
 
-    /// The chosen unit; none = all.
-    pub fn taken(&self) -> Option<&str> {
-        self.taken.as_deref()
-    }
-
     pub fn takes(&self, unit: &str) -> bool {
-        self.taken().is_none_or(|taken| taken == unit)
+        self.taken.as_deref().is_none_or(|taken| taken == unit)
     }
 }

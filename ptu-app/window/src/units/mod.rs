@@ -18,7 +18,7 @@ pub struct Units {
     chosen: usize,
     next_id: u64,
     /// Counts the times everything was stopped: what was ordered before is not begun after.
-    stops: u64,
+    pub stops: u64,
     wake: Wake,
 }
 
@@ -116,7 +116,7 @@ impl Units {
             } else {
                 Watched::Bar
             };
-            unit.bench.live_state().watch(watched);
+            unit.bench.live_state.watch(watched);
         }
     }
 
@@ -141,11 +141,6 @@ impl Units {
             }
             unit.locked = locked;
         }
-    }
-
-    /// Times everything was stopped.
-    pub fn stops(&self) -> u64 {
-        self.stops
     }
 
     /// One of them was let go without its outputs being confirmed safe.

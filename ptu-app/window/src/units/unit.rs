@@ -33,14 +33,14 @@ pub struct Unit {
     /// Present or last run of the unit.
     pub run: Option<Progress>,
     /// The unit's case ordered that run.
-    is_run_of_case: bool,
+    pub is_run_of_case: bool,
     pub(super) runs_ended: usize,
     /// The link to it is lost, which the person knows.
-    lost: bool,
+    pub lost: bool,
     /// The run broke off with the link, and nobody has ended it.
     waits: bool,
     /// The run is of another unit than the one connected now.
-    is_other: bool,
+    pub is_other: bool,
     /// Everything is being stopped, and it is not known to be safe yet.
     pub stopping: bool,
     /// Nothing is begun: no name has been given.
@@ -144,25 +144,10 @@ impl Unit {
         self.run.as_ref().filter(|_| self.is_run_of_case)
     }
 
-    /// Whether the page of the case asked for the run of this unit.
-    pub fn is_run_of_case(&self) -> bool {
-        self.is_run_of_case
-    }
-
-    /// The link to it was lost, and it was not reached again.
-    pub fn is_lost(&self) -> bool {
-        self.lost
-    }
-
     /// The run that broke off with the link and can go on, and the place where it did.
     pub fn waiting_run(&self) -> Option<(&Progress, &Finding)> {
         let run = self.run.as_ref().filter(|_| self.waits)?;
         Some((run, link_loss(run)?))
-    }
-
-    /// The run that broke off is of another unit than the one connected now.
-    pub fn is_other(&self) -> bool {
-        self.is_other
     }
 
     /// The run that broke off stays as it is.
@@ -178,7 +163,7 @@ impl Unit {
         if let Some(present) = self.run.as_mut().and_then(|run| run.present.as_mut())
             && present.prompt.take().is_some()
         {
-            self.bench.live_state().answer(yes);
+            self.bench.live_state.answer(yes);
         }
     }
 

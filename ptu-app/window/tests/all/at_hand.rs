@@ -17,7 +17,7 @@ fn an_injected_fault_is_taken_out_where_it_is_listed() {
     window.wait_for("atp_receiver.dead");
     window.click("Remove: eb_relay.slow");
     window.until("one fault less", |window| {
-        window.app().units().chosen().choice.faults == ["tra.dead"]
+        window.app().units.chosen().choice.faults == ["tra.dead"]
     });
     assert!(!window.shows("Remove: eb_relay.slow"));
 }

@@ -112,7 +112,7 @@ fn a_section_laid_by_hand_is_forgotten_with_stop_all_on_another_page() {
     });
     window.page(Page::Procedures);
     let bench_epoch = |window: &Window| {
-        let unit = window.app().units().chosen();
+        let unit = window.app().units.chosen();
         unit.bench.live().bench_epoch
     };
     let before = bench_epoch(&window);

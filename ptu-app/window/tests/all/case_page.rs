@@ -84,7 +84,7 @@ impl Counted {
         let found = complaints_of(&mut self.window, self.lowest).into_iter();
         self.wrong
             .extend(found.map(|said| format!("{stage}: {said}")));
-        let settings = self.window.app().settings();
+        let settings = &self.window.app().settings;
         let (language, density) = (settings.language, settings.density);
         let wide = self.window.harness().ctx.content_rect().right();
         let name = format!("case {stage} {wide} {language:?} {density:?}");
@@ -128,7 +128,7 @@ fn repairing(faults: &str) -> Counted {
     let mut counted = window(Language::English, size, Density::Operator, faults);
     counted.look_for_part();
     counted.window.until("the result", |window| {
-        let run = window.app().units().chosen().run_of_case();
+        let run = window.app().units.chosen().run_of_case();
         let is_told = window.shows(case.record_repair);
         // While it is worked out what a run says, no way leads away from it.
         if run.is_some_and(|run| !run.is_running()) && !is_told {
@@ -173,7 +173,7 @@ fn from_symptom_to_signed_sheet(language: Language, size: [f32; 2], density: Den
 
 /// Leads the window from the symptom to the signed sheet.
 fn signed_sheet(mut counted: Counted) {
-    let settings = counted.window.app().settings();
+    let settings = &counted.window.app().settings;
     let (language, density) = (settings.language, settings.density);
     let size = counted.window.harness().ctx.content_rect().right();
     let words: &Words = language.words();

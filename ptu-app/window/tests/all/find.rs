@@ -24,7 +24,7 @@ fn the_accent_button_is_pressed_by_a_key_unless_something_stands_over_it() {
         let harness = window.harness();
         harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
         window.step();
-        window.app().units().chosen().phase()
+        window.app().units.chosen().phase()
     };
     look_for(&mut window, "xyz");
     assert_eq!(accent(&mut window), Phase::Offline);
@@ -41,7 +41,7 @@ fn the_accent_button_is_pressed_by_a_key_unless_something_stands_over_it() {
             modifiers,
         });
         window.step();
-        window.app().units().chosen().phase()
+        window.app().units.chosen().phase()
     };
     look_for(&mut window, "xyz");
     hold(&mut window, Key::Enter, Modifiers::COMMAND, true);
@@ -57,7 +57,7 @@ fn the_accent_button_is_pressed_by_a_key_unless_something_stands_over_it() {
     window.wait_for("not connected");
     hold(&mut window, Key::F9, Modifiers::NONE, true);
     window.until("the unit", |window| {
-        window.app().units().chosen().phase() == Phase::Idle
+        window.app().units.chosen().phase() == Phase::Idle
     });
     let held = hold(&mut window, Key::F9, Modifiers::NONE, true);
     assert_eq!(held, Phase::Idle);
@@ -68,7 +68,7 @@ fn look_for(window: &mut Window, typed: &str) {
         .harness()
         .key_press_modifiers(Modifiers::COMMAND, Key::K);
     window.step();
-    let words = window.app().settings().language.words();
+    let words = window.app().settings.language.words();
     window.write(words.frame.find_what, typed);
 }
 
@@ -110,7 +110,7 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
         window.key(Key::ArrowDown);
         window.key(Key::Enter);
         window.until("a light window", |window| {
-            window.app().settings().dark == Some(false)
+            window.app().settings.dark == Some(false)
         });
 
         look_for(&mut window, "bad-1 no such thing");
@@ -118,7 +118,7 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
         window.key(Key::Escape);
         window.step();
         assert!(!window.shows(words.frame.find_what));
-        let unit = window.app().units().chosen();
+        let unit = window.app().units.chosen();
         assert_eq!(unit.phase(), Phase::Idle);
         assert!(unit.run.is_none() && !unit.is_armed());
 

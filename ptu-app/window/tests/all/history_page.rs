@@ -342,7 +342,7 @@ fn what_cannot_be_told_names_the_check_that_would_and_runs_it() {
     window.wait_for(&next);
     window.key(Key::F9);
     window.until("the unit", |window| {
-        window.app().units().chosen().phase() == Phase::Idle
+        window.app().units.chosen().phase() == Phase::Idle
     });
     window.click("Run it");
     window.until("the procedures page", |window| {

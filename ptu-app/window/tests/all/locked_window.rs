@@ -10,7 +10,7 @@ use ptu_runs::bench_worker::Phase;
 use ptu_window::Settings;
 
 fn phase(window: &Window) -> Phase {
-    window.app().units().chosen().phase()
+    window.app().units.chosen().phase()
 }
 
 /// Goal: who has gone home has nothing started, armed or written in his name, and what goes on can be seen and stopped.

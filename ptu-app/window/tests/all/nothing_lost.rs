@@ -66,14 +66,14 @@ fn files(window: &Window) -> usize {
 /// Waits until the database has answered every question, and no run goes on.
 fn settle(window: &mut Window) {
     for _ in 0..3 {
-        let last = window.app().queries().run(|_| Ok(()));
+        let last = window.app().queries.run(|_| Ok(()));
         window.until("answers", |_| last.take().is_some());
         window.step();
     }
-    if window.app().units().chosen().phase() == Phase::Running {
+    if window.app().units.chosen().phase() == Phase::Running {
         window.key(Key::F12);
         window.until("the end of a run", |window| {
-            window.app().units().chosen().phase() == Phase::Idle
+            window.app().units.chosen().phase() == Phase::Idle
         });
     }
 }
@@ -159,12 +159,12 @@ fn every_button_clicked_twice_writes_once_and_arms_nothing() {
 fn each_page_is_resized_while_a_run_goes_on() {
     let words = words();
     let mut window = connected(Page::Procedures);
-    let mut realtime = window.app().settings().clone();
+    let mut realtime = window.app().settings.clone();
     realtime.unit.realtime = true;
     window = Window::connected(window.place, realtime);
     window.click(words.procedures.run);
     let steps = |window: &Window| {
-        let run = window.app().units().chosen().run.as_ref();
+        let run = window.app().units.chosen().run.as_ref();
         run.map_or(0, |run| run.counts().run())
     };
     window.until("a step", |window| steps(window) > 0);
@@ -177,7 +177,7 @@ fn each_page_is_resized_while_a_run_goes_on() {
             window.step();
             let found = complaints(&mut window).into_iter();
             wrong.extend(found.map(|found| format!("{page:?} {size:?}: {found}")));
-            let phase = window.app().units().chosen().phase();
+            let phase = window.app().units.chosen().phase();
             assert_eq!(phase, Phase::Running, "{page:?} {size:?}");
         }
     }
@@ -186,7 +186,7 @@ fn each_page_is_resized_while_a_run_goes_on() {
     window.until("another step", |window| steps(window) > before);
     window.key(Key::F12);
     window.until("the end of the run", |window| {
-        window.app().units().chosen().phase() == Phase::Idle
+        window.app().units.chosen().phase() == Phase::Idle
     });
     let shown = steps(&window);
     let run = latest(&window);
@@ -200,7 +200,7 @@ fn each_page_is_resized_while_a_run_goes_on() {
 fn two_windows_on_one_file_lose_nothing() {
     let words = words();
     let mut one = connected(Page::Faults);
-    let mut other = one.beside(one.app().settings().clone());
+    let mut other = one.beside(one.app().settings.clone());
     other.connect_simulated();
     let mut both = [&mut one, &mut other];
     for window in &mut both {
@@ -233,10 +233,10 @@ fn two_windows_on_one_file_lose_nothing() {
     let mut runs = BTreeSet::new();
     for window in &mut both {
         window.until("the run is stored", |window| {
-            let run = window.app().units().chosen().run.as_ref();
+            let run = window.app().units.chosen().run.as_ref();
             run.is_some_and(|run| run.id().is_some())
         });
-        let run = window.app().units().chosen().run.as_ref();
+        let run = window.app().units.chosen().run.as_ref();
         runs.insert(run.and_then(|run| run.id()).expect("just seen"));
     }
     assert_eq!(runs.len(), 2);

@@ -185,12 +185,12 @@ fn a_question_is_saved_by_name_and_asked_again() {
     window.until("only the relay", |window| {
         !window.shows_part("TWC antenna · ")
     });
-    let text = serde_json::to_string(window.app().settings()).expect("text");
+    let text = serde_json::to_string(&window.app().settings).expect("text");
     let kept: Settings = serde_json::from_str(&text).expect("settings");
     assert_eq!(kept.faults.len(), 1);
     window.click(said.questions);
     window.click_for(said.forget_question, said.question_name);
-    assert!(window.app().settings().faults.is_empty());
+    assert!(window.app().settings.faults.is_empty());
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn faults_for_each_10_000_km_are_those_of_the_command_line() {
             bar.starts_with(&of_month) && bar.contains(faults) && bar.ends_with(trains)
         });
         assert!(bar.is_some(), "{:#?}", window.shown());
-        assert_eq!(window.app().settings().distances, file);
+        assert_eq!(window.app().settings.distances, file);
 
         window
             .place

@@ -27,7 +27,7 @@ fn csv(window: &mut Window, save: &str, field: &str) -> (Vec<String>, Vec<Vec<St
     // A new name each time: the message about the last file is still shown.
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     let name = window.place.text_path(&format!("view-{count}"));
-    window.click_for(window.app().settings().language.words().traces.save, field);
+    window.click_for(window.app().settings.language.words().traces.save, field);
     clear(window, field);
     window.write(field, &name);
     window.click(save);

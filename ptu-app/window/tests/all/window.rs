@@ -17,7 +17,7 @@ fn realtime(page: Page) -> Settings {
 }
 
 fn running(window: &Window) -> bool {
-    window.app().units().chosen().phase() == Phase::Running
+    window.app().units.chosen().phase() == Phase::Running
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn a_note_is_written_on_while_the_conclusion_comes() {
         held.recv().expect("let go");
         Ok(())
     };
-    let held_up = window.app().queries().run(question);
+    let held_up = window.app().queries.run(question);
     window.click_for_part("Yes", "Run over: failed");
     window.write("note on this run", "relay K3 ");
     assert!(!window.shows_part("cannot tell: "));
@@ -180,7 +180,7 @@ fn a_run_is_paused_stepped_and_stopped_and_its_record_closed() {
     window.until("the run", running);
     window.click_for_part("Pause", "Paused before: ");
     let steps = |window: &Window| {
-        let run = window.app().units().chosen().run.as_ref();
+        let run = window.app().units.chosen().run.as_ref();
         run.map_or(0, |run| run.counts().run())
     };
     let before = steps(&window);
@@ -194,7 +194,7 @@ fn a_run_is_paused_stepped_and_stopped_and_its_record_closed() {
     assert_eq!(run["run"]["verdict"], "aborted");
     assert_eq!(run["run"]["state"], "finished");
     window.until("the unit live again", |window| {
-        window.app().units().chosen().phase() == Phase::Idle
+        window.app().units.chosen().phase() == Phase::Idle
     });
 }
 
@@ -203,7 +203,7 @@ fn stop_all_ends_a_run_with_its_clean_up_however_often_it_is_pressed() {
     let mut window = Window::connected(Place::new(), realtime(Page::Procedures));
     window.click("Run");
     window.until("a step", |window| {
-        let run = window.app().units().chosen().run.as_ref();
+        let run = window.app().units.chosen().run.as_ref();
         run.is_some_and(|run| run.counts().run() > 0)
     });
     for _ in 0..5 {
@@ -212,7 +212,7 @@ fn stop_all_ends_a_run_with_its_clean_up_however_often_it_is_pressed() {
     window.wait_for_part("Run over: aborted");
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "aborted");
-    let run = window.app().units().chosen().run.as_ref().expect("a run");
+    let run = window.app().units.chosen().run.as_ref().expect("a run");
     let messages = run
         .procedures
         .iter()
@@ -333,7 +333,7 @@ fn a_unit_that_starts_again_by_itself_is_said() {
     let mut window = Window::with(Place::new(), scripts(), settings);
     window.connect();
     window.wait_for_part("The unit was started again");
-    assert!(window.app().units().chosen().is_connected());
+    assert!(window.app().units.chosen().is_connected());
 }
 
 #[test]
@@ -353,7 +353,7 @@ fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
     place.write("history.db", "this is no database");
     let mut window = Window::connected(place, settings(Page::Procedures));
     window.click_for_part("Run", "The run was not begun");
-    assert!(window.app().units().chosen().is_connected());
+    assert!(window.app().units.chosen().is_connected());
     window.click("Noted");
     assert!(!window.shows_part("The run was not begun"));
 
@@ -370,7 +370,7 @@ fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
     let before = window.place.json("runs list --json");
     window.click("Run");
     window.until("one more run", |window| {
-        let run = window.app().units().chosen().run.as_ref();
+        let run = window.app().units.chosen().run.as_ref();
         run.is_some_and(|run| {
             run.id()
                 .is_some_and(|id| !before.to_string().contains(&id.to_string()))
@@ -387,7 +387,7 @@ fn a_window_closed_in_mid_run_closes_the_record_and_keeps_its_settings() {
     let mut window = Window::connected(Place::new(), settings);
     window.click("Run");
     window.until("the run", |window| {
-        let run = window.app().units().chosen().run.as_ref();
+        let run = window.app().units.chosen().run.as_ref();
         run.is_some_and(|run| run.present.is_some())
     });
     let root = ViewportId::ROOT;
@@ -398,7 +398,7 @@ fn a_window_closed_in_mid_run_closes_the_record_and_keeps_its_settings() {
         .events
         .push(ViewportEvent::Close);
     window.step();
-    window.until("the end", |window| window.app().is_closed());
+    window.until("the end", |window| window.app().closed);
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "aborted");
     assert_eq!(run["run"]["state"], "finished");
@@ -419,13 +419,13 @@ fn two_units_are_tested_side_by_side() {
     window.until("both", |window| {
         window
             .app()
-            .units()
+            .units
             .iter()
             .all(|unit| unit.phase() == Phase::Idle)
     });
     window.click("Run on all units");
     window.until("both runs", |window| {
-        let mut units = window.app().units().iter();
+        let mut units = window.app().units.iter();
         units.all(|unit| unit.run.as_ref().is_some_and(|run| run.id().is_some()))
     });
     let runs = window.place.json("runs list --json");

@@ -288,7 +288,7 @@ impl Window {
     /// Presses the key that connects the unit, once it is not.
     pub fn connect(&mut self) {
         self.until("a unit that is not connected", |window| {
-            window.app().units().chosen().phase() == Phase::Offline
+            window.app().units.chosen().phase() == Phase::Offline
         });
         self.key(Key::F9);
     }
@@ -306,7 +306,7 @@ impl Window {
 
     /// Chooses Korean in the menu.
     pub fn speak_korean(&mut self) {
-        let words = self.app().settings().language.words();
+        let words = self.app().settings.language.words();
         self.click(words.frame.menu);
         self.click("한국어");
         self.key(Key::Escape);
@@ -314,8 +314,8 @@ impl Window {
 
     /// Opens the dialog that sets the unit up.
     pub fn set_up(&mut self) {
-        let words = self.app().settings().language.words();
-        let choice = &self.app().units().chosen().choice;
+        let words = self.app().settings.language.words();
+        let choice = &self.app().units.chosen().choice;
         let name = match choice.is_simulated() {
             true => words.frame.simulated.to_owned(),
             false => choice.endpoint.clone(),

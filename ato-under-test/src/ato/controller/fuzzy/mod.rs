@@ -20,15 +20,11 @@ mod inference;
 
 use protocol::config::AtoConfig;
 
-use super::plausibility::PlausibilityCheck;
-use super::{ControllerInput, Demand, SpeedController};
-use crate::ato::profile::ReferenceGenerator;
+use super::{ControllerInput, Demand, ProfileFollower, SpeedController};
 
 #[derive(Clone, Debug)]
 pub struct Fuzzy {
-    generator: ReferenceGenerator,
-    plausibility: PlausibilityCheck,
-    feed_forward: bool,
+    follower: ProfileFollower,
     big_error_mps: f64,
     change_mps2: f64,
     force_n: f64,
@@ -40,9 +36,7 @@ impl Fuzzy {
     pub fn new(config: &AtoConfig) -> Self {
         let fuzzy = &config.fuzzy;
         Self {
-            generator: ReferenceGenerator::new(config),
-            plausibility: PlausibilityCheck::new(config),
-            feed_forward: config.profile.feed_forward,
+            follower: ProfileFollower::new(config),
             big_error_mps: fuzzy.big_error_mps,
             change_mps2: fuzzy.change_mps2,
             force_n: fuzzy.force_n,
@@ -53,29 +47,22 @@ impl Fuzzy {
 
 impl SpeedController for Fuzzy {
     fn step(&mut self, input: &ControllerInput) -> Demand {
-        if let Some(brake) = self.plausibility.brake(input) {
-            return brake;
-        }
-        let reference = self.generator.step(input.into());
+        let reference = match self.follower.reference(input) {
+            Ok(reference) => reference,
+            Err(brake) => return brake,
+        };
         let error = reference.setpoint.speed_mps - input.speed_mps;
         let change = reference.setpoint.accel_mps2 - input.accel_mps2;
         let share = inference::infer(error / self.big_error_mps, change / self.change_mps2);
-        let mut force_n = share * self.force_n * input.mass_kg / self.mass_kg;
-        if self.feed_forward || reference.stopping {
-            force_n += input.mass_kg * reference.setpoint.accel_mps2;
-        }
-        force_n = force_n.min(reference.most_mps2 * input.mass_kg);
-        Demand {
-            target_mps: reference.setpoint.speed_mps,
-            force_n,
-        }
+        let law_n = share * self.force_n * input.mass_kg / self.mass_kg;
+        self.follower.demand(&reference, input, law_n)
     }
 
     fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64 {
-        self.generator.slowing_m(from_mps, to_mps)
+        self.follower.generator.slowing_m(from_mps, to_mps)
     }
 
     fn reset(&mut self) {
-        self.generator.reset();
+        self.follower.generator.reset();
     }
 }

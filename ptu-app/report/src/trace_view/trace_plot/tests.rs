@@ -39,7 +39,7 @@ fn cursors_take_the_row_before_and_keep_it_over_distance() {
 #[test]
 fn the_same_rows_stay_in_view_over_distance() {
     let mut scene = scene();
-    scene.camera().show(-0.5, 0.5);
+    scene.camera.show(-0.5, 0.5);
     let rows = scene.rows_in_view();
     assert!(scene.set_axis(Kind::Distance));
     let again = scene.rows_in_view();
@@ -50,10 +50,10 @@ fn the_same_rows_stay_in_view_over_distance() {
 #[test]
 fn axes_are_as_long_as_the_trace_needs_or_what_is_in_view() {
     let mut scene = scene();
-    scene.camera().show(-0.5, 0.5);
+    scene.camera.show(-0.5, 0.5);
     let whole = scene.range(0);
     assert!(whole.0 < 0.0 && whole.1 > 99.0, "{whole:?}");
-    *scene.close() = true;
+    scene.close = true;
     let close = scene.range(0);
     assert!(close.0 > 20.0 && close.1 < 60.0, "{close:?}");
 }
@@ -97,7 +97,7 @@ fn only_quantities_of_one_unit_share_a_lane() {
     let scene = TracePlot::new(Arc::new(opened), &signals);
     assert_eq!(scene.groups(), [0..2, 2..3, 3..4]);
     assert_eq!(scene.signals(), signals);
-    assert_eq!(scene.lanes()[1].signal, "limit");
+    assert_eq!(scene.lanes[1].signal, "limit");
 }
 
 #[test]

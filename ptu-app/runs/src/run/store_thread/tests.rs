@@ -66,7 +66,7 @@ fn end(verdict: Verdict) -> RunEnd {
     }
 }
 
-/// A run that begins, with so much busy_timeout, and another program that holds its file from then on.
+/// A run that begins and waits so long for its file, and another program that holds the file from then on.
 fn held(folder: &std::path::Path, busy_timeout: BusyTimeout) -> (RunStore, Stop, Connection) {
     let file = folder.join("history.db");
     let options = OpenOptions::new(clock::ids()).busy_timeout_ms(1);
@@ -78,6 +78,15 @@ fn held(folder: &std::path::Path, busy_timeout: BusyTimeout) -> (RunStore, Stop,
     wait.expect("it waits for the writer");
     other.execute_batch("BEGIN EXCLUSIVE").expect("a lock");
     (run, stop, other)
+}
+
+/// The run has its two steps and its fault with its trace, and the file is whole.
+fn has_all_of_it(store: &Store, run: fault_db::Id) {
+    let found = store.run(run).expect("there");
+    assert_eq!((found.steps.len(), found.faults.len()), (2, 1));
+    assert_eq!(found.run.verdict, Some(Verdict::Error));
+    assert!(found.faults[0].trace_id.is_some());
+    assert_eq!(store.check().expect("checked").problems, []);
 }
 
 /// Goal: another program that holds the file for longer than it may when it is opened costs a run nothing.
@@ -119,11 +128,7 @@ fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
     other.execute_batch("ROLLBACK").expect("released");
     let (store, lost) = run.finish(end(Verdict::Error)).expect("recorded");
     assert!(lost.is_none(), "{lost:?}");
-    let found = store.run(id).expect("there");
-    assert_eq!((found.steps.len(), found.faults.len()), (2, 1));
-    assert_eq!(found.run.verdict, Some(Verdict::Error));
-    assert!(found.faults[0].trace_id.is_some());
-    assert_eq!(store.check().expect("checked").problems, []);
+    has_all_of_it(&store, id);
 }
 
 /// Goal: what a file that stays busy did not take is kept beside it, and an import brings the run together.
@@ -157,11 +162,7 @@ fn records_that_a_busy_database_refuses_can_be_imported_later() {
     let file = folder.path().join("history.db");
     let store = Store::open(&file, clock::open_options()).expect("free");
     store.import(&rest).expect("the rest");
-    let found = store.run(id).expect("there");
-    assert_eq!((found.steps.len(), found.faults.len()), (2, 1));
-    assert_eq!(found.run.verdict, Some(Verdict::Error));
-    assert!(found.faults[0].trace_id.is_some());
-    assert_eq!(store.check().expect("checked").problems, []);
+    has_all_of_it(&store, id);
 }
 
 /// Goal: what a killed program leaves is all that was finished a moment ago. Method: a run that goes on, as another

@@ -156,7 +156,7 @@ fn a_fault_between_two_procedures_is_recorded() {
     assert!(between_procedures(&mut session).is_empty());
     // Not taken by anybody, as while a window runs out.
     while session.now() < Instant::ZERO + SWITCHED_OFF + Duration::from_ms(21_000) {
-        session.bench().tick().expect("bench");
+        session.bench.tick().expect("bench");
     }
     let found = between_procedures(&mut session);
     let names: Vec<_> = found.iter().map(|fault| fault.name.as_str()).collect();

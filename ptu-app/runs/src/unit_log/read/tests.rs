@@ -46,7 +46,7 @@ fn codes(read: &LogRead) -> Vec<Option<Event>> {
 fn a_log_is_read_to_its_end_and_reading_adds_nothing_to_it() {
     let mut bench = bench(&[]);
     let mut now = bench.now();
-    let link = bench.bench().link_mut();
+    let link = &mut bench.bench.link;
     for _ in 0..1_000 {
         now += SCAN;
         link.exchange(now, &[], &mut Vec::new())
@@ -277,7 +277,7 @@ fn a_unit_that_does_not_answer_is_reported_with_the_reason() {
 fn the_log_of_all_power_ups_is_read() {
     let mut bench = bench(&["power_supply.dips"]);
     let mut now = bench.now();
-    let link = bench.bench().link_mut();
+    let link = &mut bench.bench.link;
     let log = (0..20).find_map(|_| {
         for _ in 0..6_000 {
             now += SCAN;

@@ -25,7 +25,7 @@ pub(super) enum Ride {
 impl Player<'_> {
     /// The wayside of a ride, and a driver who presses the start button.
     pub(super) fn go_on(&mut self, now: Instant) {
-        let truth = self.bench.rig().truth();
+        let truth = self.bench.rig.truth();
         let stands = truth.speed_mps.abs() < 0.05;
         let line = &self.setup.line.content;
         self.ride = match self.ride {

@@ -2,13 +2,13 @@
 
 mod work;
 
+use crate::request::FollowingResponse;
 use std::path::PathBuf;
 
 use eframe::egui::{Button, RichText, Ui};
 use fault_db::{Address, LastSync};
 
 use crate::parts::{Face, Job, Look, caption, dialog, last_row, path_edit, typed};
-use crate::request::{CachedResponse, Request};
 use crate::{PageContext, Palette};
 use ptu_report::words::fill;
 use ptu_runs::clock;
@@ -26,9 +26,7 @@ pub struct HistoryMaintenance {
     without_traces: bool,
     file: String,
     job: Job,
-    last: CachedResponse<Vec<LastSync>>,
-    /// Data whose last syncs are known.
-    asked: Option<(usize, u64)>,
+    last: FollowingResponse<(), Vec<LastSync>>,
 }
 
 impl HistoryMaintenance {
@@ -40,12 +38,16 @@ impl HistoryMaintenance {
     pub fn show(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         if self.job.poll(context, words.care.failed) {
-            self.asked = None;
+            self.last.read_again();
         }
         if !self.open {
             return;
         }
-        self.keep_up(context);
+        if context.only_reads().is_none() {
+            (self.last).keep_up(((), true), context, |paths, ()| {
+                Ok(paths.read()?.last_syncs()?)
+            });
+        }
         let mut closed = false;
         self.open = dialog(ui, "care", words.care.title, |ui| {
             self.contents(ui, context);
@@ -57,25 +59,12 @@ impl HistoryMaintenance {
         }) && !closed;
     }
 
-    fn keep_up(&mut self, context: &PageContext<'_>) {
-        if context.only_reads().is_some() {
-            return;
-        }
-        let wanted = Some(context.data_version());
-        if self.asked != wanted {
-            self.asked = wanted;
-            let last = context.queries.run(|paths| Ok(paths.read()?.last_syncs()?));
-            self.last.request(last);
-        }
-        self.last.poll();
-    }
-
     fn contents(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         if context.settings.locked {
             super::only_look(ui);
         }
-        let file = context.queries.paths().database.display().to_string();
+        let file = context.queries.paths.database.display().to_string();
         ui.horizontal_wrapped(|ui| {
             ui.label(RichText::new(words.care.file).color(Palette::of(ui).quiet));
             ui.label(file);
@@ -106,30 +95,20 @@ impl HistoryMaintenance {
 
     fn sync(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.care;
-        match self.last.get() {
-            Request::Ready(last) if last.is_empty() => {
-                ui.label(words.never_synced);
-            }
-            Request::Ready(last) => {
-                for sync in last {
-                    let at = clock::local(sync.at_us);
-                    let said = [
-                        ("at", &at as &dyn std::fmt::Display),
-                        ("server", &sync.server),
-                        ("n", &sync.waiting),
-                    ];
-                    ui.label(fill(words.last_synced, &said));
-                }
-            }
-            Request::Failed(why) => {
-                let why = context.words.trouble(why);
-                ui.label(RichText::new(&*why).color(Palette::of(ui).bad));
-            }
-            Request::Idle | Request::Pending(_) => {
-                ui.label(context.words.common.loading);
-            }
+        let last = self.last.get().shown(ui, context.words);
+        if last.is_some_and(Vec::is_empty) {
+            ui.label(words.never_synced);
         }
-        if let (false, Some(last)) = (self.proposed, self.last.get().value()) {
+        for sync in last.into_iter().flatten() {
+            let at = clock::local(sync.at_us);
+            let said = [
+                ("at", &at as &dyn std::fmt::Display),
+                ("server", &sync.server),
+                ("n", &sync.waiting),
+            ];
+            ui.label(fill(words.last_synced, &said));
+        }
+        if let (false, Some(last)) = (self.proposed, last) {
             // The address as typed: a stored address tells where the server is, not how this
             // computer reaches it.
             let latest = last.first().map(|sync| sync.server.clone());

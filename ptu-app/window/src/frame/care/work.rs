@@ -73,10 +73,7 @@ pub fn backup(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
         let head = Store::open_read_only(&file)?.head()?;
         let text = fill(words.care.backed_up, &[("file", &shown)]);
         let notes = head.map(|head| care::chain(&head, words));
-        Ok(done(Said {
-            text,
-            notes: notes.into_iter().collect(),
-        }))
+        Ok(Done::all(text, notes.into_iter().collect()))
     });
 }
 
@@ -105,10 +102,7 @@ fn stopped_by(told: &Told, store: Store) -> Result<Store, StoreError> {
 
 /// Work that was stopped before it had done anything that stays.
 fn stopped(words: &Words) -> Done {
-    done(Said {
-        text: words.care.nothing_done.to_owned(),
-        notes: Vec::new(),
-    })
+    Done::all(words.care.nothing_done.to_owned(), Vec::new())
 }
 
 /// An error about a file that was named here.
@@ -132,9 +126,5 @@ fn of_copy(error: StoreError) -> Failure {
 }
 
 fn done(said: Said) -> Done {
-    Done {
-        text: said.text,
-        notes: said.notes,
-        broken_off: None,
-    }
+    Done::all(said.text, said.notes)
 }

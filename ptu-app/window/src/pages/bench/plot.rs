@@ -9,14 +9,13 @@ use protocol::signal::Signal;
 
 use super::live::{framed, heading, put};
 use super::live_copy::BenchSnapshot;
-use super::rolling::{Lane, MOST, Rows, SPANS_S, chosen, lanes, window};
+use super::rolling::{Lane, MOST, Rows, SPANS_S, chosen, lanes};
 use super::text;
 use crate::Palette;
 use crate::parts::{find_edit, lane};
-use ptu_report::naming;
-use ptu_report::ticks;
 use ptu_report::trace_view::{Column, Span, Window, columns, spans};
 use ptu_report::words::{Words, fill};
+use ptu_report::{naming, ticks};
 use ptu_runs::bench_worker::BenchWorker;
 
 /// Left of the curves: names with values, and the scale's numbers.
@@ -150,7 +149,8 @@ impl Plot {
     }
 
     fn paint(&mut self, sheet: &Sheet<'_>) {
-        let window = window(f64::from(self.span_s));
+        let (from, to) = (-f64::from(self.span_s), 0.0);
+        let window = Window { from, to };
         let lanes = lanes(sheet.signals);
         let (painter, palette) = (&sheet.painter, sheet.palette);
         let curves = sheet

@@ -2,7 +2,6 @@
 
 use protocol::signal::{Kind, Signal};
 
-use ptu_report::trace_view::Window;
 use ptu_runs::bench_worker::LiveData;
 
 /// Times that can be chosen, s.
@@ -69,7 +68,7 @@ impl Rows {
         self.values.iter_mut().for_each(Vec::clear);
         let before_s = |at: protocol::Instant| -live.now.since(at).as_secs();
         // One row beyond the left edge: its values hold until the next.
-        let rows = live.rows.rows();
+        let rows = &live.rows.rows;
         let first = rows.partition_point(|row| before_s(row.at) < -span_s);
         for row in rows.range(first.saturating_sub(1)..) {
             self.times_s.push(before_s(row.at));
@@ -91,14 +90,6 @@ impl Rows {
     pub fn samples(&self, place: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
         let values = self.values.get(place).map_or(&[][..], Vec::as_slice);
         self.times_s.iter().copied().zip(values.iter().copied())
-    }
-}
-
-/// The window of the last `span_s`.
-pub fn window(span_s: f64) -> Window {
-    Window {
-        from: -span_s,
-        to: 0.0,
     }
 }
 

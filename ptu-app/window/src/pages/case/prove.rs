@@ -206,7 +206,7 @@ impl Sign {
                 ui.end_row();
             }
             ui.label(words.case.key);
-            let folder = &context.queries.paths().keys;
+            let folder = &context.queries.paths.keys;
             let keys = self.keys.get_or_insert_with(|| keys::all_in(folder));
             let stem = |(key, _): &(PathBuf, String)| key.file_stem().map(OsStr::to_os_string);
             let name = |key: &Option<(PathBuf, String)>| match key.as_ref().and_then(stem) {

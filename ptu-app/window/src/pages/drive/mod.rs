@@ -3,20 +3,21 @@
 
 mod form;
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
+use eframe::egui::{CentralPanel, ScrollArea, Ui};
 use egui_material_icons::icons::ICON_TRAIN;
 
+use crate::PageContext;
 use crate::parts::{Done, Face, Job, Look, empty, foot, form, show_sheet};
 use crate::request::Request;
-use crate::{PageContext, Palette};
 use form::{Form, Offered};
 use ptu_report::drive::Results;
 use ptu_report::run::page::{Page, pages};
 use ptu_report::words::{Language, fill};
 use ptu_runs::drive::{Driven, drive_all};
 use ptu_runs::pool::cores;
+use ptu_runs::pool::held;
 
 /// Where the thread that drives puts what was driven.
 type Slot = Arc<Mutex<Option<Vec<Driven>>>>;
@@ -47,16 +48,11 @@ impl DrivePage {
                 return;
             }
             self.job.result(ui);
-            match &self.pages {
-                Request::Ready(pages) => show_sheet(ui, ("drive", self.number), pages),
-                Request::Failed(why) => {
-                    ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
-                }
-                Request::Pending(_) => drop(ui.label(words.common.loading)),
-                Request::Idle => {
-                    let missing = (words.drive.nothing, words.drive.explained);
-                    empty(ui, ICON_TRAIN, missing, None);
-                }
+            if self.pages.is_idle() {
+                let missing = (words.drive.nothing, words.drive.explained);
+                empty(ui, ICON_TRAIN, missing, None);
+            } else if let Some(pages) = self.pages.shown(ui, words) {
+                show_sheet(ui, ("drive", self.number), pages);
             }
         });
     }
@@ -65,26 +61,18 @@ impl DrivePage {
     fn form(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> bool {
         let words = context.words;
         let why_not = self.job.is_under_way().then_some(words.drive.under_way);
-        match &self.offered {
-            Request::Ready(offered) => {
-                let begin = Face::new(Look::Primary, words.drive.drive).off(why_not);
-                let asked = foot(ui, "begin to drive", |ui| begin.show(ui).clicked());
-                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                    ui.add_enabled_ui(why_not.is_none(), |ui| self.form.show(ui, words, offered));
-                });
-                return asked;
+        let Request::Ready(offered) = &self.offered else {
+            if (self.offered).missing(ui, words, words.drive.cannot_list) {
+                self.offered = Request::Idle;
             }
-            Request::Failed(why) => {
-                let said = RichText::new(words.drive.cannot_list).color(Palette::of(ui).bad);
-                ui.label(said.strong());
-                ui.label(&*words.trouble(why));
-                if ui.button(words.common.refresh).clicked() {
-                    self.offered = Request::Idle;
-                }
-            }
-            Request::Idle | Request::Pending(_) => drop(ui.label(words.common.loading)),
-        }
-        false
+            return false;
+        };
+        let begin = Face::new(Look::Primary, words.drive.drive).off(why_not);
+        let asked = foot(ui, "begin to drive", |ui| begin.show(ui).clicked());
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.add_enabled_ui(why_not.is_none(), |ui| self.form.show(ui, words, offered));
+        });
+        asked
     }
 
     /// Takes what has come, and has it laid out in the window's language.
@@ -94,7 +82,7 @@ impl DrivePage {
         }
         self.offered.poll();
         if self.job.poll(context, context.words.drive.cannot_drive) {
-            let mut driven = self.driven.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut driven = held(&self.driven);
             let runs = driven.take().filter(|runs| !runs.is_empty());
             self.sheet = runs.map(|runs| Arc::new(Results::of_runs(runs)));
             (self.pages, self.language) = (Request::Idle, None);
@@ -129,12 +117,8 @@ impl DrivePage {
                 true => so_far(words.drive.stopped, runs.len()),
                 false => String::new(),
             };
-            *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(runs);
-            Ok(Done {
-                text,
-                notes: Vec::new(),
-                broken_off: None,
-            })
+            *held(&slot) = Some(runs);
+            Ok(Done::all(text, Vec::new()))
         });
     }
 }

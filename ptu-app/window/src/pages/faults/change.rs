@@ -39,29 +39,17 @@ pub struct Change {
 impl Change {
     /// The fault a change of which has just been stored.
     pub fn poll(&mut self, context: &mut PageContext<'_>) -> Option<Id> {
-        if !self.under_way.poll() {
-            return None;
+        let words = &context.words.faults;
+        let changed = self.under_way.take(words.not_changed, context.messages)?;
+        let said = fill(words.recorded, &[("what", &self.what)]);
+        match std::mem::take(&mut self.takes_back) {
+            true => context.messages.note(said),
+            false => context.messages.note_written(said, changed),
         }
-        match std::mem::take(&mut self.under_way) {
-            Request::Failed(why) => {
-                context
-                    .messages
-                    .trouble(context.words.faults.not_changed, why.clone());
-                None
-            }
-            Request::Ready(changed) => {
-                let said = fill(context.words.faults.recorded, &[("what", &self.what)]);
-                match std::mem::take(&mut self.takes_back) {
-                    true => context.messages.note(said),
-                    false => context.messages.note_written(said, changed),
-                }
-                if self.of == Some(changed.fault) {
-                    (self.note, self.asked) = Default::default();
-                }
-                Some(changed.fault)
-            }
-            Request::Idle | Request::Pending(_) => None,
+        if self.of == Some(changed.fault) {
+            (self.note, self.asked) = Default::default();
         }
+        Some(changed.fault)
     }
 
     /// Shows the changes that the fault's state allows; none while that state is being read again, and none of a

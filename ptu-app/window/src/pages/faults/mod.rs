@@ -13,12 +13,10 @@ use fault_db::{FaultDetail, FaultFilter, FaultState, FaultSummary, Id};
 use crate::page_context::FaultsOf;
 use crate::parts::look_back::since_us;
 use crate::parts::{
-    Face, Look, MemoryReader, SavedSaid, UnitFilter, dialog_is_open, names, saved_questions,
+    Face, Look, MemoryReader, SavedSaid, Stored, UnitFilter, dialog_is_open, names, saved_questions,
 };
-use crate::query_worker::Pending;
-use crate::request::CachedResponse;
-use crate::request::Request;
-use crate::{PageContext, Palette};
+use crate::request::FollowingResponse;
+use crate::{DataPaths, PageContext, Palette};
 use change::Change;
 use filter::Filter;
 use ptu_report::naming::PartNames;
@@ -42,11 +40,10 @@ pub struct FaultsPage {
     /// Name for a question, as it is typed.
     question: String,
     units: UnitFilter,
-    history: CachedResponse<History>,
-    /// Days and data version of the last query.
-    asked: Option<(Option<i64>, (usize, u64))>,
+    /// The faults of so many days.
+    history: FollowingResponse<Option<i64>, History>,
     chosen: Option<Id>,
-    detail: CachedResponse<FaultDetail>,
+    detail: FollowingResponse<Id, FaultDetail>,
     change: Change,
     /// The detail is being read again because of a change made here: what was offered before may no longer be.
     changed_here: bool,
@@ -82,13 +79,11 @@ impl FaultsPage {
         let list = UiBuilder::new().max_rect(list).id_salt("faults");
         let clicked = ui.scope_builder(list, |ui| self.list(ui, context));
         if let Some(id) = clicked.inner {
-            self.open(id, context);
+            self.open(id);
         }
     }
-
-    pub fn open(&mut self, id: Id, context: &mut PageContext<'_>) {
+    pub fn open(&mut self, id: Id) {
         self.chosen = Some(id);
-        self.detail.request_other(detail_of(id, context));
     }
 
     /// Shows the faults that a bar of the statistics stands for.
@@ -103,100 +98,75 @@ impl FaultsPage {
 
     /// Asks again when the data or the span are others.
     fn keep_up(&mut self, context: &mut PageContext<'_>) {
-        let wanted = (self.filter.days, context.data_version());
-        if self.asked != Some(wanted) {
-            if let Some((_, version)) = self.asked.replace(wanted)
-                && version != wanted.1
-            {
-                self.reread(context);
-            }
-            let since_us = since_us(self.filter.days, clock::now_us()).unwrap_or_default();
-            self.history.request(context.queries.run(move |paths| {
-                let store = paths.read()?;
-                let filter = FaultFilter {
-                    since_us: Some(since_us),
-                    limit: Some(MOST),
-                    ..FaultFilter::default()
-                };
-                Ok(History {
-                    faults: store.faults(&filter)?,
-                    parts: PartNames::of(&paths.scripts),
-                })
-            }));
+        let days = (self.filter.days, true);
+        self.history.keep_up(days, context, |paths, days| {
+            let since_us = since_us(days, clock::now_us()).unwrap_or_default();
+            let filter = FaultFilter {
+                since_us: Some(since_us),
+                limit: Some(MOST),
+                ..FaultFilter::default()
+            };
+            Ok(History {
+                faults: paths.read()?.faults(&filter)?,
+                parts: PartNames::of(&paths.scripts),
+            })
+        });
+        if let Some(id) = self.chosen {
+            let read = |paths: &DataPaths, id| Ok(paths.read()?.fault(id)?);
+            self.detail.keep_up((id, false), context, read);
         }
-        self.history.poll();
-        self.detail.poll();
         self.changed_here &= self.detail.is_stale();
     }
 
     /// Takes what has been stored, whatever page is in front.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         if let Some(changed) = self.change.poll(context) {
-            self.asked = None;
+            self.history.read_again();
             if self.chosen == Some(changed) {
                 self.changed_here = true;
-                self.reread(context);
+                self.detail.read_again();
             }
-        }
-    }
-
-    fn reread(&mut self, context: &PageContext<'_>) {
-        if let Some(id) = self.chosen {
-            self.detail.request(detail_of(id, context));
         }
     }
 
     fn list(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) -> Option<Id> {
         let words = context.words;
-        match self.history.get() {
-            Request::Ready(history) => {
-                let mut is_read = false;
-                let shown = ui.horizontal_wrapped(|ui| {
-                    list::filters(ui, words, &mut self.filter, history);
-                    let units = history.faults.iter().map(|fault| &*fault.unit_serial);
-                    self.units.show(ui, context, &names(units));
-                    let saved = (&mut context.settings.faults, &mut self.question);
-                    let now = self.filter.question(self.units.taken());
-                    if let Some(asked) =
-                        saved_questions(ui, &SavedSaid::questions(words), saved, &now)
-                    {
-                        self.units.choose(asked.unit.clone());
-                        self.filter = Filter::asked(asked);
-                    }
-                    is_read = self.unit_log.show(ui, context);
-                    list::of_bar(ui, words, &mut self.filter, &history.parts);
-                    let all = history.faults.iter();
-                    let (filter, units) = (&self.filter, &self.units);
-                    let takes = |fault: &&FaultSummary| {
-                        filter.takes(fault) && units.takes(&fault.unit_serial)
-                    };
-                    let shown: Vec<_> = all.filter(takes).collect();
-                    let count: [(&str, &dyn std::fmt::Display); 2] =
-                        [("n", &shown.len()), ("of", &history.faults.len())];
-                    let count = fill(words.faults.shown, &count);
-                    let count = RichText::new(count).color(Palette::of(ui).quiet);
-                    ui.add(Label::new(count).extend());
-                    shown
-                });
-                if is_read {
-                    self.asked = None;
-                }
-                list::table(ui, words, &shown.inner, &history.parts, self.chosen)
+        let Some(history) = self.history.get().value() else {
+            if (self.history.get()).missing(ui, words, words.faults.not_read) {
+                self.history.read_again();
             }
-            Request::Failed(why) => {
-                let said = RichText::new(words.faults.not_read).color(Palette::of(ui).bad);
-                ui.label(said.strong());
-                ui.label(&*words.trouble(why));
-                if ui.button(words.common.refresh).clicked() {
-                    self.asked = None;
-                }
-                None
+            return None;
+        };
+        let mut is_read = false;
+        let shown = ui.horizontal_wrapped(|ui| {
+            list::filters(ui, words, &mut self.filter, history);
+            let units = history.faults.iter().map(|fault| &*fault.unit_serial);
+            self.units.show(ui, context, &names(units));
+            let saved = (&mut context.settings.faults, &mut self.question);
+            let now = self.filter.question(self.units.taken.as_deref());
+            if let Some(asked) = saved_questions(ui, &SavedSaid::questions(words), saved, &now) {
+                self.units.choose(asked.unit.clone());
+                self.filter = Filter::asked(asked);
             }
-            Request::Idle | Request::Pending(_) => {
-                ui.label(words.common.loading);
-                None
-            }
+            is_read = self.unit_log.show(ui, Stored::Log, context);
+            list::of_bar(ui, words, &mut self.filter, &history.parts);
+            let all = history.faults.iter();
+            let (filter, units) = (&self.filter, &self.units);
+            let takes =
+                |fault: &&FaultSummary| filter.takes(fault) && units.takes(&fault.unit_serial);
+            let shown: Vec<_> = all.filter(takes).collect();
+            let count: [(&str, &dyn std::fmt::Display); 2] =
+                [("n", &shown.len()), ("of", &history.faults.len())];
+            let count = fill(words.faults.shown, &count);
+            let count = RichText::new(count).color(Palette::of(ui).quiet);
+            ui.add(Label::new(count).extend());
+            shown
+        });
+        let clicked = list::table(ui, words, &shown.inner, &history.parts, self.chosen);
+        if is_read {
+            self.history.read_again();
         }
+        clicked
     }
 
     fn chosen(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
@@ -208,32 +178,24 @@ impl FaultsPage {
             .get()
             .value()
             .map_or(&none, |known| &known.parts);
-        match self.detail.get() {
-            Request::Ready(detail) => {
-                let seen_since = self.history.get().value().is_some_and(|known| {
-                    known
-                        .faults
-                        .iter()
-                        .any(|other| takes_its_place(other, &detail.fault))
-                });
-                let stands = (stale, seen_since);
-                let foot = Panel::bottom("changes of a fault").resizable(false);
-                foot.show(ui, |ui| {
-                    self.change.show(ui, context, (detail, parts), stands)
-                });
-                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                    detail::head(ui, (context.words, parts), detail, context.go_to);
-                    detail::rest(ui, (context.words, parts), detail, context.go_to);
-                });
-            }
-            Request::Failed(why) => {
-                let why = context.words.trouble(why);
-                ui.label(RichText::new(&*why).color(Palette::of(ui).bad));
-            }
-            Request::Idle | Request::Pending(_) => {
-                ui.label(context.words.common.loading);
-            }
-        }
+        let Some(detail) = self.detail.get().shown(ui, context.words) else {
+            return;
+        };
+        let seen_since = self.history.get().value().is_some_and(|known| {
+            known
+                .faults
+                .iter()
+                .any(|other| takes_its_place(other, &detail.fault))
+        });
+        let stands = (stale, seen_since);
+        let foot = Panel::bottom("changes of a fault").resizable(false);
+        foot.show(ui, |ui| {
+            self.change.show(ui, context, (detail, parts), stands)
+        });
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            detail::head(ui, (context.words, parts), detail, context.go_to);
+            detail::rest(ui, (context.words, parts), detail, context.go_to);
+        });
     }
 }
 
@@ -241,10 +203,4 @@ impl FaultsPage {
 fn takes_its_place(other: &FaultSummary, closed: &FaultSummary) -> bool {
     let of = |fault: &FaultSummary| (fault.unit_serial.clone(), fault.code, fault.lru.clone());
     other.state != FaultState::Closed && of(other) == of(closed)
-}
-
-fn detail_of(id: Id, context: &PageContext<'_>) -> Pending<FaultDetail> {
-    context
-        .queries
-        .run(move |paths| Ok(paths.read()?.fault(id)?))
 }

@@ -31,7 +31,7 @@ use ptu_runs::run::{BenchChoice, Suite};
 use results::ResultsView;
 pub use results::measurements;
 use selection::Selection;
-use wanted::Wanted;
+pub use wanted::Wanted;
 
 /// Least height of the live signals, points.
 const LIVE_LEAST: f32 = 140.0;
@@ -42,6 +42,7 @@ const RUN_LEAST: f32 = 120.0;
 /// Share of the page that they take until the divider is dragged.
 const LIVE_SHARE: f32 = 0.3;
 
+#[derive(Default)]
 pub struct ProceduresPage {
     suite: Request<Arc<Suite>>,
     /// Choice for which the suite was loaded.
@@ -50,8 +51,8 @@ pub struct ProceduresPage {
     selection: Option<Selection>,
     parts: Request<PartNames>,
     find: String,
-    repeat: u32,
-    stop_on_fail: bool,
+    /// How what is chosen here is run.
+    how: RunSettings,
     orders: Vec<PendingOrder>,
     /// Times everything had been stopped when these were looked at last.
     stops: u64,
@@ -74,29 +75,6 @@ struct PendingOrder {
     /// The run belongs to the unit's case.
     of_case: bool,
     order: Request<Prepared>,
-}
-
-impl Default for ProceduresPage {
-    fn default() -> Self {
-        Self {
-            suite: Request::Idle,
-            loaded_for: None,
-            selection: None,
-            parts: Request::Idle,
-            find: String::new(),
-            repeat: 1,
-            stop_on_fail: false,
-            orders: Vec::new(),
-            stops: 0,
-            wanted: None,
-            shown: ResultsView::default(),
-            conclusion: Request::Idle,
-            concluded: None,
-            traced: Request::Idle,
-            note: RunNoteForm::default(),
-            plot: Plot::default(),
-        }
-    }
 }
 
 impl ProceduresPage {
@@ -201,9 +179,9 @@ impl ProceduresPage {
 
     /// Takes what has come, whatever page is in front.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
-        if self.stops != context.units.stops() || context.settings.locked {
+        if self.stops != context.units.stops || context.settings.locked {
             // Nothing begins by itself after everything was stopped, nor while no name has been given.
-            self.stops = context.units.stops();
+            self.stops = context.units.stops;
             self.orders.clear();
             self.wanted = None;
         }
@@ -231,14 +209,11 @@ impl ProceduresPage {
     }
 
     fn order(&mut self, unit: u64, adaptive: bool, context: &mut PageContext<'_>) {
-        let how = RunSettings {
-            operator: context.settings.operator.clone(),
-            repeat: if adaptive { 1 } else { self.repeat },
-            stop_on_fail: !adaptive && self.stop_on_fail,
+        let search = RunSettings {
             adaptive,
-            symptom: None,
-            continues: None,
+            ..RunSettings::default()
         };
+        let how = if adaptive { search } else { self.how.clone() };
         let connection = context.units.of_id(unit).map(|unit| unit.connection());
         if let Some(connection) = connection {
             let selection = self.chosen(connection);
@@ -251,9 +226,10 @@ impl ProceduresPage {
         &mut self,
         (id, of_case): (u64, bool),
         selection: Selection,
-        how: RunSettings,
+        mut how: RunSettings,
         context: &mut PageContext<'_>,
     ) {
+        how.operator.clone_from(&context.settings.operator);
         let (Some(suite), Some(loaded_for)) = (self.suite.value(), &self.loaded_for) else {
             return;
         };

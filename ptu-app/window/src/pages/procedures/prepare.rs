@@ -26,6 +26,19 @@ pub struct RunSettings {
     pub continues: Option<fault_db::Id>,
 }
 
+impl Default for RunSettings {
+    fn default() -> Self {
+        Self {
+            operator: String::new(),
+            repeat: 1,
+            stop_on_fail: false,
+            adaptive: false,
+            symptom: None,
+            continues: None,
+        }
+    }
+}
+
 /// Evaluates the scripts as they are on the disk now, for this unit.
 ///
 /// # Errors
@@ -158,23 +171,8 @@ mod tests {
 
     fn prepared(paths: &DataPaths, choice: &BenchChoice, shown: &ShownSuite) -> Prepared {
         let selection = Selection::usual(&shown.suite.procedures, choice.connection());
-        let how = RunSettings {
-            operator: String::new(),
-            repeat: 1,
-            stop_on_fail: false,
-            adaptive: false,
-            symptom: None,
-            continues: None,
-        };
-        order(
-            paths,
-            choice,
-            ("SIM-0001", choice.connection()),
-            &selection,
-            how,
-            shown,
-        )
-        .expect("prepared")
+        let (how, unit) = (RunSettings::default(), ("SIM-0001", choice.connection()));
+        order(paths, choice, unit, &selection, how, shown).expect("prepared")
     }
 
     /// Goal: what was shown is what is run. Method: an order from unchanged files, then from each kind of file

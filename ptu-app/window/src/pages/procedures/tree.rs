@@ -53,16 +53,8 @@ impl ProceduresPage {
         if choice == Some(Choice::Reload) {
             self.load(context);
         }
-        let suite = match &self.suite {
-            Request::Ready(suite) => suite,
-            Request::Failed(why) => {
-                ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
-                return;
-            }
-            Request::Idle | Request::Pending(_) => {
-                ui.label(words.common.loading);
-                return;
-            }
+        let Some(suite) = self.suite.shown(ui, words) else {
+            return;
         };
         let connection = context.units.chosen().connection();
         let before = self.chosen(connection);

@@ -11,7 +11,7 @@ use ptu_report::words::fill;
 use ptu_runs::symptoms::Symptom;
 
 /// Run that another page asks for.
-pub(super) enum Wanted {
+pub enum Wanted {
     Step {
         procedure: String,
         step: String,
@@ -53,31 +53,6 @@ impl ProceduresPage {
         }
     }
 
-    /// Finds the faulty part of the chosen unit, which was brought with this symptom.
-    pub fn find_part(
-        &mut self,
-        symptom: Option<Symptom>,
-        adaptive: bool,
-        context: &mut PageContext<'_>,
-    ) {
-        self.want(Wanted::Part { symptom, adaptive }, context);
-    }
-
-    /// Runs these procedures on the chosen unit, and those that suspect this part.
-    pub fn prove(
-        &mut self,
-        procedures: BTreeSet<String>,
-        part: String,
-        context: &mut PageContext<'_>,
-    ) {
-        self.want(Wanted::Prove { procedures, part }, context);
-    }
-
-    /// Runs what the chosen unit's run left when its link was lost.
-    pub fn go_on(&mut self, context: &mut PageContext<'_>) {
-        self.want(Wanted::Rest, context);
-    }
-
     /// The scripts are those of the run that broke off.
     pub fn goes_on(&self, context: &PageContext<'_>) -> bool {
         let suite = self.suite.value();
@@ -88,7 +63,8 @@ impl ProceduresPage {
         same.unwrap_or_default()
     }
 
-    fn want(&mut self, wanted: Wanted, context: &mut PageContext<'_>) {
+    /// Runs this on the chosen unit.
+    pub fn want(&mut self, wanted: Wanted, context: &mut PageContext<'_>) {
         self.wanted = Some((wanted, context.units.chosen().id));
         self.keep_loaded(context);
     }
@@ -105,7 +81,7 @@ impl ProceduresPage {
             return;
         };
         let connection = of.connection();
-        let same = of.waiting_run().filter(|_| !of.is_other());
+        let same = of.waiting_run().filter(|_| !of.is_other);
         let rest = same.map(|(run, _)| (Selection::rest(run), run.id()));
         if let Wanted::Rest = wanted
             && rest.is_some()
@@ -114,15 +90,8 @@ impl ProceduresPage {
             self.wanted = Some((wanted, unit));
             return;
         }
-        let was_of_case = of.is_run_of_case();
-        let mut how = RunSettings {
-            operator: context.settings.operator.clone(),
-            repeat: 1,
-            stop_on_fail: false,
-            adaptive: false,
-            symptom: None,
-            continues: None,
-        };
+        let was_of_case = of.is_run_of_case;
+        let mut how = RunSettings::default();
         let all = &suite.procedures;
         let of_case = match &wanted {
             Wanted::Step { .. } => false,

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use eframe::egui::{CentralPanel, RichText, Ui};
 use egui_material_icons::icons::ICON_DESCRIPTION;
-use fault_db::{Id, RunDetail, RunOccurrence, RunSummary};
+use fault_db::{Id, RunDetail};
 
 use crate::parts::{NoteOn, RunList, RunNoteForm, Side, empty, show_sheet};
 use crate::request::Request;
@@ -17,7 +17,7 @@ use compare::ComparedWith;
 use ptu_report::naming::PartNames;
 use ptu_report::run::page::{Page, pages};
 use ptu_report::run::{CaseSheet, RunComparison, Sheet, SheetTrace};
-use ptu_report::words::{Language, Words, fill};
+use ptu_report::words::{Language, fill};
 
 #[derive(Default)]
 pub struct ReportPage {
@@ -149,16 +149,20 @@ impl ReportPage {
             let shown = |pages, run: &RunDetail, traces: Option<&[SheetTrace]>| {
                 let seen = store.run_occurrences(run.run.id)?;
                 let parts = PartNames::of(scripts);
-                let traces = traces.unwrap_or_default().iter().map(|trace| trace.id);
-                let traces = traces.collect();
-                Ok(Shown::new(
+                let shows = |trace: Id| {
+                    let shown = seen.iter().filter(|seen| seen.trace_id == Some(trace));
+                    let said = shown
+                        .map(|seen| parts.fault(&seen.lru, (&seen.findings, &seen.message), words));
+                    said.collect::<Vec<_>>().join("; ")
+                };
+                let traces = traces.unwrap_or_default().iter();
+                let run = &run.run;
+                Ok(Shown {
                     of,
                     pages,
-                    &run.run,
-                    traces,
-                    (&seen, &parts),
-                    words,
-                ))
+                    traces: traces.map(|trace| (trace.id, shows(trace.id))).collect(),
+                    faulty: run.recorded.not_passed() + run.recorded.outside > 0 || run.faults > 0,
+                })
             };
             match of {
                 SheetOf::Run(run) => {
@@ -204,19 +208,11 @@ impl ReportPage {
                 other => self.asked = other,
             }
         }
-        if self.writing.poll() {
-            match std::mem::take(&mut self.writing) {
-                Request::Ready(path) => {
-                    let file = path.display();
-                    let said = fill(context.words.report.written, &[("file", &file)]);
-                    context.messages.note(said);
-                    self.written = Some(path);
-                }
-                Request::Failed(why) => context
-                    .messages
-                    .trouble(context.words.report.not_written, why.clone()),
-                Request::Idle | Request::Pending(_) => {}
-            }
+        let words = &context.words.report;
+        if let Some(path) = self.writing.take(words.not_written, context.messages) {
+            let said = fill(words.written, &[("file", &path.display())]);
+            context.messages.note(said);
+            self.written = Some(path);
         }
         if let Some(noted) = self.note.poll(context.words, context.messages)
             && self.run().map(NoteOn::Run) == Some(noted)
@@ -241,33 +237,6 @@ impl ReportPage {
                 let missing = (words.report.choose_run, "");
                 empty(ui, ICON_DESCRIPTION, missing, None);
             }
-        }
-    }
-}
-
-impl Shown {
-    fn new(
-        of: SheetOf,
-        pages: Vec<Page>,
-        run: &RunSummary,
-        traces: Vec<Id>,
-        (seen, parts): (&[RunOccurrence], &PartNames),
-        words: &Words,
-    ) -> Self {
-        let shows = |trace: Id| {
-            let shown = seen.iter().filter(|seen| seen.trace_id == Some(trace));
-            let said =
-                shown.map(|seen| parts.fault(&seen.lru, (&seen.findings, &seen.message), words));
-            said.collect::<Vec<_>>().join("; ")
-        };
-        Self {
-            of,
-            pages,
-            traces: traces
-                .into_iter()
-                .map(|trace| (trace, shows(trace)))
-                .collect(),
-            faulty: run.recorded.not_passed() + run.recorded.outside > 0 || run.faults > 0,
         }
     }
 }

@@ -4,18 +4,19 @@ mod generator;
 mod seen;
 mod source;
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use eframe::egui::{CentralPanel, RichText, ScrollArea, Ui};
+use eframe::egui::{CentralPanel, ScrollArea, Ui};
 
+use crate::PageContext;
 use crate::pages::signals::generator::Generator;
 use crate::pages::signals::seen::{Seen, View};
 use crate::pages::signals::source::Source;
 use crate::parts::{Job, foot, form, segments};
 use crate::request::Request;
-use crate::{PageContext, Palette};
 use protocol::config::UnitConfig;
 use ptu_runs::failure::Trouble;
+use ptu_runs::pool::held;
 use ptu_runs::sound::{self, DeviceFound};
 
 /// Where a thread that reads or records puts how it looks now.
@@ -70,8 +71,7 @@ impl SignalsPage {
         }
         self.offered.poll();
         self.job.poll(context, context.words.signals.not_done);
-        let seen = self.seen.lock();
-        if let Some(seen) = seen.unwrap_or_else(PoisonError::into_inner).take() {
+        if let Some(seen) = held(&self.seen).take() {
             self.view.take(seen);
         }
     }
@@ -79,19 +79,11 @@ impl SignalsPage {
     /// Form of the file, the devices and the waveform; its main button stands at the foot.
     fn form(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
-        let offered = match &self.offered {
-            Request::Ready(offered) => offered,
-            Request::Failed(why) => {
-                ui.label(RichText::new(&*words.trouble(why)).color(Palette::of(ui).bad));
-                if ui.button(words.common.refresh).clicked() {
-                    self.offered = Request::Idle;
-                }
-                return;
+        let Request::Ready(offered) = &self.offered else {
+            if (self.offered).missing(ui, words, words.signals.not_done) {
+                self.offered = Request::Idle;
             }
-            Request::Idle | Request::Pending(_) => {
-                ui.label(words.common.loading);
-                return;
-            }
+            return;
         };
         let unit = offered.unit.clone();
         let why_not = match (self.job.is_under_way(), context.settings.locked) {

@@ -1,7 +1,7 @@
 //! Sources to open, record, save or play: a file, a device, and the work on them.
 
 use std::path::PathBuf;
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 
 use eframe::egui::{RichText, Ui};
 use protocol::config::UnitConfig;
@@ -9,12 +9,13 @@ use protocol::config::UnitConfig;
 use super::Slot;
 use super::generator::{GeneratedSignal, Order};
 use super::seen::Seen;
-use crate::parts::{Done, Face, Job, Look, Told, caption, file_place, pick, usual_folder};
+use crate::parts::{Done, Face, Job, Look, caption, file_place, pick, usual_folder};
 use crate::{PageContext, Palette};
 use ptu_options::sound_file;
 use ptu_report::words::{Words, fill};
 use ptu_runs::failure::Trouble;
 use ptu_runs::new_file::free_beside;
+use ptu_runs::pool::held;
 use ptu_runs::signal::{self, FULL_SCALE_MV, Receivers};
 use ptu_runs::sound::{
     self, CHANNELS, Calibrations, DeviceFound, Direction, Lead, SAMPLE_HZ, Side,
@@ -112,14 +113,15 @@ impl Source {
         let (file, device) = (PathBuf::from(self.file.trim()), self.input.clone());
         let told = (words.common.loading.to_owned(), words.signals.not_done);
         job.begin(context, told, move |_, told| {
-            let show = |seen: Seen, told: &Told| {
-                *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(seen);
-                told.say(String::new());
+            let show = |(reading, pictures), how_far: String| {
+                let seen = Seen { reading, pictures };
+                *held(&slot) = Some(seen);
+                told.say(how_far);
             };
             if asked == Asked::Open {
-                let (reading, pictures) = signal::read_and_picture(&file, &unit, FULL_SCALE_MV)?;
-                show(Seen { reading, pictures }, told);
-                return Ok(done(String::new(), Vec::new()));
+                let read = signal::read_and_picture(&file, &unit, FULL_SCALE_MV)?;
+                show(read, String::new());
+                return Ok(Done::all(String::new(), Vec::new()));
             }
             let file = free_beside(&file);
             let known = Calibrations::load(&sound_file::usual()?)?;
@@ -141,16 +143,13 @@ impl Source {
                     .collect();
                 receivers.take(&now);
                 count += AGAIN;
-                let (reading, pictures) = receivers.so_far();
                 let so_far = format!("{:.1} s", count as f64 / f64::from(SAMPLE_HZ));
-                *slot.lock().unwrap_or_else(PoisonError::into_inner) =
-                    Some(Seen { reading, pictures });
-                told.say(fill(words.signals.recording, &[("time", &so_far)]));
+                let how_far = fill(words.signals.recording, &[("time", &so_far)]);
+                show(receivers.so_far(), how_far);
             };
             let recorded = sound::record_to_file(&file, device_of, None, &told.stop, &mut hear)?;
             receivers.take(&waiting);
-            let (reading, pictures) = receivers.end(None);
-            show(Seen { reading, pictures }, told);
+            show(receivers.end(None), String::new());
             let seconds = format!("{:.2}", recorded.seconds);
             let file = file.display().to_string();
             let mut notes = uncalibrated(&known, &device, Direction::Input, words);
@@ -167,7 +166,7 @@ impl Source {
                 words.signals.recorded,
                 &[("file", &file), ("time", &seconds)],
             );
-            Ok(done(text, notes))
+            Ok(Done::all(text, notes))
         });
     }
 
@@ -193,7 +192,7 @@ impl Source {
                 let made = signal::make(&wave, &unit, strength, (&path, FULL_SCALE_MV))?;
                 let path = path.display().to_string();
                 let clipped = cut_off(made.clipped, words);
-                return Ok(done(
+                return Ok(Done::all(
                     fill(words.common.saved, &[("file", &path)]),
                     clipped.into_iter().collect(),
                 ));
@@ -216,19 +215,11 @@ impl Source {
             notes.extend(cut_off(played.clipped, words));
             notes.extend(gaps(played.underruns, words));
             let seconds = format!("{:.2}", played.seconds);
-            Ok(done(
+            Ok(Done::all(
                 fill(words.signals.played, &[("time", &seconds)]),
                 notes,
             ))
         });
-    }
-}
-
-fn done(text: String, notes: Vec<String>) -> Done {
-    Done {
-        text,
-        notes,
-        broken_off: None,
     }
 }
 

@@ -10,7 +10,7 @@ use super::counted::{Asked, is_known};
 use crate::parts::lane::{TEXT, y_at, y_axis};
 use crate::parts::look_back::since_us;
 use crate::parts::{caption, chip, ground, pick};
-use crate::request::{CachedResponse, Request};
+use crate::request::FollowingResponse;
 use crate::{DataPaths, PageContext, Palette, Sizes};
 use ptu_report::limits::short;
 use ptu_report::naming::{DOT, measurement};
@@ -47,8 +47,7 @@ struct Known {
 #[derive(Default)]
 pub struct ControlChart {
     of: Measured,
-    known: CachedResponse<Known>,
-    asked: Option<(Measured, Asked, (usize, u64))>,
+    known: FollowingResponse<(Measured, Asked), Known>,
 }
 
 impl ControlChart {
@@ -63,14 +62,8 @@ impl ControlChart {
 
     /// Asks again when the data or what is asked for are others.
     pub fn keep_up(&mut self, asked: Asked, context: &PageContext<'_>) {
-        let wanted = (self.of.clone(), asked.clone(), context.data_version());
-        if self.asked.as_ref() != Some(&wanted) {
-            self.asked = Some(wanted);
-            let of = self.of.clone();
-            let pending = context.queries.run(move |paths| read(paths, of, &asked));
-            self.known.request(pending);
-        }
-        self.known.poll();
+        let wanted = ((self.of.clone(), asked), true);
+        self.known.keep_up(wanted, context, read);
     }
 
     pub fn show(&mut self, ui: &mut Ui, words: &Words) {
@@ -83,29 +76,26 @@ impl ControlChart {
                     choose(ui, words, &mut self.of, known);
                 }
             });
-            match self.known.get() {
-                Request::Ready(known) if known.names.is_empty() => {
-                    ui.label(said.nothing_measured);
-                }
-                Request::Ready(known) => match &known.trend {
-                    Some(trend) => {
-                        let warn = Palette::of(ui).warn;
-                        for sign in signs(words, trend) {
-                            chip(ui, (ICON_WARNING, &sign), warn);
-                        }
-                        caption(ui, &summary(words, trend));
-                        chart(ui, words, trend);
+            let Some(known) = self.known.get().shown(ui, words) else {
+                return;
+            };
+            match &known.trend {
+                _ if known.names.is_empty() => drop(ui.label(said.nothing_measured)),
+                Some(trend) => {
+                    let warn = Palette::of(ui).warn;
+                    for sign in signs(words, trend) {
+                        chip(ui, (ICON_WARNING, &sign), warn);
                     }
-                    None => drop(ui.label(said.not_measured)),
-                },
-                Request::Failed(why) => drop(ui.label(&*words.trouble(why))),
-                Request::Idle | Request::Pending(_) => drop(ui.label(words.common.loading)),
+                    caption(ui, &summary(words, trend));
+                    chart(ui, words, trend);
+                }
+                None => drop(ui.label(said.not_measured)),
             }
         });
     }
 }
 
-fn read(paths: &DataPaths, of: Measured, asked: &Asked) -> Result<Known, Failure> {
+fn read(paths: &DataPaths, (of, asked): (Measured, Asked)) -> Result<Known, Failure> {
     let mut known = Known {
         names: Vec::new(),
         steps: Vec::new(),

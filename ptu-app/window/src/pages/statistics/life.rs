@@ -6,13 +6,12 @@ use fault_db::{Life, LifeEvent, LifeOf, LifeWhat};
 
 use crate::page_context::Destination;
 use crate::parts::{Face, Look, find_edit, link, rows, typed};
-use crate::request::{CachedResponse, Request};
-use crate::{DataPaths, PageContext, Palette, Sizes};
+use crate::request::FollowingResponse;
+use crate::{PageContext, Palette, Sizes};
 use ptu_report::life;
 use ptu_report::naming::PartNames;
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
-use ptu_runs::failure::Failure;
 
 /// Width of the field, points.
 const FIELD: f32 = 190.0;
@@ -23,9 +22,7 @@ pub struct LifeView {
     typed: String,
     /// The serial number that is shown.
     of: Option<String>,
-    found: CachedResponse<(Vec<Life>, PartNames)>,
-    /// Last query, and the version of its data.
-    asked: Option<(String, (usize, u64))>,
+    found: FollowingResponse<String, (Vec<Life>, PartNames)>,
 }
 
 impl LifeView {
@@ -52,54 +49,30 @@ impl LifeView {
             return false;
         };
         let words = context.words;
-        self.keep_up(&serial, context);
+        let wanted = (serial.clone(), false);
+        self.found.keep_up(wanted, context, |paths, serial| {
+            Ok((paths.read()?.lives(&serial)?, PartNames::of(&paths.scripts)))
+        });
         let back = Face::new(Look::Quiet, words.life.back).icon(ICON_ARROW_BACK);
         if back.show(ui).clicked() {
             self.of = None;
         }
-        match self.found.get() {
-            Request::Ready((lives, parts)) => {
-                if lives.is_empty() {
-                    ui.label(fill(words.life.nothing, &[("serial", &serial)]));
-                }
-                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                    for life in lives {
-                        show(ui, (words, parts), life, context.go_to);
-                    }
-                });
+        let Some((lives, parts)) = self.found.get().value() else {
+            if (self.found.get()).missing(ui, words, words.life.not_read) {
+                self.found.read_again();
             }
-            Request::Failed(why) => {
-                let said = RichText::new(words.life.not_read).color(Palette::of(ui).bad);
-                ui.label(said.strong());
-                ui.label(&*words.trouble(why));
-                if ui.button(words.common.refresh).clicked() {
-                    self.asked = None;
-                }
-            }
-            Request::Idle | Request::Pending(_) => {
-                ui.label(words.common.loading);
-            }
+            return true;
+        };
+        if lives.is_empty() {
+            ui.label(fill(words.life.nothing, &[("serial", &serial)]));
         }
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            for life in lives {
+                show(ui, (words, parts), life, context.go_to);
+            }
+        });
         true
     }
-
-    fn keep_up(&mut self, serial: &str, context: &PageContext<'_>) {
-        let wanted = (serial.to_owned(), context.data_version());
-        if self.asked.as_ref() != Some(&wanted) {
-            let serial = serial.to_owned();
-            let pending = context.queries.run(move |paths| read(paths, &serial));
-            match self.asked.replace(wanted.clone()) {
-                Some((before, _)) if before == wanted.0 => self.found.request(pending),
-                _ => self.found.request_other(pending),
-            }
-        }
-        self.found.poll();
-    }
-}
-
-fn read(paths: &DataPaths, serial: &str) -> Result<(Vec<Life>, PartNames), Failure> {
-    let lives = paths.read()?.lives(serial)?;
-    Ok((lives, PartNames::of(&paths.scripts)))
 }
 
 fn show(

@@ -16,7 +16,7 @@ use crate::parts::bars::{Bar, Chart};
 use crate::parts::{
     SavedSaid, UnitFilter, caption, empty, ground, look_back, saved_questions, segments,
 };
-use crate::request::{CachedResponse, Request};
+use crate::request::{FollowingResponse, Request};
 use crate::settings::StatisticsQuestion;
 use crate::{PageContext, Palette, Sizes};
 use counted::{Asked, Counted};
@@ -35,10 +35,8 @@ pub struct StatisticsPage {
     units: UnitFilter,
     /// Days to look back; none = all there is.
     days: Option<i64>,
-    counted: CachedResponse<Counted>,
-    /// Last query, and the version of its data.
-    asked: Option<(Asked, (usize, u64))>,
-    life: life::LifeView,
+    counted: FollowingResponse<Asked, Counted>,
+    pub life: life::LifeView,
     control: control::ControlChart,
     distances: distances::DistancesFile,
     /// Months are compared by what the trains ran in them.
@@ -77,16 +75,10 @@ impl StatisticsPage {
                     self.control.show(ui, words);
                 });
             }
-            Request::Failed(why) => {
-                let said = RichText::new(words.statistics.not_read).color(Palette::of(ui).bad);
-                ui.label(said.strong());
-                ui.label(&*words.trouble(why));
-                if ui.button(words.common.refresh).clicked() {
-                    self.asked = None;
+            missing => {
+                if missing.missing(ui, words, words.statistics.not_read) {
+                    self.counted.read_again();
                 }
-            }
-            Request::Idle | Request::Pending(_) => {
-                ui.label(words.common.loading);
             }
         }
     }
@@ -148,7 +140,7 @@ impl StatisticsPage {
             });
         });
         if again {
-            self.asked = None;
+            self.counted.read_again();
         }
     }
 
@@ -168,34 +160,16 @@ impl StatisticsPage {
         }
     }
 
-    /// Shows the life of what has this serial number.
-    pub fn show_life(&mut self, serial: &str) {
-        self.life.open(serial);
-    }
-
     /// Asks again when the data, the span or the unit are others.
     fn keep_up(&mut self, context: &PageContext<'_>) {
         let asked = Asked {
-            unit: self.units.taken().map(str::to_owned),
+            unit: self.units.taken.as_deref().map(str::to_owned),
             days: self.days,
             distances: context.settings.distances.clone(),
         };
-        let wanted = (asked, context.data_version());
-        if self.asked.as_ref() != Some(&wanted) {
-            let asked = wanted.0.clone();
-            let pending = context
-                .queries
-                .run(move |paths| Counted::read(paths, asked));
-            // Counts of another unit are not shown as this one's meanwhile.
-            match self.asked.replace(wanted.clone()) {
-                Some((before, _)) if before == wanted.0 => self.counted.request(pending),
-                _ => self.counted.request_other(pending),
-            }
-        }
-        self.counted.poll();
-        if let Some((asked, _)) = &self.asked {
-            self.control.keep_up(asked.clone(), context);
-        }
+        // Counts of another unit are not shown as this one's meanwhile.
+        (self.counted).keep_up((asked.clone(), false), context, Counted::read);
+        self.control.keep_up(asked, context);
     }
 }
 

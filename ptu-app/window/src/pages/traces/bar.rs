@@ -24,13 +24,13 @@ pub fn view(
     context: &mut PageContext<'_>,
 ) -> bool {
     let words = &context.words.traces;
-    let mut kind = scene.axis().kind();
+    let mut kind = scene.axis.kind();
     let kinds = [
         (Kind::Time, words.over_time),
         (Kind::Distance, words.over_distance),
     ];
     segments(ui, &mut kind, kinds);
-    if kind != scene.axis().kind() && !scene.set_axis(kind) {
+    if kind != scene.axis.kind() && !scene.set_axis(kind) {
         context.messages.note(words.no_distance);
     }
     let icon = |icon, name| Face::new(Look::Quiet, "").icon(icon).named(name).hint(name);
@@ -40,12 +40,12 @@ pub fn view(
     ] {
         if icon(sign, name).show(ui).clicked() {
             scene.remember();
-            scene.camera().zoom(0.5, times);
+            scene.camera.zoom(0.5, times);
         }
     }
     if icon(ICON_FIT_SCREEN, words.fit).show(ui).clicked() {
         scene.remember();
-        scene.camera().fit();
+        scene.camera.fit();
     }
     let back = icon(ICON_UNDO, words.zoom_back).hint(words.zoom_back_hint);
     let back = back.off((!scene.can_zoom_back()).then_some(""));
@@ -73,7 +73,7 @@ pub fn view(
         *on ^= face.named(name).hint(hint).show(ui).clicked();
     };
     let close = ("", words.close_axes, words.close_axes_hint);
-    toggled(ui, scene.close(), ICON_HEIGHT, close);
+    toggled(ui, &mut scene.close, ICON_HEIGHT, close);
     for (on, sign, name) in [
         (choosing, ICON_TUNE, words.signals),
         (told, ICON_FUNCTIONS, words.statistics),
@@ -88,10 +88,10 @@ pub fn view(
 pub fn moved_back(ui: &mut Ui, scene: &TracePlot, words: &Traces) {
     if let Axis::Distance {
         rows_back, back_m, ..
-    } = scene.axis()
+    } = &scene.axis
         && *rows_back > 0
     {
-        let seconds = *rows_back as f64 * scene.view().data().period_us as f64 / 1e6;
+        let seconds = *rows_back as f64 * scene.view().data.period_us as f64 / 1e6;
         let text = fill(
             words.moved_back,
             &[
@@ -105,12 +105,12 @@ pub fn moved_back(ui: &mut Ui, scene: &TracePlot, words: &Traces) {
 
 /// A place on the axis, as `−9.55 s`.
 pub fn place(scene: &TracePlot, row: usize) -> String {
-    length(scene, scene.axis().at(row))
+    length(scene, scene.axis.at(row))
 }
 
 /// A length on the axis.
 pub fn length(scene: &TracePlot, length: f64) -> String {
-    let text = match scene.axis().kind() {
+    let text = match scene.axis.kind() {
         Kind::Time => format!("{length:.2} s"),
         Kind::Distance => format!("{length:.2} m"),
     };

@@ -55,12 +55,12 @@ impl OverlayRequest {
                 scene.told(against, parting);
             }
         }
-        let Some(behind) = scene.behind() else {
+        let Some(behind) = scene.behind.as_ref() else {
             return;
         };
         let told = behind.parting.as_ref().map(|parting| parting.shift_rows);
         if self.parting.is_none() && told != Some(behind.shift_rows) {
-            let (overlay, opened) = (behind.overlay.clone(), scene.opened().clone());
+            let (overlay, opened) = (behind.overlay.clone(), scene.opened.clone());
             let shift_rows = behind.shift_rows;
             let question = move |_: &_| Ok(overlay.parting(&opened.view, shift_rows));
             self.parting = Some(context.queries.run(question));
@@ -100,7 +100,7 @@ impl OverlayRequest {
             .show_ui(ui, |ui| {
                 ui.selectable_value(&mut against, None, words.no_overlay);
                 ui.selectable_value(&mut against, Some(OverlaySource::Twin), words.good_twin);
-                let own = scene.opened().id;
+                let own = scene.opened.id;
                 if let Some(OverlaySource::File(file)) = &self.against {
                     ui.selectable_value(&mut against, self.against.clone(), file_name(file));
                 }
@@ -126,7 +126,7 @@ impl OverlayRequest {
                 _ => context.words.common.loading,
             });
         }
-        if scene.behind().is_some() {
+        if scene.behind.as_ref().is_some() {
             offset(ui, scene, context);
             said(ui, scene, context);
         }
@@ -141,7 +141,7 @@ impl OverlayRequest {
         self.against.clone_from(&against);
         self.parting = None;
         scene.lay_nothing_behind();
-        let id = scene.opened().id;
+        let id = scene.opened.id;
         self.overlay = match against {
             None => Request::Idle,
             Some(against) => Request::Pending(
@@ -174,8 +174,8 @@ pub fn file_name(file: &Path) -> String {
 
 fn offset(ui: &mut Ui, scene: &mut TracePlot, context: &PageContext<'_>) {
     let words = &context.words.traces;
-    let period_s = scene.view().data().period_us as f64 / 1e6;
-    let Some(shift_rows) = scene.behind().map(|behind| behind.shift_rows) else {
+    let period_s = scene.view().data.period_us as f64 / 1e6;
+    let Some(shift_rows) = scene.behind.as_ref().map(|behind| behind.shift_rows) else {
         return;
     };
     let label = ui.label(words.offset);
@@ -193,7 +193,10 @@ fn offset(ui: &mut Ui, scene: &mut TracePlot, context: &PageContext<'_>) {
 
 fn said(ui: &mut Ui, scene: &mut TracePlot, context: &mut PageContext<'_>) {
     let words = &context.words.traces;
-    let parting = scene.behind().and_then(|behind| behind.parting.as_ref());
+    let parting = scene
+        .behind
+        .as_ref()
+        .and_then(|behind| behind.parting.as_ref());
     let Some(parting) = parting else {
         ui.label(context.words.common.loading);
         return;

@@ -21,7 +21,7 @@ const LINKS: usize = 40;
 /// Events of the trace, each a link to its place.
 pub fn links(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
     let palette = Palette::of(ui);
-    let opened = scene.opened().clone();
+    let opened = scene.opened.clone();
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(words.traces.events).color(palette.quiet));
         for event in opened.events.iter().take(LINKS) {
@@ -32,8 +32,8 @@ pub fn links(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
                 None => link,
             };
             if link.clicked() {
-                let place = scene.axis().at(event.row);
-                scene.camera().centre(place);
+                let place = scene.axis.at(event.row);
+                scene.camera.centre(place);
             }
         }
         if opened.events.len() > LINKS {
@@ -52,8 +52,8 @@ pub fn flags(painter: &Painter, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
     } = sheet;
     let window = scene.window();
     let mut free = [f32::NEG_INFINITY; ROWS];
-    for event in &scene.opened().events {
-        let x = lane::x_at(lanes, window, scene.axis().at(event.row));
+    for event in &scene.opened.events {
+        let x = lane::x_at(lanes, window, scene.axis.at(event.row));
         if !lanes.x_range().contains(x) {
             continue;
         }
@@ -77,7 +77,7 @@ pub fn flags(painter: &Painter, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
         let Some(row) = scene.cursor(cursor) else {
             continue;
         };
-        let x = lane::x_at(lanes, window, scene.axis().at(row));
+        let x = lane::x_at(lanes, window, scene.axis.at(row));
         if !lanes.x_range().contains(x) {
             continue;
         }

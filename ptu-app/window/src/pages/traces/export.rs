@@ -21,18 +21,13 @@ use ptu_runs::new_file::{NewFile, cannot_write};
 #[derive(Default)]
 pub struct Export {
     /// Path without its ending.
-    name: String,
+    pub name: String,
     /// The window's picture, the part of it wanted, and its pixels per point.
     picture: Option<(Receiver<Arc<ColorImage>>, Rect, f32)>,
     writing: Vec<Pending<PathBuf>>,
 }
 
 impl Export {
-    /// Takes the name for exports of another trace, which is open now.
-    pub fn name_after(&mut self, name: String) {
-        self.name = name;
-    }
-
     /// The menu that saves; `rect` is what the picture is of.
     pub fn bar(
         &mut self,
@@ -59,7 +54,7 @@ impl Export {
             edit.surrender_focus();
             ui.close();
             let (sender, receiver) = mpsc::channel();
-            let wake = context.queries.wake().clone();
+            let wake = context.queries.wake.clone();
             ui.ctx().request_screenshot(move |image| {
                 // Another trace may have been opened since.
                 let _ = sender.send(image);
@@ -110,13 +105,13 @@ impl Export {
     }
 
     fn write_csv(&mut self, scene: &TracePlot, context: &PageContext<'_>) {
-        let opened = scene.opened().clone();
-        let channels: Vec<usize> = scene.lanes().iter().filter_map(|lane| lane.place).collect();
+        let opened = scene.opened.clone();
+        let channels: Vec<usize> = scene.lanes.iter().filter_map(|lane| lane.place).collect();
         let rows = scene.rows_in_view();
-        let axis = (scene.axis().kind() == Kind::Distance).then(|| scene.axis().clone());
+        let axis = (scene.axis.kind() == Kind::Distance).then(|| scene.axis.clone());
         let name = self.name.clone();
         let question = move |_: &_| {
-            let text = csv(opened.view.data(), &channels, rows, axis.as_ref());
+            let text = csv(&opened.view.data, &channels, rows, axis.as_ref());
             let place = with_ending(&name, "csv");
             let mut file = NewFile::begin_beside(&place)?;
             let written = file.write_all(text.as_bytes());

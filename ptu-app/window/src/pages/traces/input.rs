@@ -35,15 +35,15 @@ pub fn pointer(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot, 
         });
         let times = (-f64::from(wheel.y) * WHEEL).exp() / zoom.max(0.01);
         if times != 1.0 {
-            scene.camera().zoom(share(at.x), times);
+            scene.camera.zoom(share(at.x), times);
         }
         if wheel.x != 0.0 {
-            scene.camera().pan(-f64::from(wheel.x) / width);
+            scene.camera.pan(-f64::from(wheel.x) / width);
         }
     }
     let near = |scene: &TracePlot, cursor: Cursor, x: f32| {
         scene.cursor(cursor).is_some_and(|row| {
-            let at = lane::x_at(rect, scene.window(), scene.axis().at(row));
+            let at = lane::x_at(rect, scene.window(), scene.axis.at(row));
             (at - x).abs() <= NEAR
         })
     };
@@ -75,7 +75,7 @@ pub fn pointer(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot, 
             }
             (Drag::Stretch(_), _) => {}
             _ => scene
-                .camera()
+                .camera
                 .pan(-f64::from(response.drag_delta().x) / width),
         }
     }
@@ -145,14 +145,14 @@ pub fn keys(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot) {
     let share = pointer.map_or(0.5, |at| f64::from((at.x - rect.left()) / rect.width()));
     if closer + wider > 0 {
         let times = ZOOM.powi(closer as i32 - wider as i32);
-        scene.camera().zoom(share, times);
+        scene.camera.zoom(share, times);
     }
     if left + right > 0 {
-        scene.camera().pan(PAN * (right as f64 - left as f64));
+        scene.camera.pan(PAN * (right as f64 - left as f64));
     }
     if fit > 0 {
         scene.remember();
-        scene.camera().fit();
+        scene.camera.fit();
     }
     for _ in 0..before {
         scene.zoom_back();

@@ -66,7 +66,7 @@ impl LaneCache {
 
         let pointer = response.hover_pos().filter(|at| middle.contains(*at));
         let share = |at: Pos2| f64::from((at.x - middle.left()) / middle.width());
-        let pointer_row = pointer.and_then(|at| scene.axis().row_at(scene.window().at(share(at))));
+        let pointer_row = pointer.and_then(|at| scene.axis.row_at(scene.window().at(share(at))));
         let (heads, rows) = told(scene, pointer_row);
         self.scratch.edges(scene, middle.width());
         let strip = Rect::from_x_y_ranges(middle.x_range(), all.top()..=middle.top());
@@ -94,7 +94,7 @@ impl LaneCache {
             let ground = palette.accent.gamma_multiply(0.25);
             painter.rect_filled(stretch.intersect(middle), 0.0, ground);
         }
-        let unit = match scene.axis().kind() {
+        let unit = match scene.axis.kind() {
             Kind::Time => words.traces.seconds,
             Kind::Distance => words.traces.metres,
         };
@@ -108,7 +108,7 @@ impl LaneCache {
         ui.scope_builder(UiBuilder::new().max_rect(whole), |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                if sheet.scene.lanes().is_empty() {
+                if sheet.scene.lanes.is_empty() {
                     ui.label(sheet.words.traces.no_signals);
                 }
                 let heights = sheet.heights(middle.height());
@@ -127,21 +127,21 @@ impl LaneCache {
 /// Name of the shown trace, and in grey of the trace behind it, for a picture kept without the
 /// window.
 fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
-    let opened = sheet.scene.opened();
+    let opened = &sheet.scene.opened;
     let line = |row: f32, text: String, colour| {
         let at = pos2(sheet.places.names + 2.0, strip.top() + row * STRIP / 2.0);
         let font = FontId::proportional(lane::TEXT);
         painter.text(at, Align2::LEFT_TOP, text, font, colour);
     };
-    let when = clock::local(opened.view.data().t0_us);
+    let when = clock::local(opened.view.data.t0_us);
     let own = format!("{}  {when}", opened.id.short());
     line(0.0, own, sheet.palette.accent);
-    if let Some(behind) = sheet.scene.behind() {
+    if let Some(behind) = sheet.scene.behind.as_ref() {
         let name = match &behind.overlay.against {
             OverlaySource::Twin => sheet.words.traces.good_twin.to_owned(),
             OverlaySource::File(file) => file_name(file),
             OverlaySource::Trace(id) => {
-                let when = clock::local(behind.overlay.view.data().t0_us);
+                let when = clock::local(behind.overlay.view.data.t0_us);
                 format!("{}  {when}", id.short())
             }
         };
@@ -154,7 +154,7 @@ fn told(scene: &TracePlot, pointer_row: Option<usize>) -> (Vec<String>, [Option<
     let at = |row: usize| bar::place(scene, row);
     match [Cursor::A, Cursor::B].map(|cursor| scene.cursor(cursor)) {
         [Some(a), Some(b)] => {
-            let between = scene.axis().at(b) - scene.axis().at(a);
+            let between = scene.axis.at(b) - scene.axis.at(a);
             let between = format!("B−A {}", bar::length(scene, between));
             let heads = vec![format!("A {}", at(a)), format!("B {}", at(b)), between];
             (heads, [Some(a), Some(b)])

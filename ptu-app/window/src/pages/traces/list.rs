@@ -7,7 +7,7 @@ use fault_db::Id;
 use crate::parts::{
     MemoryReader, Stored, UnitFilter, before_more, chip, find_edit, names, verdict_chip,
 };
-use crate::request::{CachedResponse, Request};
+use crate::request::FollowingResponse;
 use crate::{PageContext, Palette};
 use ptu_report::naming::PartNames;
 use ptu_report::trace_view::listing::{self, ListedRun, ListedTrace, RUNS};
@@ -17,24 +17,13 @@ use ptu_runs::stored::from_stored;
 /// The list's own state.
 #[derive(Default)]
 pub struct TraceList {
-    runs: CachedResponse<Vec<ListedRun>>,
+    runs: FollowingResponse<(), Vec<ListedRun>>,
     filter: String,
     units: UnitFilter,
     /// Runs and traces that fit the filter; computed again when either changes.
     shown: Vec<(usize, Option<usize>)>,
-    /// Version of the data it was asked for.
-    version: (usize, u64),
     /// The run record of the chosen unit.
-    unit_record: UnitRecord,
-}
-
-/// The button that pulls it.
-struct UnitRecord(MemoryReader);
-
-impl Default for UnitRecord {
-    fn default() -> Self {
-        Self(MemoryReader::of(Stored::Runs))
-    }
+    unit_record: MemoryReader,
 }
 
 impl TraceList {
@@ -50,8 +39,8 @@ impl TraceList {
         ui.horizontal_wrapped(|ui| {
             let wide = before_more(ui);
             let edit = find_edit(ui, &mut self.filter, words.traces.filter, wide);
-            if self.unit_record.0.show(ui, context) {
-                self.runs = CachedResponse::default();
+            if self.unit_record.show(ui, Stored::Runs, context) {
+                self.runs.read_again();
             }
             let units = self.runs.items().iter().map(|run| &*run.unit);
             applies = self.units.show(ui, context, &names(units)) | edit.changed();
@@ -59,17 +48,11 @@ impl TraceList {
         if applies {
             self.apply();
         }
-        let runs = match self.runs.get() {
-            Request::Ready(runs) => runs,
-            Request::Failed(why) => {
-                let text = format!("{}: {}", words.traces.cannot_list, words.trouble(why));
-                ui.label(RichText::new(text).color(Palette::of(ui).bad));
-                return None;
+        let Some(runs) = self.runs.get().value() else {
+            if (self.runs.get()).missing(ui, words, words.traces.cannot_list) {
+                self.runs.read_again();
             }
-            Request::Idle | Request::Pending(_) => {
-                ui.label(words.common.loading);
-                return None;
-            }
+            return None;
         };
         if runs.is_empty() {
             ui.label(words.traces.none_recorded);
@@ -129,15 +112,9 @@ impl TraceList {
 
     /// Asks when it was not asked yet, and when the data have changed since.
     pub fn keep_up(&mut self, context: &PageContext<'_>) {
-        let version = context.data_version();
-        if version != self.version || self.runs.get().is_idle() {
-            self.version = version;
-            let question = context
-                .queries
-                .run(|paths| listing::list(&paths.read()?, &PartNames::of(&paths.scripts)));
-            self.runs.request(question);
-        }
-        if self.runs.poll() {
+        if self.runs.keep_up(((), true), context, |paths, ()| {
+            listing::list(&paths.read()?, &PartNames::of(&paths.scripts))
+        }) {
             self.apply();
         }
     }

@@ -16,13 +16,13 @@ mod signals;
 mod small;
 mod table;
 
+use crate::request::Request;
 use std::sync::Arc;
 
 use eframe::egui::{CentralPanel, Frame, Panel, RichText, Ui};
 use fault_db::Id;
 
 use crate::parts::{Side, link};
-use crate::query_worker::Pending;
 use crate::{Destination, PageContext, Palette};
 use compared_trace::OverlayRequest;
 use export::Export;
@@ -33,7 +33,6 @@ use ptu_report::naming::PartNames;
 use ptu_report::trace_view::TracePlot;
 use ptu_report::trace_view::listing::{self, OpenTrace};
 use ptu_report::words::fill;
-use ptu_runs::failure::Trouble;
 use record_comparison::RecordComparison;
 pub use small::SmallTrace;
 
@@ -45,9 +44,8 @@ const BETWEEN: f32 = 4.0;
 #[derive(Default)]
 pub struct TracesPage {
     list: TraceList,
-    opening: Option<Pending<(OpenTrace, String)>>,
+    opening: Request<(OpenTrace, String)>,
     scene: Option<TracePlot>,
-    trouble: Option<Trouble>,
     behind: OverlayRequest,
     export: Export,
     record: RecordComparison,
@@ -64,7 +62,7 @@ impl TracesPage {
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.poll(context);
         let words = &context.words.traces;
-        let chosen = self.scene.as_ref().map(|scene| scene.opened().id);
+        let chosen = self.scene.as_ref().map(|scene| scene.opened.id);
         let list = Side {
             name: words.recorded,
             wide: [268.0, 320.0],
@@ -73,7 +71,7 @@ impl TracesPage {
         self.list.keep_up(context);
         let clicked = list.show(ui, |ui| self.list.show(ui, context, chosen));
         // The latest trace is what most people come for.
-        let nothing = self.scene.is_none() && self.opening.is_none() && self.trouble.is_none();
+        let nothing = self.scene.is_none() && self.opening.is_idle();
         if let Some((id, run)) = clicked.or_else(|| self.list.latest().filter(|_| nothing)) {
             self.read(id, Some(run), context);
         }
@@ -92,37 +90,34 @@ impl TracesPage {
     }
 
     fn read(&mut self, id: Id, run: Option<Id>, context: &PageContext<'_>) {
-        self.trouble = None;
         let question = context.queries.run(move |paths| {
             Ok((
                 listing::open(&paths.read()?, &PartNames::of(&paths.scripts), id, run)?,
                 export::usual_name(id),
             ))
         });
-        self.opening = Some(question);
+        self.opening = Request::Pending(question);
     }
 
     fn poll(&mut self, context: &mut PageContext<'_>) {
-        if let Some(answer) = self.opening.as_ref().and_then(Pending::take) {
-            self.opening = None;
-            match answer {
-                Ok((opened, name)) => {
-                    self.export.name_after(name);
+        if self.opening.poll() {
+            self.scene = None;
+            match std::mem::take(&mut self.opening) {
+                Request::Ready((opened, name)) => {
+                    self.export.name = name;
                     self.behind = OverlayRequest::default();
                     self.scene = Some(TracePlot::new(Arc::new(opened), &context.settings.lanes));
                 }
-                Err(failure) => {
-                    self.scene = None;
-                    context
-                        .messages
-                        .trouble(context.words.traces.cannot_open, failure.message.clone());
-                    self.trouble = Some(failure.message);
-                }
+                failed => self.opening = failed,
+            }
+            if let Request::Failed(why) = &self.opening {
+                let said = context.words.traces.cannot_open;
+                context.messages.trouble(said, why.clone());
             }
         }
         if let Some(scene) = &mut self.scene {
             self.behind.poll(scene, context);
-            self.notes.poll(scene.opened().id, context);
+            self.notes.poll(scene.opened.id, context);
         }
         self.export.poll(context);
     }
@@ -130,14 +125,10 @@ impl TracesPage {
     fn central(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         let Some(scene) = &mut self.scene else {
-            match &self.trouble {
-                _ if self.opening.is_some() => ui.label(words.common.loading),
-                Some(why) => {
-                    let text = format!("{}: {}", words.traces.cannot_open, words.trouble(why));
-                    ui.label(RichText::new(text).color(Palette::of(ui).bad))
-                }
-                None => ui.label(words.traces.choose_one),
-            };
+            match self.opening.is_idle() {
+                true => drop(ui.label(words.traces.choose_one)),
+                false => drop(self.opening.shown(ui, words)),
+            }
             return;
         };
         // Words stand on one line with what they name.
@@ -183,7 +174,7 @@ impl TracesPage {
 /// Whose trace it is, what is amiss with it, and ways on from here.
 fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageContext<'_>) {
     let words = context.words;
-    let opened = scene.opened();
+    let opened = &scene.opened;
     let (unit, when) = list.whose(opened.run);
     let known = |text| match text {
         "" => words.traces.not_known,
@@ -193,7 +184,7 @@ fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageC
     let title = fill(words.traces.of_unit, &[("unit", &unit), ("when", &when)]);
     let title = ui.label(RichText::new(title).strong());
     title.on_hover_text(opened.id.to_string());
-    let data = opened.view.data();
+    let data = &opened.view.data;
     let warn = Palette::of(ui).warn;
     for (amiss, text) in [
         (data.partial, words.traces.cut_short),

@@ -5,7 +5,7 @@ use fault_db::{Id, TracePlace};
 
 use super::row::Sheet;
 use crate::parts::{NoteOn, RunNoteForm, lane, link};
-use crate::request::CachedResponse;
+use crate::request::FollowingResponse;
 use crate::{PageContext, Palette};
 use ptu_report::trace_notes::TraceNote;
 use ptu_report::trace_view::{Cursor, TracePlot, TraceView};
@@ -21,29 +21,21 @@ const FLAG: f32 = 14.0;
 /// The notes on the trace that is open.
 #[derive(Default)]
 pub struct TraceNotes {
-    notes: CachedResponse<Vec<TraceNote>>,
-    /// The trace they are on, and the state of the database they were read in.
-    read: Option<(Id, (usize, u64))>,
+    notes: FollowingResponse<Id, Vec<TraceNote>>,
     form: RunNoteForm,
 }
 
 impl TraceNotes {
     /// Reads them for another trace, after one was added, and when the database has changed.
     pub fn poll(&mut self, trace: Id, context: &mut PageContext<'_>) {
-        let added = self.form.poll(context.words, context.messages).is_some();
-        let wanted = (trace, context.data_version());
-        if added || self.read != Some(wanted) {
-            let words = context.words;
-            let pending = context
-                .queries
-                .run(move |paths| Ok(TraceNote::all(&paths.read()?, trace, words)?));
-            match self.read {
-                Some((before, _)) if before == trace => self.notes.request(pending),
-                _ => self.notes.request_other(pending),
-            }
-            self.read = Some(wanted);
+        let words = context.words;
+        if self.form.poll(words, context.messages).is_some() {
+            self.notes.read_again();
         }
-        self.notes.poll();
+        self.notes
+            .keep_up((trace, false), context, move |paths, trace| {
+                Ok(TraceNote::all(&paths.read()?, trace, words)?)
+            });
     }
 
     /// The list, each a way to its place, and the field for another one where cursor A is.
@@ -59,8 +51,8 @@ impl TraceNotes {
                     if link(ui, text).on_hover_text(whole(note)).clicked()
                         && let Some(row) = row_of(note, scene.view())
                     {
-                        let place = scene.axis().at(row);
-                        scene.camera().centre(place);
+                        let place = scene.axis.at(row);
+                        scene.camera.centre(place);
                     }
                 }
                 if notes.len() > LINKS {
@@ -74,8 +66,8 @@ impl TraceNotes {
         let view = scene.view();
         let rows = row as i64 - view.trigger_row() as i64;
         let place = TracePlace {
-            trace: scene.opened().id,
-            at_us: rows.saturating_mul(view.data().period_us),
+            trace: scene.opened.id,
+            at_us: rows.saturating_mul(view.data.period_us),
         };
         ui.horizontal_wrapped(|ui| {
             let who = &context.settings.operator;
@@ -92,7 +84,7 @@ impl TraceNotes {
             let Some(row) = row_of(note, sheet.scene.view()) else {
                 continue;
             };
-            let x = lane::x_at(lanes, sheet.scene.window(), sheet.scene.axis().at(row));
+            let x = lane::x_at(lanes, sheet.scene.window(), sheet.scene.axis.at(row));
             if !lanes.x_range().contains(x) {
                 continue;
             }
@@ -115,7 +107,7 @@ impl TraceNotes {
 
 /// The row at its time, if the trace has it.
 fn row_of(note: &TraceNote, view: &TraceView) -> Option<usize> {
-    let data = view.data();
+    let data = &view.data;
     let rows = note.time_us.div_euclid(data.period_us);
     let row = rows.saturating_add(view.trigger_row() as i64);
     usize::try_from(row).ok().filter(|row| *row < data.rows())

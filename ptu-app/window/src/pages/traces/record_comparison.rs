@@ -19,14 +19,14 @@ pub struct RecordComparison {
 impl RecordComparison {
     /// A button for a trace that is of a unit's run record, and what was found.
     pub fn bar(&mut self, ui: &mut Ui, scene: &TracePlot, context: &mut PageContext<'_>) {
-        let opened = scene.opened();
+        let opened = &scene.opened;
         if self.of != Some(opened.id) {
             *self = Self {
                 of: Some(opened.id),
                 found: Request::Idle,
             };
         }
-        let has = |name: &str| opened.view.data().column(name).is_some();
+        let has = |name: &str| opened.view.data.column(name).is_some();
         // A bench records every signal, a unit its own target and no limit.
         if !has("target") || has("limit") {
             return;

@@ -62,8 +62,8 @@ impl Scratch {
     /// Finds the first rows of the columns of pixels, which all lanes share.
     pub fn edges(&mut self, scene: &TracePlot, width: f32) {
         let columns = width.round().max(1.0) as usize;
-        scene.axis().edges(scene.window(), columns, &mut self.own);
-        if let Some(behind) = scene.behind() {
+        scene.axis.edges(scene.window(), columns, &mut self.own);
+        if let Some(behind) = scene.behind.as_ref() {
             behind.axis.edges(scene.window(), columns, &mut self.behind);
         }
     }
@@ -73,7 +73,7 @@ impl Sheet<'_> {
     /// Heights of all lanes; where there is room, quantities take it.
     pub fn heights(&self, room: f32) -> Vec<f32> {
         let groups = self.scene.groups();
-        let lanes = self.scene.lanes();
+        let lanes = &self.scene.lanes;
         let first = |group: &Range<usize>| &lanes[group.start];
         let height = |group: &Range<usize>| {
             // Each name in it has a line.
@@ -123,7 +123,7 @@ impl Sheet<'_> {
         let between = Stroke::new(1.0, self.palette.grid);
         ui.painter()
             .hline(places.names..=places.end, row.bottom() - GAP / 2.0, between);
-        let lanes = &self.scene.lanes()[group.clone()];
+        let lanes = &self.scene.lanes[group.clone()];
         // Colour tells curves of a lane apart; a state is grey unless it deviates.
         let curves = &self.palette.curves;
         let is_state = |lane: &Lane| {
@@ -144,7 +144,7 @@ impl Sheet<'_> {
                 _ => colour(number),
             };
             self.name(ui, lane, line, ink);
-            if let Some(behind) = self.scene.behind().filter(|_| lane.place.is_some()) {
+            if let Some(behind) = self.scene.behind.as_ref().filter(|_| lane.place.is_some()) {
                 self.shade(ui, behind, &lane.signal, rect);
             }
         }
@@ -155,7 +155,7 @@ impl Sheet<'_> {
         let own = Source {
             view: self.scene.view(),
             place,
-            axis: self.scene.axis(),
+            axis: &self.scene.axis,
         };
         match own.view.summary(place) {
             Summary::Unknown => note(ui, rect, self.words.traces.not_known, self.palette.quiet),
@@ -175,7 +175,7 @@ impl Sheet<'_> {
 
     /// This signal in the trace behind.
     fn other(&self, signal: &str) -> Option<Source<'_>> {
-        let behind = self.scene.behind()?;
+        let behind = self.scene.behind.as_ref()?;
         let view = &behind.overlay.view;
         Some(Source {
             view,
@@ -222,7 +222,7 @@ impl Sheet<'_> {
             let own = Source {
                 view: self.scene.view(),
                 place,
-                axis: self.scene.axis(),
+                axis: &self.scene.axis,
             };
             curve(own, edges, colour(number));
         }
@@ -297,7 +297,7 @@ impl Sheet<'_> {
                 .color(self.palette.quiet);
             ui.add(Label::new(text).selectable(false));
         }
-        let parting = self.scene.behind().and_then(|b| b.parting.as_ref());
+        let parting = self.scene.behind.as_ref().and_then(|b| b.parting.as_ref());
         if parting.is_some_and(|parting| parting.stretches.contains_key(&lane.signal)) {
             let text = format!("≠ {}", self.words.traces.deviates);
             let text = RichText::new(text).size(lane::TEXT).color(self.palette.bad);
@@ -328,7 +328,7 @@ impl Sheet<'_> {
             return;
         };
         let painter = ui.painter_at(rect);
-        let (window, axis, bad) = (self.scene.window(), self.scene.axis(), self.palette.bad);
+        let (window, axis, bad) = (self.scene.window(), &self.scene.axis, self.palette.bad);
         let mut painted = rect.left();
         for rows in stretches {
             let from = lane::x_at(rect, window, axis.at(rows.start));

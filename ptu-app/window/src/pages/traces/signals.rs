@@ -55,7 +55,7 @@ pub fn choose(
         ui.label(RichText::new(words.all_signals).color(Palette::of(ui).quiet));
         let wanted = find.trim().to_lowercase();
         let view = scene.view();
-        for (place, channel) in view.data().channels.iter().enumerate() {
+        for (place, channel) in view.data.channels.iter().enumerate() {
             if !channel.name.contains(&wanted) {
                 continue;
             }
@@ -81,7 +81,7 @@ pub fn choose(
 fn shown(ui: &mut Ui, scene: &TracePlot, context: &PageContext<'_>) -> Option<LaneAction> {
     let words = &context.words.traces;
     let mut pressed = None;
-    for (i, lane) in scene.lanes().iter().enumerate() {
+    for (i, lane) in scene.lanes.iter().enumerate() {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             ui.spacing_mut().button_padding.x = 4.0;

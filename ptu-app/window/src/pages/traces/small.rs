@@ -28,7 +28,7 @@ impl SmallTrace {
     /// These signals of a trace; the good twin is asked for.
     pub fn beside_twin(opened: OpenTrace, signals: &[String], context: &PageContext<'_>) -> Self {
         let mut scene = TracePlot::new(Arc::new(opened), signals);
-        scene.camera().show(-BEFORE_S, AFTER_S);
+        scene.camera.show(-BEFORE_S, AFTER_S);
         let mut behind = OverlayRequest::default();
         behind.ask_twin(&mut scene, context);
         Self {
@@ -49,7 +49,7 @@ impl SmallTrace {
 
     /// The good twin is drawn.
     pub fn has_twin(&self) -> bool {
-        self.scene.behind().is_some()
+        self.scene.behind.as_ref().is_some()
     }
 
     /// Paints it as wide as there is room; `name` says what it is.

@@ -14,7 +14,7 @@ const STATES: usize = 4;
 pub fn statistics(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
     let traces = &words.traces;
     let (rows, between) = scene.stretch_rows();
-    let length = scene.axis().at(rows.end.saturating_sub(1)) - scene.axis().at(rows.start);
+    let length = scene.axis.at(rows.end.saturating_sub(1)) - scene.axis.at(rows.start);
     let length = bar::length(scene, length);
     let over = if between {
         traces.between_cursors
@@ -43,7 +43,7 @@ pub fn statistics(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
                     ui.label(RichText::new(head).strong());
                 }
                 ui.end_row();
-                for (lane, statistics) in scene.lanes().iter().zip(&statistics) {
+                for (lane, statistics) in scene.lanes.iter().zip(&statistics) {
                     ui.label(&lane.signal);
                     match (lane.place, statistics) {
                         (Some(place), Some(statistics)) => {

@@ -65,7 +65,7 @@ fn a_run_that_a_bench_has_not_begun_yet_is_not_ordered_again() {
     };
     let mut unit = Unit::new(0, BenchChoice::default(), wake).expect("a thread");
     let let_go = ReleaseOnDrop(held_up.clone());
-    assert!(held_up.0.set(unit.bench.live_state().clone()).is_ok());
+    assert!(held_up.0.set(unit.bench.live_state.clone()).is_ok());
     let setup = unit.choice.setup(&scripts()).expect("its configuration");
     unit.bench.connect(setup.clone());
     let began = Instant::now();
@@ -130,10 +130,10 @@ fn a_run_that_broke_off_can_only_be_ended_once_another_unit_is_connected() {
     };
     (unit.run, unit.waits) = (Some(Progress::new(&plan, "A-1".into())), true);
     connected(&mut unit, "B-2");
-    assert!(unit.is_other() && unit.run.is_some());
+    assert!(unit.is_other && unit.run.is_some());
     connected(&mut unit, "A-1");
-    assert!(!unit.is_other() && unit.run.is_some());
+    assert!(!unit.is_other && unit.run.is_some());
     connected(&mut unit, "B-2");
     unit.end_run();
-    assert!(!unit.is_other() && unit.run.is_none());
+    assert!(!unit.is_other && unit.run.is_none());
 }

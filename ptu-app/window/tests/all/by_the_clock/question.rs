@@ -17,7 +17,7 @@ fn a_question_is_seen_on_every_page_and_waits_by_the_clock() {
     window.click_for("Run", "Does the lamp light?");
     window.page(Page::Faults);
     window.wait_for("a script asks");
-    let now = |window: &Window| window.app().units().chosen().bench.live().now;
+    let now = |window: &Window| window.app().units.chosen().bench.live().now;
     let (began, before) = (std::time::Instant::now(), now(&window));
     for _ in 0..100 {
         window.step();

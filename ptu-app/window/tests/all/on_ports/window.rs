@@ -142,18 +142,18 @@ fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
     let mut window = Window::with(Place::new(), scripts(), settings);
     window.connect();
     window.until("the unit", |window| {
-        window.app().units().chosen().phase() == Phase::Idle
+        window.app().units.chosen().phase() == Phase::Idle
     });
     window.click("시험 시작");
     window.until("a step", |window| {
-        let run = window.app().units().chosen().run.as_ref();
+        let run = window.app().units.chosen().run.as_ref();
         run.is_some_and(|run| run.counts().run() > 0)
     });
     unit.kill();
     window.wait_for_part("장치와의 링크가 끊어졌습니다");
     window.wait_for_part("시험 종료: 판정 불가");
     window.until("disconnected", |window| {
-        window.app().units().chosen().phase() == Phase::Offline
+        window.app().units.chosen().phase() == Phase::Offline
     });
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "error");

@@ -9,7 +9,7 @@ mod train;
 
 pub use code::{CodeForm, NO_DRIFT};
 pub use markers::MarkerForm;
-pub use motion::{MotionForm, TachoKind};
+pub use motion::MotionForm;
 pub use station::StationForm;
 pub use train::TrainForm;
 

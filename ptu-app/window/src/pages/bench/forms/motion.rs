@@ -24,31 +24,6 @@ pub struct MotionForm {
     pub backward: bool,
 }
 
-/// Condition that a channel can be given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TachoKind {
-    Good,
-    /// No pulses.
-    Dead,
-    /// Spurious pulses.
-    Noisy,
-    /// Pulses of another speed.
-    Scaled,
-    /// The tachometer gives the wrong direction.
-    Reversed,
-}
-
-impl TachoKind {
-    /// All, in the order of the labels of the signals `tacho1` and `tacho2`.
-    pub const ALL: [Self; 5] = [
-        Self::Good,
-        Self::Dead,
-        Self::Noisy,
-        Self::Scaled,
-        Self::Reversed,
-    ];
-}
-
 impl Default for MotionForm {
     fn default() -> Self {
         Self {
@@ -81,20 +56,16 @@ impl MotionForm {
         }
     }
 
-    /// Condition of a channel, 1 or 2.
-    pub fn tacho(&self, channel: u8, kind: TachoKind) -> Stimulus {
-        let condition = match kind {
-            TachoKind::Good => TachoCondition::Good,
-            TachoKind::Dead => TachoCondition::Dead,
-            TachoKind::Noisy => TachoCondition::Noisy {
-                per_s: self.noise_per_s,
-            },
-            TachoKind::Scaled => TachoCondition::Scaled {
-                factor: self.factor,
-            },
-            TachoKind::Reversed => TachoCondition::Reversed,
-        };
-        Stimulus::Tacho { channel, condition }
+    /// Conditions that a channel can be given, in the order of the labels of the signals `tacho1` and `tacho2`.
+    pub fn tacho_conditions(&self) -> [TachoCondition; 5] {
+        let (per_s, factor) = (self.noise_per_s, self.factor);
+        [
+            TachoCondition::Good,
+            TachoCondition::Dead,
+            TachoCondition::Noisy { per_s },
+            TachoCondition::Scaled { factor },
+            TachoCondition::Reversed,
+        ]
     }
 
     /// The TEST board's signal to the speed filled in.
@@ -172,7 +143,6 @@ mod tests {
             factor: 0.5,
             ..MotionForm::default()
         };
-        let conditions = TachoKind::ALL.map(|kind| form.tacho(2, kind));
         let expected = [
             TachoCondition::Good,
             TachoCondition::Dead,
@@ -180,13 +150,7 @@ mod tests {
             TachoCondition::Scaled { factor: 0.5 },
             TachoCondition::Reversed,
         ];
-        assert_eq!(
-            conditions,
-            expected.map(|condition| Stimulus::Tacho {
-                channel: 2,
-                condition
-            })
-        );
+        assert_eq!(form.tacho_conditions(), expected);
     }
 
     #[test]

@@ -50,31 +50,10 @@ impl TrainForm {
         }
     }
 
-    /// The potentiometer gives the voltage filled in.
-    pub fn volts(&self) -> Stimulus {
-        Stimulus::ControllerVolts {
-            volts: Some(self.volts),
-        }
-    }
-
     /// The train carries the passengers filled in.
     pub fn load(&self) -> Stimulus {
         Stimulus::Load {
             passengers_kg: self.load_t * 1000.0,
-        }
-    }
-
-    /// The track is as steep as filled in.
-    pub fn gradient(&self) -> Stimulus {
-        Stimulus::Gradient {
-            permille: Some(self.gradient_permille),
-        }
-    }
-
-    /// Rails are as slippery as filled in.
-    pub fn adhesion(&self) -> Stimulus {
-        Stimulus::Adhesion {
-            coefficient: Some(self.adhesion),
         }
     }
 }

@@ -21,7 +21,7 @@ pub fn acting(ui: &mut Ui, forms: &Forms, hand: &mut StimulusPanel<'_>) {
     if all.is_empty() {
         return;
     }
-    let (words, palette) = (hand.words(), Palette::of(ui));
+    let (words, palette) = (hand.words, Palette::of(ui));
     let mut taken = Vec::new();
     ground(&palette).inner_margin(8).show(ui, |ui| {
         ui.horizontal(|ui| {
@@ -59,7 +59,7 @@ pub fn acting(ui: &mut Ui, forms: &Forms, hand: &mut StimulusPanel<'_>) {
 #[rustfmt::skip]
 fn given(forms: &Forms, hand: &StimulusPanel<'_>) -> Vec<Given> {
     use Stimulus as S;
-    let (words, seen) = (&hand.words().bench, hand.seen);
+    let (words, seen) = (&hand.words.bench, hand.seen);
     let value = |signal| text::value(words, signal, seen);
     let is_not = |signal, rest: f64| seen.value(signal).is_some_and(|now| now != rest);
     let tacho = |channel| fill(words.tacho, &[("channel", &channel)]);

@@ -18,13 +18,10 @@ const MAX_DRIFT_HZ_PER_S: f64 = 100.0;
 const MAX_DRIFT_MV_PER_S: f64 = 10_000.0;
 
 pub fn show(ui: &mut Ui, form: &mut CodeForm, config: &UnitConfig, hand: &mut StimulusPanel<'_>) {
-    let words = &hand.words().bench;
+    let words = &hand.words.bench;
     codes(ui, form, config, StimulusPath::Harness, hand);
-    row(ui, words.codes_along, |ui, _| {
-        hand.switch(ui, words.codes_along, None, |on| Stimulus::CodesAlong {
-            on,
-        });
-    });
+    let along = |on| Stimulus::CodesAlong { on };
+    hand.switch(ui, words.codes_along, None, along);
     free(ui, form, words);
     row(ui, "", |ui, _| {
         hand.button(ui, words.give_signal, form.free(StimulusPath::Harness));
@@ -55,7 +52,7 @@ pub fn codes(
     way: StimulusPath,
     hand: &mut StimulusPanel<'_>,
 ) {
-    let words = &hand.words().bench;
+    let words = &hand.words.bench;
     let name = match way {
         StimulusPath::Harness => words.speed_code,
         StimulusPath::TestBoard => words.test_code,

@@ -1,5 +1,6 @@
 //! Buttons for manual stimuli: enabled only while the stimulus is permitted, with the reason otherwise.
 
+use protocol::signal::Signal;
 use std::ops::RangeInclusive;
 
 use btu_rig::procedure::plan::Connection;
@@ -44,10 +45,6 @@ impl StimulusPanel<'_> {
         self.bench.live().connection.unwrap_or(Connection::Btu)
     }
 
-    pub fn words(&self) -> &'static Words {
-        self.words
-    }
-
     /// A button that gives a stimulus, known by what stands on it.
     pub fn button(&mut self, ui: &mut Ui, text: &str, stimulus: Stimulus) {
         self.add(ui, Button::new(text), stimulus);
@@ -76,7 +73,35 @@ impl StimulusPanel<'_> {
         response.clicked()
     }
 
-    /// Two buttons, on and off.
+    /// A row of buttons, each with what stands on it, whether it is in force, and what it gives.
+    pub fn choices<'t>(
+        &mut self,
+        ui: &mut Ui,
+        name: &str,
+        all: impl IntoIterator<Item = (&'t str, bool, Stimulus)>,
+    ) {
+        row(ui, name, |ui, _| {
+            for (text, in_force, stimulus) in all {
+                self.choice(ui, name, text, in_force, stimulus);
+            }
+        });
+    }
+    /// A row of buttons that bring a signal to each of its states, in their order.
+    pub fn states(
+        &mut self,
+        ui: &mut Ui,
+        name: &str,
+        signal: Signal,
+        stimuli: impl Iterator<Item = Stimulus>,
+    ) {
+        let texts = self.words.bench.states(signal).into_iter();
+        let all = stimuli.zip(texts).enumerate();
+        let seen = self.seen;
+        let all =
+            all.map(|(place, (stimulus, text))| (text, seen.is(signal, place as f64), stimulus));
+        self.choices(ui, name, all);
+    }
+    /// A row of two buttons, on and off.
     pub fn switch(
         &mut self,
         ui: &mut Ui,
@@ -85,9 +110,9 @@ impl StimulusPanel<'_> {
         stimulus: impl Fn(bool) -> Stimulus,
     ) {
         let words = &self.words.bench;
-        for (on, text) in [(true, words.on), (false, words.off)] {
-            self.choice(ui, name, text, state == Some(on), stimulus(on));
-        }
+        let both = [(true, words.on), (false, words.off)];
+        let both = both.map(|(on, text)| (text, state == Some(on), stimulus(on)));
+        self.choices(ui, name, both);
     }
 
     /// Applies the stimulus, unless something has changed since the frame began.

@@ -13,32 +13,28 @@ const MAX_VOLTS: f64 = 10.0;
 const SLIDER: f32 = 190.0;
 
 pub fn show(ui: &mut Ui, form: &mut TrainForm, hand: &mut StimulusPanel<'_>) {
-    let words = &hand.words().bench;
+    let words = &hand.words.bench;
     lever(ui, form, hand, words);
-    row(ui, words.reverser, |ui, _| {
-        for (position, text) in [(1, words.forward), (0, words.neutral), (-1, words.backward)] {
-            let stimulus = Stimulus::Reverser { position };
-            hand.choice(ui, words.reverser, text, false, stimulus);
-        }
-    });
+    let positions = [(1, words.forward), (0, words.neutral), (-1, words.backward)];
+    let positions =
+        positions.map(|(position, text)| (text, false, Stimulus::Reverser { position }));
+    hand.choices(ui, words.reverser, positions);
     row(ui, words.volts, |ui, label| {
         number(ui, label, &mut form.volts, 0.0..=MAX_VOLTS, "V");
-        hand.choice(ui, words.volts, words.set, false, form.volts());
-        let own = Stimulus::ControllerVolts { volts: None };
-        hand.choice(ui, words.volts, words.as_lever, false, own);
-    });
-    row(ui, words.contacts, |ui, _| {
-        for (text, contacts) in [
-            ("P", Some((true, false))),
-            ("B", Some((false, true))),
-            ("P + B", Some((true, true))),
-            ("—", Some((false, false))),
-            (words.as_lever, None),
-        ] {
-            let stimulus = Stimulus::ControllerContacts { contacts };
-            hand.choice(ui, words.contacts, text, false, stimulus);
+        for (text, volts) in [(words.set, Some(form.volts)), (words.as_lever, None)] {
+            let stimulus = Stimulus::ControllerVolts { volts };
+            hand.choice(ui, words.volts, text, false, stimulus);
         }
     });
+    let contacts = [
+        ("P", Some((true, false))),
+        ("B", Some((false, true))),
+        ("P + B", Some((true, true))),
+        ("—", Some((false, false))),
+        (words.as_lever, None),
+    ]
+    .map(|(text, contacts)| (text, false, Stimulus::ControllerContacts { contacts }));
+    hand.choices(ui, words.contacts, contacts);
 }
 
 /// A slider that moves the lever as it is moved, and a button for each notch.

@@ -7,23 +7,17 @@ use protocol::line::Line;
 use super::buttons::{StimulusPanel, named_number, one_of, row};
 use crate::pages::bench::forms::MarkerForm;
 
+/// The markers along a section, by their numbers from 1.
+pub const MARKERS: [&str; 4] = ["PSM1", "PSM2", "PSM3", "PSM4"];
 /// Farthest a marker can be moved, m.
 const MAX_MOVE_M: f64 = 100.0;
 
 pub fn show(ui: &mut Ui, form: &mut MarkerForm, line: &Line, hand: &mut StimulusPanel<'_>) {
-    let words = &hand.words().bench;
-    row(ui, words.marker_pulse, |ui, _| {
-        for psm in 1..=4 {
-            let name = format!("PSM{psm}");
-            hand.choice(
-                ui,
-                words.marker_pulse,
-                &name,
-                false,
-                Stimulus::Marker { psm },
-            );
-        }
-    });
+    let words = &hand.words.bench;
+    let pulses = (1..)
+        .zip(MARKERS)
+        .map(|(psm, name)| (name, false, Stimulus::Marker { psm }));
+    hand.choices(ui, words.marker_pulse, pulses);
     row(ui, words.section, |ui, label| {
         one_of(ui, label, &mut form.section, sections(line));
         let laid = hand.given.laid == Some(form.section);
@@ -32,7 +26,7 @@ pub fn show(ui: &mut Ui, form: &mut MarkerForm, line: &Line, hand: &mut Stimulus
         hand.choice(ui, words.section, words.take_up, false, none);
     });
     row(ui, words.marker, |ui, label| {
-        let all = (1..=4).map(|psm| (psm, format!("PSM{psm}")));
+        let all = (1..).zip(MARKERS.map(str::to_owned));
         one_of(ui, label, &mut form.psm, all);
         let range = -MAX_MOVE_M..=MAX_MOVE_M;
         named_number(ui, words.move_by, &mut form.by_m, range, "m");

@@ -77,7 +77,7 @@ pub fn stimuli(ui: &mut Ui, forms: &mut Forms, setup: &BenchSetup, hand: &mut St
     if connection == Connection::Ptu {
         groups.rotate_right(1);
     }
-    let words = &hand.words().bench;
+    let words = &hand.words.bench;
     find_edit(ui, &mut forms.find, words.find, f32::INFINITY);
     seek(ui, "");
     acting::acting(ui, forms, hand);

@@ -10,7 +10,7 @@ use crate::Palette;
 use ptu_report::words::Words;
 
 pub fn show(ui: &mut Ui, hand: &mut StimulusPanel<'_>) {
-    let words = hand.words();
+    let words = hand.words;
     row(ui, words.bench.self_test, |ui, _| {
         hand.button(ui, words.bench.run_self_test, Stimulus::PtuSelfTest);
     });

@@ -5,7 +5,7 @@ use eframe::egui::Ui;
 use protocol::signal::Signal;
 
 use super::buttons::{StimulusPanel, named_number, number, row};
-use crate::pages::bench::forms::{MotionForm, TachoKind};
+use crate::pages::bench::forms::MotionForm;
 use ptu_report::words::fill;
 
 /// Fastest the generators turn, km/h.
@@ -17,7 +17,7 @@ const MAX_NOISE_PER_S: f64 = 5_000.0;
 const MAX_FACTOR: f64 = 10.0;
 
 pub fn show(ui: &mut Ui, form: &mut MotionForm, hand: &mut StimulusPanel<'_>) {
-    let words = &hand.words().bench;
+    let words = &hand.words.bench;
     row(ui, words.to_speed, |ui, label| {
         number(ui, label, &mut form.to_kmh, 0.0..=MAX_KMH, "km/h");
         let accel = &mut form.accel_kmhps;
@@ -31,21 +31,15 @@ pub fn show(ui: &mut Ui, form: &mut MotionForm, hand: &mut StimulusPanel<'_>) {
         number(ui, label, &mut form.distance_m, 0.1..=MAX_TRAVEL_M, "m");
         hand.button(ui, words.travel, form.travel());
     });
-    row(ui, words.direction, |ui, _| {
-        for (text, backward) in [(words.forward, false), (words.backward, true)] {
-            let stimulus = Stimulus::Direction { backward };
-            hand.choice(ui, words.direction, text, false, stimulus);
-        }
-    });
+    let directions = [(words.forward, false), (words.backward, true)];
+    let directions =
+        directions.map(|(text, backward)| (text, false, Stimulus::Direction { backward }));
+    hand.choices(ui, words.direction, directions);
     for (channel, signal) in [(1, Signal::Tacho1), (2, Signal::Tacho2)] {
         let name = fill(words.tacho, &[("channel", &channel)]);
-        let states = words.states(signal);
-        row(ui, &name, |ui, _| {
-            for (place, (kind, text)) in TachoKind::ALL.into_iter().zip(&states).enumerate() {
-                let in_force = hand.seen.is(signal, place as f64);
-                hand.choice(ui, &name, text, in_force, form.tacho(channel, kind));
-            }
-        });
+        let all = form.tacho_conditions().into_iter();
+        let all = all.map(|condition| Stimulus::Tacho { channel, condition });
+        hand.states(ui, &name, signal, all);
     }
     row(ui, words.noise, |ui, label| {
         number(
@@ -57,9 +51,6 @@ pub fn show(ui: &mut Ui, form: &mut MotionForm, hand: &mut StimulusPanel<'_>) {
         );
         named_number(ui, words.factor, &mut form.factor, 0.0..=MAX_FACTOR, "×");
     });
-    row(ui, words.train_model, |ui, _| {
-        hand.switch(ui, words.train_model, None, |on| Stimulus::TrainDriven {
-            on,
-        });
-    });
+    let driven = |on| Stimulus::TrainDriven { on };
+    hand.switch(ui, words.train_model, None, driven);
 }

@@ -11,20 +11,15 @@ use crate::pages::bench::forms::TrainForm;
 const MAX_ADHESION: f64 = 1.0;
 
 pub fn show(ui: &mut Ui, form: &mut TrainForm, train: &TrainData, hand: &mut StimulusPanel<'_>) {
-    let words = &hand.words().bench;
-    row(ui, words.tcms_link, |ui, _| {
-        for (condition, text) in [
-            (TcmsCondition::Good, words.good),
-            (TcmsCondition::Silent, words.silent),
-            (TcmsCondition::Stale, words.tcms_stale),
-        ] {
-            let stimulus = Stimulus::Tcms(condition);
-            hand.choice(ui, words.tcms_link, text, false, stimulus);
-        }
-    });
-    row(ui, words.ato_enable, |ui, _| {
-        hand.switch(ui, words.ato_enable, None, |on| Stimulus::AtoEnable { on });
-    });
+    let words = &hand.words.bench;
+    let link = [
+        (TcmsCondition::Good, words.good),
+        (TcmsCondition::Silent, words.silent),
+        (TcmsCondition::Stale, words.tcms_stale),
+    ];
+    let link = link.map(|(condition, text)| (text, false, Stimulus::Tcms(condition)));
+    hand.choices(ui, words.tcms_link, link);
+    hand.switch(ui, words.ato_enable, None, |on| Stimulus::AtoEnable { on });
     row(ui, words.load, |ui, label| {
         let full_t = train.full_load_kg() / 1000.0;
         number(ui, label, &mut form.load_t, 0.0..=full_t, "t");
@@ -33,15 +28,19 @@ pub fn show(ui: &mut Ui, form: &mut TrainForm, train: &TrainData, hand: &mut Sti
     row(ui, words.gradient, |ui, label| {
         let range = -MAX_GRADIENT_PERMILLE..=MAX_GRADIENT_PERMILLE;
         number(ui, label, &mut form.gradient_permille, range, "‰");
-        hand.choice(ui, words.gradient, words.set, false, form.gradient());
-        let usual = Stimulus::Gradient { permille: None };
-        hand.choice(ui, words.gradient, words.as_always, false, usual);
+        let given = Some(form.gradient_permille);
+        for (text, permille) in [(words.set, given), (words.as_always, None)] {
+            let stimulus = Stimulus::Gradient { permille };
+            hand.choice(ui, words.gradient, text, false, stimulus);
+        }
     });
     row(ui, words.adhesion, |ui, label| {
         number(ui, label, &mut form.adhesion, 0.01..=MAX_ADHESION, "");
-        hand.choice(ui, words.adhesion, words.set, false, form.adhesion());
-        let usual = Stimulus::Adhesion { coefficient: None };
-        hand.choice(ui, words.adhesion, words.as_always, false, usual);
+        let given = Some(form.adhesion);
+        for (text, coefficient) in [(words.set, given), (words.as_always, None)] {
+            let stimulus = Stimulus::Adhesion { coefficient };
+            hand.choice(ui, words.adhesion, text, false, stimulus);
+        }
     });
     let TrainData::Cars(cars) = train else {
         return;
@@ -61,12 +60,9 @@ pub fn show(ui: &mut Ui, form: &mut TrainForm, train: &TrainData, hand: &mut Sti
         if what == CutOut::Inverter && !motor {
             continue;
         }
-        row(ui, name, |ui, _| {
-            for (on, text) in [(true, words.cut_off), (false, words.cut_in)] {
-                let car = form.car;
-                let stimulus = Stimulus::CutOut { what, car, on };
-                hand.choice(ui, name, text, false, stimulus);
-            }
-        });
+        let car = form.car;
+        let both = [(true, words.cut_off), (false, words.cut_in)];
+        let both = both.map(|(on, text)| (text, false, Stimulus::CutOut { what, car, on }));
+        hand.choices(ui, name, both);
     }
 }

@@ -1,5 +1,6 @@
 //! The unit's own TEST board: what a laptop on the maintenance port can give to an armed unit.
 
+use crate::pages::bench::stimuli::markers::MARKERS;
 use btu_rig::stimulus::Stimulus;
 use eframe::egui::Ui;
 use protocol::config::UnitConfig;
@@ -22,7 +23,7 @@ pub fn show(
     line: &Line,
     hand: &mut StimulusPanel<'_>,
 ) {
-    let words = &hand.words().bench;
+    let words = &hand.words.bench;
     row(ui, words.maintenance, |ui, _| {
         hand.button(ui, words.arm, Stimulus::PtuArm);
         hand.button(ui, words.disarm, Stimulus::PtuDisarm);
@@ -52,13 +53,10 @@ pub fn show(
                 .join(", "),
         );
     });
-    row(ui, words.test_marker, |ui, _| {
-        for psm in 1..=4 {
-            let name = format!("PSM{psm}");
-            let stimulus = Stimulus::PtuMarker { psm };
-            hand.choice(ui, words.test_marker, &name, false, stimulus);
-        }
-    });
+    let pulses = (1..)
+        .zip(MARKERS)
+        .map(|(psm, name)| (name, false, Stimulus::PtuMarker { psm }));
+    hand.choices(ui, words.test_marker, pulses);
     ui.separator();
     twc::fields(ui, &mut forms.test_station, line, words);
     row(ui, words.test_twc, |ui, _| {

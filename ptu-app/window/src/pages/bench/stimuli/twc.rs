@@ -21,15 +21,9 @@ const CONDITIONS: [WaysideCondition; 3] = [
 const MAX_ORDER_KMH: u8 = 254;
 
 pub fn show(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut StimulusPanel<'_>) {
-    let words = &hand.words().bench;
-    row(ui, words.wayside, |ui, _| {
-        let states = words.states(Signal::Wayside);
-        for (place, (condition, text)) in CONDITIONS.into_iter().zip(states).enumerate() {
-            let in_force = hand.seen.is(Signal::Wayside, place as f64);
-            let stimulus = Stimulus::Wayside(condition);
-            hand.choice(ui, words.wayside, text, in_force, stimulus);
-        }
-    });
+    let words = &hand.words.bench;
+    let conditions = CONDITIONS.into_iter().map(Stimulus::Wayside);
+    hand.states(ui, words.wayside, Signal::Wayside, conditions);
     fields(ui, form, line, words);
     row(ui, "", |ui, _| {
         hand.button(ui, words.send_frame, form.send(StimulusPath::Harness));
@@ -40,7 +34,7 @@ pub fn show(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut Stimulu
 
 /// Orders beside the data: sent until another is chosen, or none.
 fn orders(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut StimulusPanel<'_>) {
-    let words = &hand.words().bench;
+    let words = &hand.words.bench;
     row(ui, words.destination, |ui, label| {
         number(ui, label, &mut form.destination, 0..=u16::MAX, "");
     });
