@@ -60,6 +60,24 @@ impl Values {
         self.squares += off * (value - self.mean);
     }
 
+    /// These as at most so many runs would have them: with the same mean and standard deviation.
+    fn of_runs(self, runs: u32) -> Self {
+        if self.n + self.missing <= runs {
+            return self;
+        }
+        let (n, missing) = match self.n < self.missing {
+            true => (0, runs),
+            false => (runs, 0),
+        };
+        let squares = self.sd().powi(2) * f64::from(n.max(1) - 1);
+        Self {
+            n,
+            missing,
+            squares,
+            ..self
+        }
+    }
+
     /// Those of both together.
     fn with(&self, other: &Self) -> Self {
         let [here, there] = [self, other].map(|values| f64::from(values.n));
@@ -147,29 +165,21 @@ impl Cell {
         both
     }
 
-    /// These counts as so many runs would have them, of which all show what most did.
+    /// What most of these runs showed, as so many runs would have it.
     pub fn of_runs(&self, runs: u32) -> Self {
         let most = self.signatures.iter().max_by_key(|(_, count)| *count);
-        let values = self.values.iter().map(|(name, values)| {
-            let values = match values.n {
-                0 => Values {
-                    missing: runs,
-                    ..*values
-                },
-                n => Values {
-                    n: runs,
-                    missing: 0,
-                    squares: values.squares * f64::from(runs) / f64::from(n),
-                    ..*values
-                },
-            };
-            (name.clone(), values)
-        });
         Self {
             signatures: most.map(|(s, _)| (s.clone(), runs)).into_iter().collect(),
-            time_s: self.time_s,
-            values: values.collect(),
+            ..self.clone()
         }
+    }
+
+    /// The same with the values of at most so many runs: those taken from a healthy unit are of many more.
+    pub fn with_values_of(mut self, runs: u32) -> Self {
+        self.values
+            .values_mut()
+            .for_each(|values| *values = values.of_runs(runs));
+        self
     }
 
     /// How often it was run.

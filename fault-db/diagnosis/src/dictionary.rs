@@ -195,26 +195,24 @@ impl Dictionary {
         }
     }
 
-    /// Adds a level between two of the last mode, as if all sizes between them had been counted: a check that ends in one way
-    /// at the one and in another at the other may end in either, and values lie about the middle.
-    pub fn add_between(&mut self, levels: [usize; 2]) {
-        let Some(mode) = self.modes.last_mut() else {
+    /// Adds a level between two of a mode, as if runs of both had been one level's: a check that ends in one way at the one and
+    /// in another at the other may end in either, and values lie about the middle. Nothing where one of them has no runs.
+    pub fn add_between(&mut self, mode: &str, levels: [usize; 2]) {
+        let mode = self.modes.iter_mut().find(|known| known.name.id == mode);
+        let Some(mode) = mode else { return };
+        let columns = levels.map(|level| mode.columns.get(level).filter(|column| column.runs > 0));
+        let [Some(one), Some(other)] = columns else {
             return;
         };
-        let [one, other] = levels.map(|level| &mode.columns[level]);
-        let cell = |column: &Column, place: &usize| match column.cells.get(place) {
-            Some(own) => Some(own.clone()),
-            None => Some(self.healthy.cells.get(place)?.of_runs(column.runs)),
+        let cell = |column: &Column, place: &usize| {
+            let own = column.cells.get(place).cloned();
+            let healthy = || Some(self.healthy.cells.get(place)?.of_runs(column.runs));
+            Some(own.or_else(healthy)?.with_values_of(column.runs))
         };
-        let places: BTreeSet<usize> = one
-            .cells
-            .keys()
-            .chain(other.cells.keys())
-            .copied()
-            .collect();
-        let both = |place: usize| match (cell(one, &place), cell(other, &place)) {
-            (Some(one), Some(other)) => Some((place, one.with(&other))),
-            (one, other) => Some((place, one.or(other)?)),
+        let places: BTreeSet<_> = one.cells.keys().chain(other.cells.keys()).collect();
+        let both = |place| match (cell(one, place), cell(other, place)) {
+            (Some(one), Some(other)) => Some((*place, one.with(&other))),
+            (one, other) => Some((*place, one.or(other)?)),
         };
         let mut signs: BTreeMap<Sign, u32> = one.signs.iter().cloned().collect();
         for (sign, count) in &other.signs {

@@ -44,9 +44,9 @@ pub struct Relations {
     pub without_bench: Vec<String>,
     /// Of each signal the parts that make it of others.
     pub makers: BTreeMap<String, BTreeSet<LruId>>,
-    /// Of each signal that is made of one which the bench reads, the parts of the bench on the way of that one: a wire that
-    /// breaks behind the place where it is read deviates first here.
-    pub behind_bench: BTreeMap<String, BTreeSet<LruId>>,
+    /// Of each signal those that it is made of and that the bench records on their way to the unit: a wire of the bench that
+    /// breaks behind that place shows first where the unit makes something of them.
+    pub on_the_way: BTreeMap<String, BTreeSet<String>>,
 }
 
 /// Parts that do not depend on each other, as far as is known.
@@ -56,7 +56,7 @@ pub static NO_RELATIONS: Relations = Relations {
     of_bench: BTreeSet::new(),
     without_bench: Vec::new(),
     makers: BTreeMap::new(),
-    behind_bench: BTreeMap::new(),
+    on_the_way: BTreeMap::new(),
 };
 
 impl Relations {
@@ -105,8 +105,8 @@ impl Relations {
 }
 
 /// Parts of the bench of a group with a part of the unit: what comes from the bench cannot tell the bench from the part that
-/// the bench reaches. None where no trace deviates first at a signal that the part of the bench makes, or that is made of one
-/// behind its place, or a step failed that judges the part of the unit without the bench.
+/// the bench reaches. None where no trace deviates first where a fault of the part of the bench shows, or a step failed that
+/// judges the part of the unit without the bench.
 pub fn rivals<'m>(belief: &Belief<'m, '_>, part: &LruId) -> BTreeSet<&'m LruId> {
     let relations = belief.model.relations;
     if relations.of_bench.contains(part) || fails_without_bench(belief, part) {
@@ -118,19 +118,19 @@ pub fn rivals<'m>(belief: &Belief<'m, '_>, part: &LruId) -> BTreeSet<&'m LruId> 
         .flat_map(|group| &group.parts)
         .filter(|part| relations.of_bench.contains(*part));
     bench
-        .filter(|bench| may_deviate_at(belief, bench))
+        .filter(|bench| may_deviate_at(belief, bench, part))
         .collect()
 }
 
-/// Whether a trace deviates first where a fault of a part of the bench shows; any trace may where none was held against
-/// a sound unit's, or none deviated.
-fn may_deviate_at(belief: &Belief<'_, '_>, part: &LruId) -> bool {
+/// Whether a trace deviates first at a signal that a part of the bench makes, or at one that is made of a signal which the bench
+/// records on its way to the part. Any trace may where none was held against a sound unit's, or none deviated.
+fn may_deviate_at(belief: &Belief<'_, '_>, bench: &LruId, part: &LruId) -> bool {
     let relations = belief.model.relations;
-    let is_behind = |signal: &String| {
-        let behind = relations.behind_bench.get(signal);
-        behind.is_some_and(|parts| parts.contains(part))
+    let reaches = |from: &String| relations.makes(bench, from) && relations.makes(part, from);
+    let shows = |signal: &String| {
+        let mut from = relations.on_the_way.get(signal).into_iter().flatten();
+        relations.makes(bench, signal) || from.any(reaches)
     };
-    let shows = |signal: &String| relations.makes(part, signal) || is_behind(signal);
     let deviating = belief.residuals();
     deviating.is_empty() || deviating.iter().any(shows)
 }

@@ -110,14 +110,15 @@ pub struct ShownSign<'a> {
 pub fn shown_signs(column: &Column) -> Vec<ShownSign<'_>> {
     let mut places: BTreeMap<&Sign, BTreeSet<usize>> = BTreeMap::new();
     for (place, cell) in &column.cells {
-        for sign in cell.signatures.iter().flat_map(|(shown, _)| &shown.signs) {
+        let shown = cell.signatures.iter().filter(|(_, count)| *count > 0);
+        for sign in shown.flat_map(|(shown, _)| &shown.signs) {
             places.entry(sign).or_default().insert(*place);
         }
     }
     let shown = column.signs.iter().map(|(sign, count)| ShownSign {
         sign,
         share: f64::from(*count) / f64::from(column.runs.max(1)),
-        places: places.remove(sign).unwrap_or_default(),
+        places: places.get(sign).cloned().unwrap_or_default(),
     });
     shown.collect()
 }

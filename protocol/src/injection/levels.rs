@@ -50,12 +50,11 @@ impl FaultMode {
         })
     }
 
-    /// The two next levels on one side of what a good part has, for each such two: between them the mode lies at all sizes
-    /// that are not listed.
+    /// Each two neighbouring levels on the same side of a good part: the mode may have any size between them.
     pub fn next_levels(&self) -> Vec<[usize; 2]> {
         let sizes = (0..=self.levels.len()).filter_map(|level| {
             let size = self.at_level(level)?.effect.size()?;
-            Some((size, level))
+            (size != 0.0).then_some((size, level))
         });
         let mut sizes: Vec<_> = sizes.collect();
         sizes.sort_by(|(one, _), (other, _)| one.total_cmp(other));
@@ -71,8 +70,8 @@ impl Effect {
         match self {
             Self::Dead | Self::StuckOn | Self::StuckOff | Self::Deaf { .. } => None,
             Self::Gain { factor } => Some(factor - 1.0),
-            Self::Limit { to: number }
-            | Self::Offset { by: number }
+            Self::Limit { to } => Some(to - FULL_EFFORT),
+            Self::Offset { by: number }
             | Self::Noise { per_s: number }
             | Self::BitErrors { rate: number } => Some(number),
             Self::Delay { ms } | Self::Bounce { ms } => Some(f64::from(ms)),

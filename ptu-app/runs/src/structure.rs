@@ -130,21 +130,7 @@ impl Structure {
             .map_err(|error| Failure::usage(FileTrouble::wrong(directory.shown(FILE), error)))?;
         let of_bench = catalogue.lrus.iter().filter(|part| part.of_bench);
         structure.relations.of_bench = of_bench.map(|part| part.id.clone()).collect();
-        structure.relations.behind_bench = structure.behind_the_bench();
         Ok(structure)
-    }
-
-    /// Of each signal that is made of one which the bench reads, the parts of the bench on the way of that one.
-    fn behind_the_bench(&self) -> BTreeMap<String, BTreeSet<LruId>> {
-        let behind = |(made, step): (&Signal, &WayStep)| {
-            let from = step.from.iter();
-            let read = from.filter(|signal| signal.definition().origin == Origin::Rig);
-            let parts = read.filter_map(|signal| self.steps.get(signal));
-            let parts = parts.flat_map(|way| &way.parts);
-            let of_bench = parts.filter(|part| self.relations.of_bench.contains(*part));
-            (made.name().to_owned(), of_bench.cloned().collect())
-        };
-        self.steps.iter().map(behind).collect()
     }
 
     /// Reads and checks the file; `parts` are those that can be replaced.
@@ -187,6 +173,13 @@ impl Structure {
             (signal.name().to_owned(), parts)
         });
         let makers = makers.collect();
+        let is_recorded = |signal: &&Signal| signal.definition().origin == Origin::Rig;
+        let on_the_way = steps.iter().map(|(signal, step)| {
+            let from = step.from.iter().filter(is_recorded);
+            let from = from.map(|signal| signal.name().to_owned());
+            (signal.name().to_owned(), from.collect())
+        });
+        let on_the_way = on_the_way.collect();
         let of_signals = steps
             .iter()
             .map(|(signal, step)| (*signal, upstream(step, &steps, &written.everywhere)));
@@ -205,7 +198,7 @@ impl Structure {
                 shared: written.shared.into_iter().map(Shared::from).collect(),
                 of_bench: BTreeSet::new(),
                 without_bench: written.without_bench,
-                behind_bench: BTreeMap::new(),
+                on_the_way,
                 makers,
             },
             known_off_way: written.off_way,

@@ -26,7 +26,7 @@ const TOLD: [(&str, &str, [&str; 2]); 4] = [
     (
         "inverter.dead",
         "inverter",
-        ["car 2's VVVF inverter", "2호차 추진제어장치(VVVF)"],
+        ["the VVVF inverter of car 2", "2호차 추진제어장치(VVVF)"],
     ),
 ];
 
@@ -64,6 +64,36 @@ fn a_whole_run_names_the_part_with_reasons() {
         if finding == "found" {
             assert!(said["next_check"].is_null(), "{fault}: nothing is open");
         }
+    }
+}
+
+/// Goal: a size of a fault that no campaign ran is known by those it lies between. Method: sizes half-way between two levels, as own
+/// catalogues; the dictionary of the shipped one.
+#[test]
+fn a_size_that_no_campaign_ran_is_known() {
+    let shipped = include_str!("../../../scripts/units/faults.toml");
+    for (fault, nominal, between) in [
+        ("bench_speed_generator.off", "1.03", "1.045"),
+        ("atp_cpu.wrong_wheel_diameter", "1.04", "1.03"),
+    ] {
+        let at = shipped
+            .find(&format!("id = \"{fault}\""))
+            .expect("the fault");
+        let changed = shipped[at..].replacen(
+            &format!("factor = {nominal}"),
+            &format!("factor = {between}"),
+            1,
+        );
+        let place = Place::new();
+        std::fs::create_dir_all(place.path("own/units")).expect("a folder");
+        let own = format!("{}{changed}", &shipped[..at]);
+        std::fs::write(place.path("own/units/faults.toml"), own).expect("written");
+        place
+            .ptu(&["run", "--inject", fault, "--scripts", "own"])
+            .exits(1);
+        let said = diagnosis(&place);
+        assert_eq!(said["candidates"][0]["fault"], fault, "{said:#}");
+        assert_eq!(said["finding"], "one_of", "{fault}: {said:#}");
     }
 }
 

@@ -270,7 +270,7 @@ fn dictionary(
         }
         mode.next_levels()
             .into_iter()
-            .for_each(|two| dictionary.add_between(two));
+            .for_each(|two| dictionary.add_between(&mode.id, two));
     }
     dictionary
 }

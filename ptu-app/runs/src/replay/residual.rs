@@ -50,14 +50,13 @@ pub fn first_traces(store: &Store, occurrences: &[RunOccurrence]) -> Vec<Origina
     traces.into_iter().filter_map(read).collect()
 }
 
-/// The first signal of each trace that leaves its good twin's, for those that leave it.
-pub fn residuals(traces: &[Original], directory: &ScriptsDirectory) -> Vec<String> {
+/// The first signal of each trace that leaves its good twin's, for those that leave it; after a stop no trace is begun.
+pub fn residuals(traces: &[Original], directory: &ScriptsDirectory, stop: &Stop) -> Vec<String> {
     let first_of = |i: usize| {
         let (twin, rule) = good_twin(&traces[i], directory).ok()?;
         first(&traces[i].trace, &twin, &rule)
     };
-    let stop = Stop::default();
-    let found = pool::run(traces.len(), pool::cores(), &stop, &mut |_| {}, first_of);
+    let found = pool::run(traces.len(), pool::cores(), stop, &mut |_| {}, first_of);
     found.into_iter().filter_map(|(_, first)| first).collect()
 }
 

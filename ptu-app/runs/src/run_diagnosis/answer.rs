@@ -20,8 +20,9 @@ use super::{UNIT_CONFIG, settings};
 use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
 use crate::failure::{DiagnosisTrouble, Failure, Trouble, Unknown, did_you_mean};
-use crate::replay::{first_traces, residuals};
+use crate::replay::{Original, first_traces, residuals};
 use crate::run::{Adaptive, of_run};
+use crate::stop::Stop;
 use crate::stored::{DEPARTURE, findings};
 use crate::structure::Structure;
 use crate::symptoms::{self, Symptom};
@@ -104,15 +105,15 @@ pub fn diagnose(
     let occurrences = store.run_occurrences(id)?;
     let settings = settings(directory)?;
     let traces = first_traces(store, &occurrences);
+    let stop = Stop::default();
     // Repeating what was recorded takes as long as reading what it is held against.
-    let (chosen, residuals) = std::thread::scope(|scope| {
-        let residuals = scope.spawn(|| residuals(&traces, directory));
+    let (chosen, repeated) = std::thread::scope(|scope| {
+        let repeating = scope.spawn(|| residuals(&traces, directory, &stop));
         let chosen = choose(Some(store), directory, connection_of(&run));
-        let residuals = residuals.join();
-        (
-            chosen,
-            residuals.unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
-        )
+        if chosen.is_err() {
+            stop.press();
+        }
+        (chosen, repeating.join())
     });
     let Chosen {
         mut dictionary,
@@ -121,20 +122,20 @@ pub fn diagnose(
         current,
     } = chosen?;
     let mut seen = of_run(&run, &occurrences);
-    seen.residuals = residuals;
-    // What the bench was built of stands beside a trace.
-    let on = traces.first().map(|trace| &trace.made.train.name);
-    if let Some(train) = on.filter(|train| **train != dictionary.basis.train) {
-        let of_dictionary = dictionary.basis.train.clone();
-        warnings.push(Warning::OtherTrain(train.clone(), of_dictionary));
-    }
-    let mut seen = comparable(&run, seen, &dictionary, &mut warnings);
+    seen.residuals = repeated.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    let mut seen = comparable((&run, &traces), seen, &dictionary, &mut warnings);
+    let mut of_all = occurrences.clone();
     for other in with {
-        let more = of_same_unit((store, directory), &run, *other)?;
-        let more = comparable(&run, more, &dictionary, &mut warnings);
+        let other = of_same_unit(store, &run, *other)?;
+        let occurrences = store.run_occurrences(other.run.id)?;
+        let traces = first_traces(store, &occurrences);
+        let mut more = of_run(&other, &occurrences);
+        more.residuals = residuals(&traces, directory, &stop);
+        let more = comparable((&other, &traces), more, &dictionary, &mut warnings);
         seen.steps.extend(more.steps);
         seen.signs.extend(more.signs);
         seen.residuals.extend(more.residuals);
+        of_all.extend(occurrences);
     }
     if seen.is_empty() {
         warnings.push(Warning::NothingToDiagnose);
@@ -157,7 +158,7 @@ pub fn diagnose(
         Relations::default()
     });
     let mut names = catalogue.map(|all| all.lrus).unwrap_or_default();
-    name_cars(&mut names, &occurrences);
+    name_cars(&mut names, &of_all);
     // A symptom that this directory's file no longer has says nothing.
     let said = run.run.symptom.as_deref();
     if let Some(symptom) = said.and_then(|id| symptoms::find(directory, &names, id).ok()) {
@@ -200,16 +201,12 @@ pub(super) fn observed(
 ) -> Result<(RunDetail, Observation), Failure> {
     let run = store.run(run)?;
     let seen = of_run(&run, &store.run_occurrences(run.run.id)?);
-    let seen = comparable(&run, seen, dictionary, &mut Vec::new());
+    let seen = comparable((&run, &[]), seen, dictionary, &mut Vec::new());
     Ok((run, seen))
 }
 
-/// What was seen in another run of the unit.
-fn of_same_unit(
-    (store, directory): (&Store, &ScriptsDirectory),
-    run: &RunDetail,
-    other: Id,
-) -> Result<Observation, Failure> {
+/// Another run of the unit.
+fn of_same_unit(store: &Store, run: &RunDetail, other: Id) -> Result<RunDetail, Failure> {
     let other = store.run(other)?;
     let (this, that) = (&run.run, &other.run);
     if this.id == that.id {
@@ -224,10 +221,7 @@ fn of_same_unit(
             this.unit_config_name.clone(),
         )));
     }
-    let occurrences = store.run_occurrences(that.id)?;
-    let mut seen = of_run(&other, &occurrences);
-    seen.residuals = residuals(&first_traces(store, &occurrences), directory);
-    Ok(seen)
+    Ok(other)
 }
 
 fn no_such_part(part: &LruId, model: &Model<'_>) -> Failure {
@@ -343,9 +337,9 @@ pub fn adaptive(
 }
 
 /// Leaves out what cannot be compared with this dictionary, and warns of it: steps of scripts that were
-/// others then, steps it does not know.
+/// others then, steps it does not know. The train is known where there is a trace.
 fn comparable(
-    run: &RunDetail,
+    (run, traces): (&RunDetail, &[Original]),
     mut seen: Observation,
     dictionary: &Dictionary,
     warnings: &mut Vec<Warning>,
@@ -357,6 +351,10 @@ fn comparable(
     }
     if !run.steps.is_empty() && run.run.line != basis.line {
         warnings.push(Warning::OtherLine(run.run.line.clone(), basis.line.clone()));
+    }
+    let train = traces.first().map(|trace| &trace.made.train.name);
+    if let Some(train) = train.filter(|train| **train != basis.train) {
+        warnings.push(Warning::OtherTrain(train.clone(), basis.train.clone()));
     }
     let others = run.scripts.iter().filter(|script| {
         let name = script.path.trim_end_matches(".star");

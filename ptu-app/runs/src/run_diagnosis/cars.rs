@@ -14,7 +14,7 @@ pub(super) fn name_cars(names: &mut [Lru], occurrences: &[RunOccurrence]) {
         let of_part = occurrences.iter().filter(|one| part.id.as_str() == one.lru);
         let mut cars: BTreeSet<i32> = of_part.filter_map(car).collect();
         if let (Some(car), true) = (cars.pop_first(), cars.is_empty()) {
-            part.name = format!("Car {car}'s {}", part.name);
+            part.name = format!("{} of car {car}", part.name);
             part.name_ko = format!("{car}호차 {}", part.name_ko);
         }
     }

@@ -33,7 +33,7 @@ sentences! {
         NoRelations(why: String): "parts that are hard to tell apart are not known: {why}", "구별하기 어려운 부품의 정보를 읽지 못함: {why}";
         OtherConfiguration(name: String): "the run's unit configuration, {name}, is not the one the dictionary was made with", "시험한 장치 구성 {name}이(가) 고장 사전의 구성과 다름";
         OtherLine(line: String, of_dictionary: String): "the run is on {line}, the dictionary was made on {of_dictionary}", "시험은 {line} 노선, 고장 사전은 {of_dictionary} 노선";
-        OtherTrain(train: String, of_dictionary: String): "the run is on a train of {train}, the dictionary was made on {of_dictionary}", "시험은 {train} 차량, 고장 사전은 {of_dictionary} 차량";
+        OtherTrain(train: String, of_dictionary: String): "the run's train is {train}, the dictionary was made on {of_dictionary}", "시험은 {train} 차량, 고장 사전은 {of_dictionary} 차량";
         OtherScripts(scripts: String): "scripts of the run differ from those the dictionary was made with; their steps are left out: {scripts}", "시험 스크립트가 고장 사전과 달라 다음 절차의 단계는 제외됨: {scripts}";
         Departure: "a departure test is in no fault dictionary" ["; `ptu run --adaptive` on this unit finds the part" "; a search on this unit finds the part"], "출고 점검은 고장 사전에 없음" [". 부품 찾기: 이 장치에서 `ptu run --adaptive`" ". 이 장치에서 적응 시험을 하면 부품을 찾을 수 있음"];
         UnknownSteps(steps: usize): "{steps} steps are not in the dictionary and say nothing", "고장 사전에 없는 단계 {steps}개는 판단에 쓰지 않음";

@@ -130,8 +130,8 @@ fn sign_of(part: &str) -> Sign {
 
 /// Goal: what comes from the bench cannot tell the bench from the part that it reaches. Method: the relay's fault as counted,
 /// with the bench's input in a group with the relay: beside the relay where no trace was held against a sound unit, or one
-/// deviates at what the bench reads, or at what is made of that behind the bench; not where traces deviate at what else the unit
-/// makes, or a check without the bench fails.
+/// deviates at what the bench reads, or at what is made of that; not where traces deviate at what else the unit makes, or at what
+/// is made of what the bench gives to another part, or a check without the bench fails.
 #[test]
 fn a_part_of_the_bench_stays_in_the_answer_unless_something_speaks_against_it() {
     let mut dictionary = dictionary();
@@ -144,6 +144,7 @@ fn a_part_of_the_bench_stays_in_the_answer_unless_something_speaks_against_it() 
     let made = [
         ("contact", parts(["bench", "relay"])),
         ("order", parts(["relay"])),
+        ("elsewhere", parts(["bench"])),
     ];
     let made = made.map(|(signal, by)| (signal.to_owned(), by.into_iter().collect()));
     let relations = |without_bench: &[&str]| Relations {
@@ -153,7 +154,10 @@ fn a_part_of_the_bench_stays_in_the_answer_unless_something_speaks_against_it() 
             .map(|name| (*name).to_owned())
             .collect(),
         makers: made.clone().into(),
-        behind_bench: BTreeMap::from([("use".to_owned(), parts(["bench"]).into_iter().collect())]),
+        on_the_way: BTreeMap::from(
+            [("use", "contact"), ("other", "elsewhere")]
+                .map(|(signal, from)| (signal.to_owned(), [from.to_owned()].into())),
+        ),
         ..grouped(["bench", "relay"])
     };
     let named = |deviates: &[&str], without_bench: &[&str]| {
@@ -168,6 +172,7 @@ fn a_part_of_the_bench_stays_in_the_answer_unless_something_speaks_against_it() 
     assert_eq!(named(&["contact"], &["b"]), both);
     assert_eq!(named(&["use"], &[]), both);
     assert_eq!(named(&["order"], &[]), relay);
+    assert_eq!(named(&["other"], &[]), relay);
     assert_eq!(named(&["contact"], &["a"]), relay);
 }
 

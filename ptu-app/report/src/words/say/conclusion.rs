@@ -263,10 +263,10 @@ fn named(part: &LruId, probability: Option<f64>, names: &[Lru]) -> Both {
     [with_id(&in_sentence(&known.name)), with_id(&known.name_ko)]
 }
 
-/// An English name within a sentence: "the EB relay", "speed sensor 1", "car 2's VVVF inverter".
+/// An English name within a sentence: "the EB relay", "speed sensor 1", "the VVVF inverter of car 2".
 fn in_sentence(name: &str) -> String {
     let within = names::within_a_sentence(name);
-    match name.ends_with(|last: char| last.is_ascii_digit()) || name.starts_with("Car") {
+    match name.ends_with(|last: char| last.is_ascii_digit()) && !name.contains(" of car ") {
         true => within,
         false => format!("the {within}"),
     }
