@@ -39,11 +39,15 @@ pub const fn rows_of(span: Duration) -> usize {
 /// The latest `ROWS` rows, oldest first.
 #[derive(Clone, Debug, Default)]
 pub struct Ring<const ROWS: usize> {
-    /// Rows, at most `ROWS`, one a cycle, oldest first.
-    pub rows: VecDeque<Row>,
+    rows: VecDeque<Row>,
 }
 
 impl<const ROWS: usize> Ring<ROWS> {
+    /// Rows, at most `ROWS`, one a cycle, oldest first.
+    pub fn rows(&self) -> &VecDeque<Row> {
+        &self.rows
+    }
+
     /// Takes a row in place of the oldest; one from before the last empties the ring first.
     pub fn push(&mut self, row: Row) {
         if self.rows.back().is_some_and(|last| row.at < last.at) {

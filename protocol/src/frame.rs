@@ -69,7 +69,8 @@ pub struct Header {
 }
 
 crate::labelled! {
-    /// Reason for rejecting a frame. Each frame is counted under the first reason that applies.
+    /// Reason for rejecting a frame. Each frame is counted under the first reason that applies, in the order of `ALL`; the
+    /// [`label`](Reject::label) is shown and stored.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum Reject: label {

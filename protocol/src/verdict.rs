@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 crate::labelled! {
-    /// Outcome of a step, a measurement, a procedure or a run.
+    /// Outcome of a step, a measurement, a procedure or a run. Files, JSON and the command line have its
+    /// [`label`](Verdict::label).
     ///
     /// The database has a column type of the same five words: `fault-db` names no other crate, and
     /// `ptu_runs::stored` converts.

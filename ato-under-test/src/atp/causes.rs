@@ -28,7 +28,7 @@ pub struct Found {
 impl Atp {
     /// The mode is one in which the speed code counts.
     pub(super) fn by_code(&self) -> bool {
-        match self.sequence.mode {
+        match self.sequence.mode() {
             Mode::Manual | Mode::Automatic | Mode::AutomaticRun => true,
             Mode::Yard => self.yard.ended,
             Mode::Off | Mode::Emergency | Mode::Unknown(_) => false,
@@ -44,7 +44,7 @@ impl Atp {
                 .unwrap_or_else(|| self.decoder.limit(&config.codes))
         };
         let yard = || Speed::from_kmh(config.overspeed.yard_kmh);
-        match self.sequence.mode {
+        match self.sequence.mode() {
             Mode::Yard if self.yard.ended => Speed::min(yard(), by_code()),
             Mode::Yard => yard(),
             Mode::Emergency => Speed::from_kmh(config.overspeed.emergency_kmh),
@@ -56,7 +56,7 @@ impl Atp {
     /// The code, or none, permits no motion; nor does a switched-off mode, in which a welded emergency brake relay
     /// must not leave the train without any brake.
     pub(super) fn must_stand(&self) -> bool {
-        (self.by_code() || self.sequence.mode == Mode::Off) && self.limit == Speed::ZERO
+        (self.by_code() || self.sequence.mode() == Mode::Off) && self.limit == Speed::ZERO
     }
 
     /// The first cause for the emergency brake that holds now. One that is over stays in force until it is acknowledged.
@@ -91,7 +91,7 @@ impl Atp {
             (found.line_opened, EbCause::LineOpened),
             // As at power-up; not a fault, and released without an acknowledgement.
             (
-                !context.vital_passed || self.sequence.mode == Mode::Off,
+                !context.vital_passed || self.sequence.mode() == Mode::Off,
                 EbCause::NotReleased,
             ),
         ];
@@ -114,7 +114,7 @@ impl Atp {
             speed.mps().is_finite() && speed >= Speed::ZERO,
             self.limit.mps().is_finite() && self.limit >= Speed::ZERO,
             self.tachometers.moved_m().is_finite(),
-            self.doors.enable.is_empty() || self.tachometers.standstill,
+            self.doors.enable().is_empty() || self.tachometers.standstill(),
         ];
         holds
             .iter()
@@ -123,7 +123,7 @@ impl Atp {
     }
 
     pub(super) fn service_cause(&self, context: ScanContext, stop: bool) -> FsbCause {
-        let running = self.sequence.mode == Mode::AutomaticRun;
+        let running = self.sequence.mode() == Mode::AutomaticRun;
         let code = self.decoder.code;
         let over = self.overspeed.service_brake;
         let causes = [
@@ -143,7 +143,7 @@ impl Atp {
             (running && !context.tcms_up, FsbCause::TcmsLost),
             (running && !context.ato_ready, FsbCause::AtoFailed),
             (running && self.sequence.forbidden(), FsbCause::NotPermitted),
-            (self.sequence.stops, FsbCause::NotPermitted),
+            (self.sequence.stops(), FsbCause::NotPermitted),
         ];
         causes
             .iter()
@@ -160,7 +160,7 @@ pub fn shown_cause(tested: &Atp, train: &Atp, held: bool) -> EbCause {
     } else {
         EbCause::None
     };
-    let causes = [tested.brake.cause, train.brake.cause, held];
+    let causes = [tested.brake.cause(), train.brake.cause(), held];
     let shown = causes.into_iter().find(|cause| *cause != EbCause::None);
     shown.unwrap_or(EbCause::None)
 }

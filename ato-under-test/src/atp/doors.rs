@@ -46,7 +46,7 @@ pub struct Doors {
     tripped: Edge,
     unaligned: OnDelay,
     refused: Edge,
-    pub enable: Outputs,
+    enable: Outputs,
     not_enabled: OnDelay,
     /// Sides open in the last scan; unknown before the first.
     open: Option<u8>,
@@ -84,6 +84,10 @@ impl Chatter {
 }
 
 impl Doors {
+    pub fn enable(&self) -> Outputs {
+        self.enable
+    }
+
     /// One scan; true while a door is open on a moving train.
     pub fn step(
         &mut self,

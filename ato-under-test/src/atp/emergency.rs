@@ -30,13 +30,17 @@ pub struct BrakeInputs {
 
 #[derive(Clone, Debug)]
 pub struct EmergencyBrake {
-    pub cause: EbCause,
+    cause: EbCause,
     acknowledge: Edge,
     /// Acknowledged at standstill, when the last pulse was not long enough ago: it counts as long as it is given.
     awaits_stillness: bool,
 }
 
 impl EmergencyBrake {
+    pub fn cause(&self) -> EbCause {
+        self.cause
+    }
+
     /// Applied since power-up.
     pub fn new() -> Self {
         Self {

@@ -97,14 +97,14 @@ pub struct ScanContext {
 #[derive(Clone, Debug)]
 pub struct Atp {
     decoder: CodeDecoder,
-    pub tachometers: Tachometers,
+    tachometers: Tachometers,
     yard: Yard,
     proceeds: StopAndProceed,
     supervision: OverspeedSupervision,
     proof: BrakeProof,
-    pub doors: Doors,
+    doors: Doors,
     door_orders: DoorOrders,
-    pub switch: Contacts<ModeSwitch>,
+    switch: Contacts<ModeSwitch>,
     reverser: Contacts<TrainLines>,
     rollback: Rollback,
     jog: JogGuard,
@@ -166,7 +166,7 @@ impl Atp {
         let confirmed = guards.code_confirmation;
         self.decoder
             .step(now, inputs.signal, confirmed, config, log);
-        let moves = !self.tachometers.standstill;
+        let moves = !self.tachometers.standstill();
         let switch = (inputs.mode_switch, moves);
         (self.switch).step(now, switch, Event::ModeSwitchChatters, log);
         let reverser = (inputs.lines).intersection(TrainLines::FORWARD | TrainLines::BACKWARD);
@@ -174,9 +174,9 @@ impl Atp {
         self.tachometers.correct(context.runs_farther);
         let evidence = self.evidence(inputs, context);
         self.tachometers.step(now, inputs, evidence, config, log);
-        let (speed, standstill) = (self.tachometers.speed(), self.tachometers.standstill);
-        let still = self.tachometers.still;
-        let mode = self.sequence.mode;
+        let (speed, standstill) = (self.tachometers.speed(), self.tachometers.standstill());
+        let still = self.tachometers.still();
+        let mode = self.sequence.mode();
         let known = self.decoder.known(&config.codes);
         let meaning = known.map(|code| code.meaning);
         let stops = self.decoder.stops(&config.codes);
@@ -213,7 +213,7 @@ impl Atp {
         self.doors_open = door_lines.open();
         let door_inputs = DoorInputs {
             lines: inputs.alive.then_some(door_lines),
-            supervised: guards.doors && self.sequence.mode != Mode::Off,
+            supervised: guards.doors && self.sequence.mode() != Mode::Off,
             latched: guards.enable_latch,
             standstill,
             aligned: context.aligned,
@@ -229,7 +229,7 @@ impl Atp {
         };
         let door_open = self.doors.step(now, door_inputs, &config.doors, log);
         self.door_orders
-            .step(now, context.door_order, self.doors.enable, log);
+            .step(now, context.door_order, self.doors.enable(), log);
         let moved_m = self.tachometers.ways_m;
         let jog_inputs = JogInputs {
             backward: context.jogs_backward,
@@ -274,7 +274,7 @@ impl Atp {
         self.brake.step(now, brake_inputs, log);
         // The brake of a power-up is not judged at standstill: TCMS may not have told of the line yet.
         let asked =
-            self.brake.applied() && (self.brake.cause != EbCause::NotReleased || !standstill);
+            self.brake.applied() && (self.brake.cause() != EbCause::NotReleased || !standstill);
         let unslowed = !standstill && !proof.proved;
         let stays = context.line_stays;
         self.path
@@ -295,7 +295,7 @@ impl Atp {
     /// A train that has run past its stop point may be jogged back.
     fn may_jog_backward(&self, lines: TrainLines) -> bool {
         let ahead = lines.contains(TrainLines::FORWARD) && !lines.contains(TrainLines::BACKWARD);
-        let run = self.sequence.mode == Mode::AutomaticRun;
+        let run = self.sequence.mode() == Mode::AutomaticRun;
         run && ahead && self.doors_closed && self.limit > Speed::ZERO
     }
 
@@ -339,7 +339,7 @@ impl Atp {
 
     /// Evidence against which the speed is held.
     fn evidence(&self, inputs: &Inputs, context: ScanContext) -> SpeedEvidence {
-        let notch = match self.sequence.mode {
+        let notch = match self.sequence.mode() {
             Mode::AutomaticRun => context.ato_powers,
             Mode::Off => false,
             _ => inputs.controller > 0,

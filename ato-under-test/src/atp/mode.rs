@@ -75,7 +75,7 @@ pub struct ModeInputs {
 
 #[derive(Clone, Debug)]
 pub struct ModeSequence {
-    pub mode: Mode,
+    mode: Mode,
     start: Edge,
     acknowledge: Edge,
     chosen: OnDelay,
@@ -86,14 +86,26 @@ pub struct ModeSequence {
     failed: Refusals,
     /// The next run needs a departure of its own.
     departs_anew: bool,
-    /// The line has ended a run on the way: the train is stopped.
-    pub stops: bool,
+    stops: bool,
     /// Position of the mode switch in the cycle before.
     switch: ModeSwitch,
-    pub refusals: Refusals,
+    refusals: Refusals,
 }
 
 impl ModeSequence {
+    pub fn refusals(&self) -> Refusals {
+        self.refusals
+    }
+
+    /// The line has ended a run on the way: the train is stopped.
+    pub fn stops(&self) -> bool {
+        self.stops
+    }
+
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
     /// State at power-up: off; a departure that is given does not count as new.
     pub fn new() -> Self {
         Self {

@@ -9,7 +9,7 @@ use super::{Atp, Code, CodeDecoder, EmergencyBrake, ModeSequence, Tachometers};
 impl Atp {
     /// States that the output contacts should have.
     pub fn outputs(&self, healthy: bool) -> Outputs {
-        let mut outputs = self.doors.enable | self.door_orders.passed;
+        let mut outputs = self.doors.enable() | self.door_orders.passed;
         let code_valid = matches!(self.decoder.code, Code::Known(_));
         outputs.set(Outputs::EB_RELAY, !self.brake.applied());
         outputs.set(Outputs::FSB, self.fsb_cause != FsbCause::None);
@@ -17,7 +17,7 @@ impl Atp {
         let alarm = self.overspeed.alarm || self.proceeds.warns;
         outputs.set(Outputs::ALARM, alarm);
         outputs.set(Outputs::CODE_VALID, code_valid);
-        outputs.set(Outputs::STANDSTILL, self.tachometers.standstill);
+        outputs.set(Outputs::STANDSTILL, self.tachometers.standstill());
         outputs.set(Outputs::HEALTHY, healthy);
         outputs
     }
@@ -41,6 +41,21 @@ impl Atp {
         self.doors_open
     }
 
+    /// The mode switch comes to rest at no position: no position counts.
+    pub fn switch_chatters(&self) -> bool {
+        self.switch.chatters()
+    }
+
+    /// Sets the way that a pulse stands for, m.
+    pub fn set_pulse(&mut self, pulse_m: f64) {
+        self.tachometers.set_pulse(pulse_m);
+    }
+
+    /// Doors are open on a side that is not enabled.
+    pub fn forced(&self) -> bool {
+        self.doors.hold()
+    }
+
     pub fn tachometers(&self) -> &Tachometers {
         &self.tachometers
     }
@@ -58,7 +73,7 @@ impl Atp {
     }
 
     pub fn enabled(&self) -> DoorSide {
-        enabled_sides(self.doors.enable)
+        enabled_sides(self.doors.enable())
     }
 
     /// ATO may order doors to close. One contact closes all doors, so none may be open on a side that is not

@@ -29,10 +29,9 @@ pub struct Tachometers {
     opposed: OnDelay,
     faulty: bool,
     slow: OnDelay,
-    pub standstill: bool,
+    standstill: bool,
     silent: OnDelay,
-    /// No wheel has made more than a lone pulse for the time of standstill.
-    pub still: bool,
+    still: bool,
     last_pulse: Instant,
     /// Way by each channel at a speed that counts as standing, since the wheels last stood still, m.
     crept_m: [f64; 2],
@@ -55,6 +54,15 @@ struct Noise {
 }
 
 impl Tachometers {
+    /// No wheel has made more than a lone pulse for the time of standstill.
+    pub fn still(&self) -> bool {
+        self.still
+    }
+
+    pub fn standstill(&self) -> bool {
+        self.standstill
+    }
+
     /// Tachometers of a train that stands.
     pub fn new(config: &UnitConfig) -> Self {
         let window = Duration::from_ms(u64::from(config.tacho.window_ms));

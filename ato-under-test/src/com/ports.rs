@@ -88,12 +88,12 @@ impl Ports {
 
     /// Frames rejected on all ports, for any reason.
     pub fn rejected_total(&self) -> u64 {
-        self.sum(|link| link.counters.rejected_total())
+        self.sum(|link| link.counters().rejected_total())
     }
 
     /// Frames rejected on a channel, on all ports.
     pub fn rejected_on(&self, channel: Channel) -> u64 {
-        self.sum(|link| link.counters.rejected_on(channel))
+        self.sum(|link| link.counters().rejected_on(channel))
     }
 
     fn sum(&self, count: impl Fn(&Link) -> u64) -> u64 {

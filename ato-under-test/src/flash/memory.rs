@@ -139,7 +139,7 @@ impl Memory {
             .rings
             .as_ref()
             .filter(|rings| rings.events.at_block_begin());
-        let next = next.map(|rings| rings.events.next);
+        let next = next.map(|rings| rings.events.next());
         let (Some(sequence), Some(clock)) = (next, self.clock) else {
             return Ok(());
         };
@@ -159,7 +159,7 @@ impl Memory {
         }
         let rings = self.rings.as_ref().ok_or(SetClockError::Failed)?;
         let clock = StoredClock {
-            sequence: rings.events.next,
+            sequence: rings.events.next(),
             power_up: self.power_up,
             at_ms: now.stamp_ms(),
             utc_ms: told.utc_ms,
@@ -188,7 +188,7 @@ impl Memory {
         *next = (*next).max(ring.oldest());
         let full = replies.len() + count;
         for _ in 0..LOOKED_AT {
-            if *next >= ring.next {
+            if *next >= ring.next() {
                 return true;
             }
             if replies.len() >= full {
@@ -205,8 +205,8 @@ impl Memory {
     /// The last of these events that is stored, of the entries looked at in a cycle.
     pub fn last_of(&self, events: &[Event]) -> Option<Event> {
         let ring = self.ring(StoreKind::Events)?;
-        let oldest = ring.oldest().max(ring.next.saturating_sub(LOOKED_AT));
-        (oldest..ring.next).rev().find_map(|sequence| {
+        let oldest = ring.oldest().max(ring.next().saturating_sub(LOOKED_AT));
+        (oldest..ring.next()).rev().find_map(|sequence| {
             let Ok(Slot::Entry(stored)) = ring.read(&*self.device, sequence) else {
                 return None;
             };
@@ -222,7 +222,7 @@ impl Memory {
         let ring = self.ring(store);
         StoredEnd {
             store,
-            next_sequence: ring.map_or(0, |ring| ring.next),
+            next_sequence: ring.map_or(0, |ring| ring.next()),
             oldest_sequence: ring.map_or(0, LogRing::oldest),
             power_up: self.power_up,
             works: u8::from(ring.is_some()),

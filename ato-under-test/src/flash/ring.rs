@@ -53,8 +53,7 @@ pub struct LogRing {
     first_block: usize,
     /// Turn of each block; `None`: no header that checks.
     turns: Vec<Option<u32>>,
-    /// Number the next entry gets.
-    pub next: u32,
+    next: u32,
     /// Whether the block that `next` will lie in has its header.
     begun: bool,
     /// Power-up count of the newest entry; 0 if there is none.
@@ -62,6 +61,11 @@ pub struct LogRing {
 }
 
 impl LogRing {
+    /// Number the next entry gets.
+    pub fn next(&self) -> u32 {
+        self.next
+    }
+
     /// Finds what stands in `blocks` blocks from `first_block` on, at least 2; writes nothing. Reads each header,
     /// the last block in use, and more only if that is damaged.
     ///

@@ -24,12 +24,16 @@ pub struct RelayWatch {
     fell: OnDelay,
     /// The line has followed the relay, which is energised still, and is dead now.
     pub line_fell: bool,
-    /// The relay has followed ever since power-up; one failure is not forgotten before the next.
-    pub sound: bool,
+    sound: bool,
     feedback: Duration,
 }
 
 impl RelayWatch {
+    /// The relay has followed ever since power-up; one failure is not forgotten before the next.
+    pub fn sound(&self) -> bool {
+        self.sound
+    }
+
     /// The brake line must follow the relay within `feedback`.
     pub fn new(feedback: Duration) -> Self {
         Self {

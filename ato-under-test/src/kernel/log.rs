@@ -47,7 +47,7 @@ impl EventLog {
             return;
         }
         self.entries.push(LogEntry {
-            index: self.entries.next_index,
+            index: self.entries.next_index(),
             code: event.definition().code,
             at_ms: now.stamp_ms(),
             parameter,
@@ -75,7 +75,7 @@ impl EventLog {
 
     /// Index the next event will get.
     pub fn next_index(&self) -> u32 {
-        self.entries.next_index
+        self.entries.next_index()
     }
 
     /// Forgets all entries; indices go on.

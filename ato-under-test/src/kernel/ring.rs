@@ -7,8 +7,7 @@ use alloc::collections::VecDeque;
 #[derive(Debug)]
 pub struct Ring<T, const N: usize> {
     entries: VecDeque<T>,
-    /// Index the next entry will get.
-    pub next_index: u32,
+    next_index: u32,
 }
 
 impl<T, const N: usize> Default for Ring<T, N> {
@@ -22,6 +21,11 @@ impl<T, const N: usize> Default for Ring<T, N> {
 }
 
 impl<T, const N: usize> Ring<T, N> {
+    /// Index the next entry will get.
+    pub fn next_index(&self) -> u32 {
+        self.next_index
+    }
+
     /// Keeps an entry; the oldest falls off when there is no room.
     pub fn push(&mut self, entry: T) {
         if self.entries.len() == N {

@@ -45,7 +45,7 @@ impl RunRecord {
             return;
         }
         let row = RunRow {
-            index: self.rows.next_index,
+            index: self.rows.next_index(),
             run: self.run,
             at_ms: now.stamp_ms(),
             position_cm: libm::round(cycle.position_m * 100.0) as i32,
@@ -95,7 +95,7 @@ mod tests {
                 record.step(Instant::ZERO, true, cycle(500, AtoState::Run));
             }
             record.step(Instant::ZERO, false, cycle(0, AtoState::Stop));
-            let rows = record.rows.next_index - record.rows.oldest_index();
+            let rows = record.rows.next_index() - record.rows.oldest_index();
             assert_eq!(rows as usize, RUN_ROWS);
             assert_eq!(record.rows.at_or_after(0).map(|row| row.run), Some(run));
         }
@@ -108,7 +108,7 @@ mod tests {
         for _ in 0..100 {
             record.step(Instant::ZERO, true, cycle(0, AtoState::Start));
         }
-        assert_eq!(record.rows.next_index, 1);
+        assert_eq!(record.rows.next_index(), 1);
         let mut moving = cycle(500, AtoState::Run);
         moving.marker = (2, 1);
         record.step(Instant::ZERO, true, moving);

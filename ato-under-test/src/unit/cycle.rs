@@ -22,7 +22,7 @@ impl Unit {
         self.report_tcms(now);
         self.reject_watch.step(now, &self.ports, &mut self.log);
         self.with_functions(|functions, around, log| functions.cycle(now, around, log));
-        let running = self.functions.atp.sequence().mode == Mode::AutomaticRun;
+        let running = self.functions.atp.sequence().mode() == Mode::AutomaticRun;
         self.run_record
             .step(now, running, self.functions.run_cycle());
         self.send_cycle(now, out);

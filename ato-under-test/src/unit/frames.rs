@@ -258,7 +258,7 @@ impl Unit {
             started: self.self_tester.finished(),
             key_on: lines.contains(TrainLines::MAINTENANCE_KEY),
             standing: !self.guards.arm_standstill
-                || tachometers.standstill && !tachometers.faulty(),
+                || tachometers.standstill() && !tachometers.faulty(),
             doors_closed: self.functions.atp.doors_closed(),
             brakes_applied: self.brakes_proved(),
         }

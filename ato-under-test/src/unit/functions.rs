@@ -98,7 +98,7 @@ impl Functions {
         let between_loops = self.between_loops(around);
         self.twc.step(now, between_loops, log);
         if let Some(data) = self.twc.data.as_ref().filter(|_| self.twc.valid) {
-            let standstill = self.atp.tachometers().standstill;
+            let standstill = self.atp.tachometers().standstill();
             let line = &around.setup.line;
             let section = line.section(data.section).filter(|_| around.guards.station);
             let elsewhere =
@@ -109,11 +109,11 @@ impl Functions {
             self.relocated = self.locator.locate(data, line, standstill);
         }
         let by_signal = matches!(
-            self.atp.sequence().mode,
+            self.atp.sequence().mode(),
             Mode::Manual | Mode::Automatic | Mode::AutomaticRun
         );
         // A cab that is left, and taken up again, may stand elsewhere, or face the other way.
-        let stands = self.atp.tachometers().standstill && self.atp.sequence().mode != Mode::Off;
+        let stands = self.atp.tachometers().standstill() && self.atp.sequence().mode() != Mode::Off;
         self.locator
             .keep_place((by_signal || stands) && around.guards.station);
         self.serve_station(now, around, log);
@@ -166,8 +166,8 @@ impl Functions {
             speed: self.atp.tachometers().speed(),
             limit: self.atp.limit(),
             position_m: self.locator.position_m(),
-            mode: self.atp.sequence().mode,
-            eb_cause: self.atp.brake().cause,
+            mode: self.atp.sequence().mode(),
+            eb_cause: self.atp.brake().cause(),
         });
         self.atp
             .scan(now, &self.inputs, context, &around.setup.config, log);
@@ -181,8 +181,8 @@ impl Functions {
             moved_m: tachometers.moved_m(),
             edge_age_s: pulses.sampled_at.since(pulses.edge_at).as_secs(),
             speed_mps: tachometers.channel(channel).mps(),
-            standstill: tachometers.standstill,
-            driven: self.atp.sequence().mode == Mode::AutomaticRun,
+            standstill: tachometers.standstill(),
+            driven: self.atp.sequence().mode() == Mode::AutomaticRun,
         };
         let works = around.guards.marker_debounce;
         let config = &around.setup.config.marker;
@@ -217,7 +217,7 @@ impl Functions {
     }
 
     pub fn aligned(&self) -> bool {
-        self.atp.tachometers().standstill && self.locator.aligned()
+        self.atp.tachometers().standstill() && self.locator.aligned()
     }
 
     /// Whether the train is on the arrival station's loop, with valid station data.
@@ -243,10 +243,10 @@ impl Functions {
     pub fn train_state(&self) -> TrainState {
         let tachometers = self.atp.tachometers();
         TrainState {
-            mode: self.atp.sequence().mode,
+            mode: self.atp.sequence().mode(),
             doors_closed: self.atp.doors_closed(),
             aligned: self.aligned(),
-            standstill: tachometers.standstill,
+            standstill: tachometers.standstill(),
             speed: tachometers.speed(),
         }
     }
@@ -259,8 +259,8 @@ impl Functions {
         let active = self.inputs.alive && self.inputs.lines.contains(TrainLines::HCR);
         let inputs = StationInputs {
             driverless: self.driverless() && active && around.self_tester.finished(),
-            standstill: self.atp.tachometers().standstill,
-            running: self.atp.sequence().mode == Mode::AutomaticRun,
+            standstill: self.atp.tachometers().standstill(),
+            running: self.atp.sequence().mode() == Mode::AutomaticRun,
             enabled: self.atp.enabled(),
             open: self.atp.doors_open(),
             closed: self.atp.doors_closed(),
@@ -300,7 +300,7 @@ impl Functions {
     /// driver moves the controller.
     pub fn holds(&self) -> bool {
         let left_alone = self.atp.sequence().failed()
-            && self.atp.tachometers().standstill
+            && self.atp.tachometers().standstill()
             && self.inputs.controller == 0;
         self.ato_outputs.holding_brake || self.station.waits || left_alone || self.cabs.holds()
     }
@@ -308,7 +308,7 @@ impl Functions {
     fn mode_inputs(&self, around: &Surroundings<'_>) -> ModeInputs {
         let lines = self.inputs.lines;
         let heard = self.departure(around);
-        let standstill = self.atp.tachometers().standstill;
+        let standstill = self.atp.tachometers().standstill();
         let code = matches!(self.atp.decoder().code, Code::Known(_));
         let switch = self.inputs.mode_switch;
         let mut lacking = Refusals::empty();
@@ -345,7 +345,7 @@ impl Functions {
         ModeInputs {
             ready: around.self_tester.finished() && self.inputs.alive && !asleep,
             cab_active: lines.contains(TrainLines::HCR) || given_up,
-            switch: if self.inputs.alive && !self.atp.switch.chatters() {
+            switch: if self.inputs.alive && !self.atp.switch_chatters() {
                 switch
             } else {
                 ModeSwitch::Off
@@ -362,7 +362,7 @@ impl Functions {
             gave_up: self.ato.gave_up(),
             line_open: line_open && !self.atp.brake().applied(),
             line_fell: around.line_fell,
-            forced: self.atp.doors.hold(),
+            forced: self.atp.forced(),
         }
     }
 

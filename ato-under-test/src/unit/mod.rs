@@ -181,7 +181,7 @@ impl Unit {
 
     /// Frames accepted at a port since power-up, on all its channels.
     pub fn frames_accepted(&self, port: Port) -> u64 {
-        self.ports.link(port).counters.accepted_total()
+        self.ports.link(port).counters().accepted_total()
     }
 
     /// One scan, every 10 ms; frames for the harness are appended to `out`, those for the maintenance port wait

@@ -70,8 +70,8 @@ impl Unit {
 
     fn takes_entries(&self) -> bool {
         let atp = &self.functions.atp;
-        atp.tachometers().standstill
-            && atp.sequence().mode != Mode::AutomaticRun
+        atp.tachometers().standstill()
+            && atp.sequence().mode() != Mode::AutomaticRun
             && self.test_mode.is_none()
     }
 
@@ -102,7 +102,7 @@ impl Unit {
         }
         self.setup.config.tacho.wheel_diameter_mm = diameter_mm;
         let pulse_m = self.setup.config.metres_per_pulse();
-        self.functions.atp.tachometers.set_pulse(pulse_m);
+        self.functions.atp.set_pulse(pulse_m);
         self.functions.locator.set_pulse(pulse_m);
         self.board.set_pulse(pulse_m);
         self.log.push(now, Event::WheelEntered, parameter);
@@ -142,12 +142,12 @@ impl Functions {
             return lacks;
         }
         let lines = self.inputs.lines;
-        let standstill = self.atp.tachometers().standstill;
+        let standstill = self.atp.tachometers().standstill();
         lacks.set(OrderLacks::STANDSTILL, !standstill);
         lacks.set(OrderLacks::DOORS_CLOSED, !self.atp.doors_closed());
         lacks.set(OrderLacks::DRIVERLESS, !self.driverless());
         lacks.set(OrderLacks::CAB_ACTIVE, !lines.contains(TrainLines::HCR));
-        let running = self.atp.sequence().mode == Mode::AutomaticRun;
+        let running = self.atp.sequence().mode() == Mode::AutomaticRun;
         lacks.set(OrderLacks::RUN_ENDED, running);
         let busy = self.cabs.busy() || self.stabling.asleep();
         lacks.set(OrderLacks::FREE, busy);
@@ -170,7 +170,7 @@ impl Functions {
         let setup = around.setup;
         let data = self.station_data();
         let departure = data.is_some_and(|data| data.departure == 1);
-        let running = self.atp.sequence().mode == Mode::AutomaticRun;
+        let running = self.atp.sequence().mode() == Mode::AutomaticRun;
         let begins = data.filter(|data| {
             let section = setup.line.section(data.section);
             section.is_some_and(|section| departs(data, section))
@@ -180,7 +180,7 @@ impl Functions {
             hcr: self.inputs.alive.then_some(hcr),
             dropped_by_tcms: around.tcms.reads_cab_unmanned(),
             driverless: !self.inputs.alive || self.driverless(),
-            standstill: self.atp.tachometers().standstill,
+            standstill: self.atp.tachometers().standstill(),
             running,
             departs_from: begins.map(|data| data.station),
             departure,

@@ -56,7 +56,7 @@ impl Unit {
     /// Effort for TCMS, −1024..1023, and the mode that is sent to it.
     pub(super) fn commands(&self, now: Instant) -> (i16, Mode) {
         let of = |functions: &Functions| {
-            let mode = functions.atp.sequence().mode;
+            let mode = functions.atp.sequence().mode();
             (functions.ato_outputs.effort, mode)
         };
         let (effort, mode) = of(&self.functions);
@@ -77,7 +77,7 @@ impl Unit {
 
     fn outputs_of(&self, functions: &Functions) -> Outputs {
         let healthy =
-            self.self_tester.vital_passed() && functions.inputs.alive && self.relay_watch.sound;
+            self.self_tester.vital_passed() && functions.inputs.alive && self.relay_watch.sound();
         let mut outputs = functions.atp.outputs(healthy);
         outputs.set(Outputs::HOLDING_BRAKE, functions.holds());
         // ATP lets an order to open go a scan after it was taken back: never both.

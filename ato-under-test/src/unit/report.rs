@@ -35,8 +35,8 @@ pub fn status(unit: &Unit) -> Message {
     let board_code = unit.board.code().unwrap_or_default();
     Status {
         bits: status_bits(unit),
-        mode: sequence.mode,
-        refusals: sequence.refusals,
+        mode: sequence.mode(),
+        refusals: sequence.refusals(),
         code_index: code_index(unit),
         eb_cause: eb_cause(unit),
         fsb_cause: tested.atp.fsb_cause(),
@@ -82,7 +82,7 @@ pub fn train_state(unit: &Unit, now: Instant) -> TrainState {
         outputs: unit.contacts,
         asked: unit.asked(),
         mode,
-        asked_mode: tested.atp.sequence().mode,
+        asked_mode: tested.atp.sequence().mode(),
         effort,
         asked_effort: tested.ato_outputs.effort,
         code_index: code_index(unit),

@@ -39,7 +39,7 @@ impl Laptop {
             assert_eq!(received.header.channel, Channel::Ptu);
             self.heard.push(received.message);
         }
-        assert_eq!(self.link.counters.rejected_total(), 0);
+        assert_eq!(self.link.counters().rejected_total(), 0);
         bytes.len()
     }
 

@@ -68,7 +68,7 @@ pub struct StepResult {
 }
 
 protocol::labelled! {
-    /// Where something failed that is no step of the procedure.
+    /// Where something failed that is no step of the procedure. Reports have its [`name`](Outside::name).
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Outside: name {
         /// While the unit was brought up, or settled between two procedures.

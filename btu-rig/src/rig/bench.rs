@@ -35,17 +35,21 @@ pub trait UnitLink {
 /// A rig with its unit. Time is virtual; over a port the caller paces the ticks.
 #[derive(Debug)]
 pub struct Bench<L> {
-    /// The rig, to be looked at: sample, events, tester session.
+    /// The rig, to be looked at (sample, events, tester session) and driven.
     pub rig: Rig,
     /// The unit's side.
     pub link: L,
-    /// Time of the last tick.
-    pub now: Instant,
+    now: Instant,
     to_unit: Vec<u8>,
     from_unit: Vec<u8>,
 }
 
 impl<L: UnitLink> Bench<L> {
+    /// Time of the last tick.
+    pub fn now(&self) -> Instant {
+        self.now
+    }
+
     /// A bench at the beginning of time.
     pub fn new(rig: Rig, link: L) -> Self {
         Self {

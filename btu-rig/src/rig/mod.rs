@@ -234,7 +234,7 @@ impl Rig {
         if self.wayside.condition == WaysideCondition::Corrupt {
             self.line_watch.note_on_purpose(now);
         }
-        self.line_watch.step(now, &self.link.counters);
+        self.line_watch.step(now, self.link.counters());
         self.latest.step(now, self.harness.is_there());
         if self.quiescent {
             // The unit may ask for the holding brake a little longer: the next procedure knows nothing

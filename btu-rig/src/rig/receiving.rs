@@ -18,7 +18,7 @@ impl Rig {
                 .on_frame(now, received.header.channel, stamp_ms);
             self.harness.note_frame(now, received.header.channel);
             self.watch
-                .note_frame(received.header.channel, &self.link.counters);
+                .note_frame(received.header.channel, self.link.counters());
             let harness = self.harness.is_there();
             match &received.message {
                 Message::IoOutput(_)
@@ -47,7 +47,7 @@ impl Rig {
                 Message::Taken(taken) => self.watch.note_taken(*taken),
                 Message::TrainState(state) => {
                     self.latest.on_train_state(now, state, harness);
-                    let counters = &self.link.counters;
+                    let counters = &self.link.counters();
                     self.subscription.on_state(stamp_ms, state, counters);
                     if !harness {
                         // The next one is for the next scan, so that each scan's sample has one stamp.

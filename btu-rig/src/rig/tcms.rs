@@ -55,7 +55,7 @@ impl Rig {
             self.tcms_port.fault = self.faults.tcms;
         }
         let equipment = self.train_driven.then(|| self.train.equipment());
-        let refused = self.link.counters.rejected_on(Channel::Tcms);
+        let refused = self.link.counters().rejected_on(Channel::Tcms);
         let desk = &self.desk;
         let on = |switch| desk.switches.on(switch);
         let inputs = TcmsInputs {

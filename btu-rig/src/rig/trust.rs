@@ -103,6 +103,6 @@ impl Rig {
 
     /// Frames taken and refused by the rig.
     pub fn counters(&self) -> &Counters {
-        &self.link.counters
+        self.link.counters()
     }
 }

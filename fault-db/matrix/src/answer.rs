@@ -27,7 +27,7 @@ impl Plan {
     /// the posterior has the states that are possible, likeliest first. A cut probability above 0
     /// says that the tree was not grown to its ends and its cost is a lower limit.
     pub fn to_json(&self, matrix: &Matrix, known: &Posterior) -> Result<String, serde_json::Error> {
-        let name = |state: usize| matrix.states[state].id.as_str();
+        let name = |state: usize| matrix.states()[state].id.as_str();
         let head = Head {
             expected_cost: self.expected_cost,
             optimal: self.optimal,
@@ -35,7 +35,7 @@ impl Plan {
             next_test: self
                 .tree
                 .first_test()
-                .map(|test| matrix.tests[test].id.as_str()),
+                .map(|test| matrix.tests()[test].id.as_str()),
             posterior: known
                 .ranked()
                 .into_iter()

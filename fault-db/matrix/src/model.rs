@@ -28,10 +28,8 @@ pub struct Test {
 /// States, tests, and the probability that each test fails in each state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matrix {
-    /// Its states, in the order given.
-    pub states: Vec<State>,
-    /// Its tests, in the order given.
-    pub tests: Vec<Test>,
+    states: Vec<State>,
+    tests: Vec<Test>,
     /// One row of tests for each state.
     cells: Vec<f64>,
     /// For each test the outcomes that it has instead of passing and failing; a cell is the place of one.
@@ -40,6 +38,16 @@ pub struct Matrix {
 }
 
 impl Matrix {
+    /// Its tests, in the order given.
+    pub fn tests(&self) -> &[Test] {
+        &self.tests
+    }
+
+    /// Its states, in the order given.
+    pub fn states(&self) -> &[State] {
+        &self.states
+    }
+
     /// Checks a matrix; `cells` has a row of all tests for each state.
     ///
     /// # Errors

@@ -192,7 +192,7 @@ fn remarks(matrix: &Matrix) -> Vec<String> {
     let mut remarks = Vec::new();
     let groups = matrix.ambiguity_groups();
     for group in groups.iter().take(SHOWN) {
-        let names = group.iter().map(|s| matrix.states[*s].id.as_str());
+        let names = group.iter().map(|s| matrix.states()[*s].id.as_str());
         remarks.push(format!(
             "no test tells these states apart (their rows are the same): {}",
             some(names.collect())
@@ -202,15 +202,15 @@ fn remarks(matrix: &Matrix) -> Vec<String> {
         remarks.push(format!("{} more groups of states are alike", more + 1));
     }
     let first = matrix.row(0);
-    let mut silent: Vec<bool> = vec![true; matrix.tests.len()];
-    for state in 0..matrix.states.len() {
+    let mut silent: Vec<bool> = vec![true; matrix.tests().len()];
+    for state in 0..matrix.states().len() {
         for ((silent, cell), first) in silent.iter_mut().zip(matrix.row(state)).zip(first) {
             *silent &= cell == first;
         }
     }
-    let names = matrix.tests.iter().zip(silent);
+    let names = matrix.tests().iter().zip(silent);
     let names: Vec<&str> = names
-        .filter(|(_, silent)| *silent && matrix.states.len() > 1)
+        .filter(|(_, silent)| *silent && matrix.states().len() > 1)
         .map(|(test, _)| test.id.as_str())
         .collect();
     if !names.is_empty() {

@@ -66,11 +66,11 @@ pub struct Posterior {
 impl Posterior {
     /// As the matrix has them, before any test.
     pub fn prior(matrix: &Matrix) -> Self {
-        let states = &matrix.states;
+        let states = &matrix.states();
         Self {
             probabilities: states.iter().map(|state| state.probability).collect(),
             possible: vec![true; states.len()],
-            done: vec![false; matrix.tests.len()],
+            done: vec![false; matrix.tests().len()],
         }
     }
 
@@ -83,7 +83,7 @@ impl Posterior {
         let mut before = Vec::new();
         for (name, outcome) in outcomes {
             let test = matrix
-                .tests
+                .tests()
                 .iter()
                 .position(|test| test.id == *name)
                 .ok_or_else(|| MatrixError::OutcomeUnknown { test: name.clone() })?;

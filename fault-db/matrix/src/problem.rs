@@ -45,7 +45,7 @@ impl Belief {
 
 impl<'a> Problem<'a> {
     pub(super) fn new(matrix: &'a Matrix, posterior: &'a Posterior, confidence: f64) -> Self {
-        let tests: Vec<usize> = (0..matrix.tests.len())
+        let tests: Vec<usize> = (0..matrix.tests().len())
             .filter(|test| !posterior.is_done(*test))
             .collect();
         // With certain tests a state of probability 0 is told apart like any other; where an answer need only
@@ -61,7 +61,10 @@ impl<'a> Problem<'a> {
             cells.extend(tests.iter().filter_map(|test| row.get(*test)));
         }
         Self {
-            costs: tests.iter().map(|test| matrix.tests[*test].cost).collect(),
+            costs: tests
+                .iter()
+                .map(|test| matrix.tests()[*test].cost)
+                .collect(),
             weights: groups.iter().map(weight).collect(),
             matrix,
             posterior,

@@ -57,7 +57,7 @@ impl Tree {
     /// Expected cost of the tests.
     pub fn expected_cost(&self, matrix: &Matrix) -> f64 {
         let cost = |node: &Node| match node {
-            Node::Test { test, reached, .. } => reached * matrix.tests[*test].cost,
+            Node::Test { test, reached, .. } => reached * matrix.tests()[*test].cost,
             Node::Leaf(_) => 0.0,
         };
         self.nodes.iter().map(cost).sum()
@@ -95,7 +95,7 @@ impl Tree {
                     text.push('{');
                     line(&mut text, level + 1);
                     text.push_str("\"test\": ");
-                    text.push_str(&quoted(&matrix.tests[*test].id));
+                    text.push_str(&quoted(&matrix.tests()[*test].id));
                     text.push(',');
                     tasks.push(Task::Text("}".into(), level));
                     let mut inner = level + 1;
@@ -127,7 +127,7 @@ impl Leaf {
         let mut ids = self
             .states
             .iter()
-            .map(|state| quoted(&matrix.states[*state].id));
+            .map(|state| quoted(&matrix.states()[*state].id));
         match (ids.next(), ids.len()) {
             (Some(only), 0) => text.push_str(&format!("{{\"state\": {only}")),
             (first, _) => {

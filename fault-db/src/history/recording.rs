@@ -61,7 +61,7 @@ impl RunWriter<'_> {
                 }
             })?;
         let digest = seal::trace::of_recording(&values![
-            self.id,
+            self.id(),
             record.ordinal,
             &record.procedure,
             record.t0_bench_us,

@@ -37,8 +37,7 @@ const MAX_WAITING_STEPS: usize = 16_384;
 /// interrupted.
 pub struct RunWriter<'a> {
     pub(crate) store: &'a Store,
-    /// The run's id.
-    pub id: Id,
+    id: Id,
     pub(crate) run: i64,
     unit: i64,
     line: String,
@@ -67,6 +66,11 @@ pub struct RunWriter<'a> {
 }
 
 impl<'a> RunWriter<'a> {
+    /// The run's id.
+    pub fn id(&self) -> Id {
+        self.id
+    }
+
     /// Begins a run and commits it.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ pub fn one_run(store: &Store, serial: &str, code: i64) -> (Id, FaultStored, Id) 
     let stored = writer.fault(&fault(code, T0_US)).expect("stored");
     let trace = writer.put_trace(&[stored.occurrence], &realistic_trace(600, 3));
     writer.finish(&end(Verdict::Failed)).expect("finished");
-    (writer.id, stored, trace)
+    (writer.id(), stored, trace)
 }
 
 pub fn close_fault(store: &Store, fault: Id) {
@@ -238,11 +238,11 @@ fn later_copies_complete_earlier_ones() {
     let mut writer = RunWriter::begin(&theirs, &run_record("ATC-7")).expect("begun");
     let stored = writer.fault(&fault(1, T0_US)).expect("stored");
     ours.merge_from(&theirs).expect("merged");
-    let run = |store: &Store| store.run(writer.id).expect("there").run;
+    let run = |store: &Store| store.run(writer.id()).expect("there").run;
     assert_eq!(run(&ours).state, RunState::Interrupted);
 
     ours.put_acknowledged(stored.fault, "lee", "", T0_US + 20);
-    let id = writer.id;
+    let id = writer.id();
     let trace = writer.put_trace(&[stored.occurrence], &realistic_trace(20, 1));
     writer.finish(&end(Verdict::Failed)).expect("finished");
     theirs.put_note(stored.fault, "kim", "seen before", T0_US + 10);

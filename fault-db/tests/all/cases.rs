@@ -34,12 +34,12 @@ fn run_of(unit: &str, store: &Store, faults: &[FaultRecord], verdict: Verdict) -
         .map(|fault| writer.fault(fault).expect("stored").fault);
     let seen = seen.collect();
     writer.finish(&end(verdict)).expect("finished");
-    let to_prove = store.repairs_to_prove(writer.id).expect("read");
+    let to_prove = store.repairs_to_prove(writer.id()).expect("read");
     let proven: Vec<_> = to_prove
         .iter()
         .map(|repair| (repair.fault, "by the test".to_owned()))
         .collect();
-    store.confirm_repairs(writer.id, &proven).expect("stored");
+    store.confirm_repairs(writer.id(), &proven).expect("stored");
     seen
 }
 

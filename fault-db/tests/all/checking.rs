@@ -25,7 +25,7 @@ pub fn three_runs(store: &Store) -> Vec<Id> {
             let at_us = T0_US + 60;
             store.put_repair(stored.fault, &repair, "kim", at_us);
         }
-        runs.push(writer.id);
+        runs.push(writer.id());
     }
     runs
 }
@@ -131,7 +131,7 @@ fn a_little_of_everything(dir: &Path) -> (std::path::PathBuf, Store, Vec<Id>) {
     };
     writer.recording(&recording, &[trace]).expect("stored");
     writer.finish(&end(Verdict::Failed)).expect("finished");
-    runs.push(writer.id);
+    runs.push(writer.id());
     drop(writer);
     let acknowledged = store.acknowledge(stored.fault, "lee", "", T0_US + 80);
     acknowledged.expect("acknowledged");
@@ -218,7 +218,7 @@ fn the_seal_covers_the_recorded_values_not_those_changed_by_a_trigger() {
         .execute_batch(planted)
         .expect("planted");
     writer.finish(&end(Verdict::Failed)).expect("finished");
-    let run = writer.id;
+    let run = writer.id();
     let told = store.run(run).expect("there").run.verdict;
     assert_eq!(told, Some(Verdict::Passed), "the trigger's work");
     let found = problems(&store);

@@ -25,7 +25,7 @@ fn run(store: &Store, serial: &str) -> (Id, Id) {
     for (seed, of) in [(3, &[seen.occurrence][..]), (4, &[])] {
         (run.trace(of, &realistic_trace(40, seed))).expect("stored");
     }
-    let id = run.id;
+    let id = run.id();
     run.finish(&end(Verdict::Failed)).expect("finished");
     (store.add_run_note(id, "kim", "looked at", T0_US + 6_000_000)).expect("noted");
     (id, seen.fault)
@@ -281,7 +281,7 @@ fn a_clock_that_went_backward_is_told() {
         let mut record = run_record(serial);
         record.started_at_us += off;
         let mut run = RunWriter::begin(&store, &record).expect("begun");
-        let id = run.id;
+        let id = run.id();
         let end = end(Verdict::Passed);
         run.finish(&RunEnd {
             finished_at_us: end.finished_at_us + off,

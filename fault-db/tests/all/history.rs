@@ -47,7 +47,7 @@ impl History {
             .map(|f| writer.fault(f).expect("a fault").fault);
         let stored = stored.collect();
         writer.finish(&end(Verdict::Failed)).expect("its end");
-        (writer.id, stored)
+        (writer.id(), stored)
     }
 
     fn repair(&self, fault: Id, part: &str, day: i64) {
@@ -66,7 +66,7 @@ impl History {
             })
             .expect("its end");
         let proven: Vec<_> = faults.iter().map(|id| (*id, String::new())).collect();
-        let confirmed = self.store.confirm_repairs(writer.id, &proven);
+        let confirmed = self.store.confirm_repairs(writer.id(), &proven);
         assert_eq!(confirmed.expect("confirmed"), faults);
     }
 

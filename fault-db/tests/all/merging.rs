@@ -549,7 +549,7 @@ fn the_seal_of_a_run_that_ended_otherwise_here_is_left_out() {
     writer.finish(&end(Verdict::Failed)).expect("finished");
     let met = b.merge_from(&a).expect("merged");
     let named: Vec<_> = met.different.iter().map(|run| run.id).collect();
-    assert_eq!(named, [writer.id]);
+    assert_eq!(named, [writer.id()]);
     let conn = Connection::open(b.path()).expect("opens");
     let of_other = "SELECT count(*) FROM seal WHERE what = 'run' AND says NOT LIKE '%found%'";
     let seals: i64 = conn
@@ -566,5 +566,5 @@ fn measured_run(store: &Store) -> Id {
     writer.step(measured).expect("kept");
     writer.fault(&fault(1, T0_US)).expect("stored");
     writer.finish(&end(Verdict::Failed)).expect("finished");
-    writer.id
+    writer.id()
 }

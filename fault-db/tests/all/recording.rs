@@ -34,7 +34,7 @@ fn a_finished_run_reads_back_as_recorded() {
     let after = writer.step(step(2)).expect_err("it is over");
     assert!(matches!(after, StoreError::RunFinished(_)));
 
-    let detail = store.run(writer.id).expect("known");
+    let detail = store.run(writer.id()).expect("known");
     assert_eq!(detail.run.seed, u64::MAX - 3);
     assert_eq!(detail.run.verdict, Some(Verdict::Failed));
     assert_eq!(detail.run.state, RunState::Finished);
@@ -71,7 +71,7 @@ fn a_killed_run_is_interrupted_and_keeps_its_fault() {
     {
         let lock = dir
             .path()
-            .join(format!("a.db.run-{}.lock", writer.id.short()));
+            .join(format!("a.db.run-{}.lock", writer.id().short()));
         let about = std::fs::metadata(lock).expect("locked");
         let mode = std::os::unix::fs::PermissionsExt::mode(&about.permissions());
         assert_eq!(mode & 0o444, 0o444, "all who share the history see it");
@@ -200,7 +200,7 @@ fn a_full_disk_is_an_error_and_loses_nothing() {
     assert!(matches!(failed, StoreError::Full(_)), "{failed}");
     let waiting = writer.waiting_steps() as u32;
     assert!(waiting > 0);
-    let id = writer.id;
+    let id = writer.id();
     drop(writer);
 
     let reader = Store::open_read_only(&path).expect("readable");
@@ -318,10 +318,10 @@ fn a_trace_is_shared_by_occurrences_and_read_by_channel() {
     assert!(
         error.to_string().contains("no channel \"sped\"") && error.to_string().contains("speed")
     );
-    assert_eq!(store.traces(writer.id).expect("listed")[0].occurrences, 2);
+    assert_eq!(store.traces(writer.id()).expect("listed")[0].occurrences, 2);
 
     let missing = writer
-        .trace(&[writer.id], &data)
+        .trace(&[writer.id()], &data)
         .expect_err("a run is no occurrence");
     assert!(matches!(
         missing,
@@ -331,7 +331,7 @@ fn a_trace_is_shared_by_occurrences_and_read_by_channel() {
         }
     ));
     assert_eq!(
-        store.traces(writer.id).expect("listed").len(),
+        store.traces(writer.id()).expect("listed").len(),
         1,
         "rolled back"
     );
@@ -343,7 +343,7 @@ fn a_trace_is_shared_by_occurrences_and_read_by_channel() {
     let of = |fault| store.fault(fault).expect("known").fault.trace_id;
     assert_eq!([of(a.fault), of(c.fault)], [Some(id), Some(second)]);
     writer.finish(&end(Verdict::Failed)).expect("finished");
-    let verified = store.verify_run(writer.id).expect("verified");
+    let verified = store.verify_run(writer.id()).expect("verified");
     assert!(verified.changes.is_empty(), "{:?}", verified.changes);
 }
 
@@ -380,7 +380,7 @@ fn texts_longer_than_are_kept_are_refused_and_messages_are_cut() {
     writer.step(long).expect("kept");
     let fault = writer.fault(&fault(7, T0_US)).expect("stored").fault;
     writer.finish(&end(Verdict::Failed)).expect("finished");
-    let run = writer.id;
+    let run = writer.id();
     let kept = &store.run(run).expect("there").steps[0].message;
     assert!(kept.chars().count() == MOST_TEXT && kept.ends_with('…'));
     refused(store.add_run_note(run, "kim", &note, 1), "note");

@@ -11,7 +11,7 @@ fn one_run(store: &Store) -> Id {
     let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");
     writer.trace(&[], &realistic_trace(60, 3)).expect("stored");
     writer.finish(&end(Verdict::Passed)).expect("finished");
-    writer.id
+    writer.id()
 }
 
 fn note(store: &Store, run: Id, text: &str, at_us: i64) {

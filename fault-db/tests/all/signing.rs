@@ -53,7 +53,7 @@ fn signed_run(store: &Store) -> Id {
     };
     let trace = trace.expect("stored");
     run.recording(&recording, &[trace]).expect("stored");
-    let id = run.id;
+    let id = run.id();
     run.finish(&end(Verdict::Failed)).expect("finished");
     let repair = repair_of("eb_relay", "SN-1", "SN-2", "replaced");
     (store.add_run_note(id, "kim", "brakes looked at", T0_US + 30)).expect("noted");
@@ -99,7 +99,7 @@ fn a_signed_run_says_who_signed_it_and_when() {
 fn without_a_key_a_run_is_unsigned_and_nothing_else_changes() {
     let (_dir, _, store) = new_history();
     let run = RunWriter::begin(&store, &run_record("ATC-7")).expect("begun");
-    let (id, mut run) = (run.id, run);
+    let (id, mut run) = (run.id(), run);
     run.finish(&end(Verdict::Passed)).expect("finished");
     let found = store.verify_run(id).expect("verified");
     assert!(found.signatures.is_empty() && found.changes.is_empty());

@@ -173,7 +173,7 @@ fn an_import_does_not_change_which_step_saw_the_fault_last() {
         ..end(Verdict::Failed)
     };
     writer.finish(&ended).expect("finished");
-    let first = writer.id;
+    let first = writer.id();
     drop(writer);
     store.close().expect("closed");
     depot.store.import(&older).expect("merged");

@@ -41,13 +41,13 @@ fn run(store: &Store, at_us: i64, faults: &[(i64, &str)]) -> Vec<Id> {
     let mut ended = end(verdict);
     ended.finished_at_us = at_us + 60_000_000;
     writer.finish(&ended).expect("finished");
-    let to_prove = store.repairs_to_prove(writer.id).expect("read");
+    let to_prove = store.repairs_to_prove(writer.id()).expect("read");
     let proven: Vec<_> = to_prove
         .iter()
         .filter(|repair| repair.passed.len() > 1)
         .map(|repair| (repair.fault, "by the test".to_owned()))
         .collect();
-    store.confirm_repairs(writer.id, &proven).expect("stored");
+    store.confirm_repairs(writer.id(), &proven).expect("stored");
     seen
 }
 

@@ -109,7 +109,7 @@ pub fn record(store: &Store, serial: &str, at_us: i64, codes: &[i64], traces: bo
             writer.trace(&[stored.occurrence], &trace).expect("a trace");
         }
     }
-    let id = writer.id;
+    let id = writer.id();
     let verdict = if codes.is_empty() {
         Verdict::Passed
     } else {

@@ -46,11 +46,15 @@ pub struct Link {
     receivers: [Option<Receiver>; CHANNELS],
     next_seq: [u16; CHANNELS],
     payload: Vec<u8>,
-    /// Counts of accepted and rejected frames so far.
-    pub counters: Counters,
+    counters: Counters,
 }
 
 impl Link {
+    /// Counts of accepted and rejected frames so far.
+    pub fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
     /// An end that hears every channel, and has received nothing yet.
     pub const fn new(end: End) -> Self {
         Self::with_channels(end, &Channel::ALL)

@@ -80,7 +80,7 @@ fn nothing_is_accepted_that_nobody_sent() {
                     accepted += 1;
                 }
             }
-            refused += link.counters.rejected_total();
+            refused += link.counters().rejected_total();
         }
     }
     // The streams are neither all rubbish nor all sound.

@@ -58,7 +58,7 @@ fn received(end: End, stream: &[u8]) -> (Vec<Received>, Counters) {
     let mut link = Link::new(end);
     link.push(stream);
     let received = std::iter::from_fn(|| link.poll(NOW)).collect();
-    (received, link.counters)
+    (received, *link.counters())
 }
 
 fn words(received: &[Received]) -> Vec<Message> {
@@ -118,7 +118,7 @@ proptest! {
             if rest.is_empty() { break }
         }
         prop_assert_eq!(words(&arrived), messages);
-        prop_assert_eq!(over_channels(|c| link.counters.gaps(c)), 0);
+        prop_assert_eq!(over_channels(|c| link.counters().gaps(c)), 0);
     }
 
     #[test]
@@ -288,7 +288,7 @@ fn run(bench: &mut Link, unit: &mut Link, from: Instant, count: u64) -> usize {
 fn the_sequence_number_wraps() {
     let (mut bench, mut unit) = (Link::new(End::Bench), Link::new(End::Unit));
     assert_eq!(run(&mut bench, &mut unit, NOW, 140_000), 140_000);
-    assert_eq!(unit.counters.gaps(Channel::Ptu), 0);
+    assert_eq!(unit.counters().gaps(Channel::Ptu), 0);
 }
 
 #[test]
@@ -314,7 +314,7 @@ fn a_restarted_tester_is_heard_after_silence() {
     assert!(at(last + RESYNC, &mut restarted));
     assert!(at(last + RESYNC, &mut restarted));
     assert_eq!(unit.last_heard(Channel::Ptu), Some(last + RESYNC));
-    let counters = &unit.counters;
+    let counters = &unit.counters();
     assert_eq!(counters.rejected_on(Channel::Ptu), 2);
     let refused = |channel| counters.rejected_for(Reject::Sequence, channel);
     assert_eq!(
@@ -370,7 +370,7 @@ fn a_receiver_nobody_reads_keeps_the_newest() {
     let received: Vec<_> = std::iter::from_fn(|| link.poll(NOW)).collect();
     assert_eq!(received.last().map(|r| r.header.seq), Some(last));
     assert!(received.len() < 4200, "{}", received.len());
-    assert!(link.counters.garbage() > 1_000_000);
+    assert!(link.counters().garbage() > 1_000_000);
 }
 
 /// `sender` and `receiver` of the catalogue are opposite ends.

@@ -228,11 +228,14 @@ fn outcomes(block: &[String], chunk: usize) -> (Vec<String>, Vec<String>) {
         match line.split_once(' ') {
             Some(("garbage", count)) => {
                 wanted.push(format!("garbage {count}"));
-                seen.push(format!("garbage {}", link.counters.garbage()));
+                seen.push(format!("garbage {}", link.counters().garbage()));
             }
             Some(("gaps", count)) => {
                 wanted.push(format!("gaps {count}"));
-                seen.push(format!("gaps {}", over_channels(|c| link.counters.gaps(c))));
+                seen.push(format!(
+                    "gaps {}",
+                    over_channels(|c| link.counters().gaps(c))
+                ));
             }
             _ => {}
         }
@@ -244,9 +247,9 @@ fn outcomes(block: &[String], chunk: usize) -> (Vec<String>, Vec<String>) {
 /// are noted before the acceptance they stood in front of.
 fn feed(link: &mut Link, now: Instant, came: &mut Vec<String>) {
     loop {
-        let before = link.counters;
+        let before = *link.counters();
         let received = link.poll(now);
-        let after = &link.counters;
+        let after = link.counters();
         for reason in Reject::ALL {
             for _ in before.rejected(reason)..after.rejected(reason) {
                 came.push(format!("reject {}", reason.label()));
@@ -295,7 +298,7 @@ fn the_worked_session_works() {
         link.push(&bytes(&hex.join(" ")));
         let received = link
             .poll(now)
-            .unwrap_or_else(|| panic!("{line}: {:?}", &link.counters));
+            .unwrap_or_else(|| panic!("{line}: {:?}", link.counters()));
         assert_eq!(received.message.name(), name, "{line}");
         match received.message {
             Message::ArmChallenge(asked) => challenge = Some(asked),
@@ -308,7 +311,7 @@ fn the_worked_session_works() {
     }
     assert!(challenge.is_some());
     for link in [unit, bench] {
-        assert_eq!(link.counters.rejected_total(), 0);
-        assert_eq!(over_channels(|channel| link.counters.gaps(channel)), 0);
+        assert_eq!(link.counters().rejected_total(), 0);
+        assert_eq!(over_channels(|channel| link.counters().gaps(channel)), 0);
     }
 }

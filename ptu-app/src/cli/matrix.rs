@@ -127,7 +127,7 @@ fn known(matrix: &Matrix, given: &str) -> Result<Posterior, Failure> {
     };
     Posterior::given(matrix, &outcomes).map_err(|error| match &error {
         MatrixError::OutcomeUnknown { test } => {
-            let names = matrix.tests.iter().map(|test| test.id.as_str());
+            let names = matrix.tests().iter().map(|test| test.id.as_str());
             let hint = did_you_mean(test, names);
             Failure::usage(FileTrouble::wrong(place, format!("{error}{hint}")))
         }
@@ -157,7 +157,7 @@ fn text(matrix: &Matrix, known: &Posterior, plan: &Plan, with_posterior: bool) -
         parts.push(posterior(matrix, known));
     }
     let next = match plan.tree.first_test() {
-        Some(test) => format!("next test {}", matrix.tests[test].id),
+        Some(test) => format!("next test {}", matrix.tests()[test].id),
         None => "no test left that tells more".into(),
     };
     let cut = plan.tree.cut_probability() > 0.0;
@@ -187,7 +187,7 @@ fn posterior(matrix: &Matrix, known: &Posterior) -> String {
     let mut table = Table::new(&["STATE", "PROBABILITY"]);
     let ranked = known.ranked();
     for (state, p) in ranked.iter().take(SHOWN_STATES) {
-        table.row([matrix.states[*state].id.clone(), format!("{p:.6}")]);
+        table.row([matrix.states()[*state].id.clone(), format!("{p:.6}")]);
     }
     match ranked.len().checked_sub(SHOWN_STATES + 1) {
         Some(more) => format!("{}\n… {} more", table.render(), more + 1),
@@ -213,7 +213,7 @@ fn steps(matrix: &Matrix, plan: &Plan) -> String {
         return format!("answer {}", answer(matrix, leaf));
     }
     let headings = ["STEP", "TEST", "COST", "REACHED"];
-    let has_words = (0..matrix.tests.len()).any(|test| !matrix.words(test).is_empty());
+    let has_words = (0..matrix.tests().len()).any(|test| !matrix.words(test).is_empty());
     let by_outcome: &[&str] = match has_words {
         true => &["BY OUTCOME"],
         false => &["IF IT PASSES", "IF IT FAILS"],
@@ -226,7 +226,7 @@ fn steps(matrix: &Matrix, plan: &Plan) -> String {
             ways,
         } = node
         {
-            let of = &matrix.tests[*test];
+            let of = &matrix.tests()[*test];
             let (cost, reached) = (of.cost.to_string(), format!("{:.2} %", reached * 100.0));
             let mut row = vec![number.to_string(), of.id.clone(), cost, reached];
             let led = ways.iter().map(|(outcome, node)| match has_words {
@@ -246,7 +246,7 @@ fn steps(matrix: &Matrix, plan: &Plan) -> String {
 
 fn answer(matrix: &Matrix, leaf: &Leaf) -> String {
     const SHOWN: usize = 5;
-    let names = leaf.states.iter().map(|s| matrix.states[*s].id.as_str());
+    let names = leaf.states.iter().map(|s| matrix.states()[*s].id.as_str());
     let mut text = names.take(SHOWN).collect::<Vec<_>>().join(" or ");
     if let Some(more) = leaf.states.len().checked_sub(SHOWN + 1) {
         text.push_str(&format!(" or {} more", more + 1));

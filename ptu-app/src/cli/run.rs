@@ -129,7 +129,6 @@ pub struct RunArguments {
     check: bool,
     /// Show what would be run and drive nothing: a line for each procedure; all steps of those that are named
     #[arg(long)]
-    /// Whether the command drives nothing, and lists what would be run.
     pub list: bool,
     /// With --list: all steps, also where no procedure is named
     #[arg(long, requires = "list")]

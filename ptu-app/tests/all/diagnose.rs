@@ -67,36 +67,6 @@ fn a_whole_run_names_the_part_with_reasons() {
     }
 }
 
-/// Goal: a size of a fault that no campaign ran is known by those it lies between. Method: sizes half-way between two levels, as own
-/// catalogues; the dictionary of the shipped one.
-#[test]
-fn a_size_that_no_campaign_ran_is_known() {
-    let shipped = include_str!("../../../scripts/units/faults.toml");
-    for (fault, nominal, between) in [
-        ("bench_speed_generator.off", "1.03", "1.045"),
-        ("atp_cpu.wrong_wheel_diameter", "1.04", "1.03"),
-    ] {
-        let at = shipped
-            .find(&format!("id = \"{fault}\""))
-            .expect("the fault");
-        let changed = shipped[at..].replacen(
-            &format!("factor = {nominal}"),
-            &format!("factor = {between}"),
-            1,
-        );
-        let place = Place::new();
-        std::fs::create_dir_all(place.path("own/units")).expect("a folder");
-        let own = format!("{}{changed}", &shipped[..at]);
-        std::fs::write(place.path("own/units/faults.toml"), own).expect("written");
-        place
-            .ptu(&["run", "--inject", fault, "--scripts", "own"])
-            .exits(1);
-        let said = diagnosis(&place);
-        assert_eq!(said["candidates"][0]["fault"], fault, "{said:#}");
-        assert_eq!(said["finding"], "one_of", "{fault}: {said:#}");
-    }
-}
-
 /// Goal: a campaign that is killed loses no run that was over, makes none twice, and comes to the same dictionary. Method:
 /// killed twice, in a campaign more often, each time when its file has grown by some runs; beside it one that nothing disturbs.
 #[test]

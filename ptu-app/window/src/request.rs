@@ -147,10 +147,13 @@ impl<T> CachedResponse<Vec<T>> {
     }
 }
 
+/// Which database is open, and how often it was changed.
+type DataVersion = (usize, u64);
+
 /// A response that is requested again when the data have changed, or something else is to be read.
 pub struct FollowingResponse<K, T> {
-    /// What was asked for, and the version of the data then; none = to be requested anew.
-    asked: Option<(K, (usize, u64))>,
+    /// What was asked for, and the version of the data then; without a version it is to be requested anew.
+    asked: Option<(K, Option<DataVersion>)>,
     response: CachedResponse<T>,
 }
 
@@ -172,23 +175,31 @@ impl<K: Clone + PartialEq + Send + 'static, T: Send + 'static> FollowingResponse
         context: &PageContext<'_>,
         read: impl FnOnce(&DataPaths, K) -> Result<T, Failure> + Send + 'static,
     ) -> bool {
-        let wanted = (what, context.data_version());
-        if self.asked.as_ref() != Some(&wanted) {
-            let what = wanted.0.clone();
+        if let Some(is_other) = self.wants(&what, context.data_version()) {
             let pending = context.queries.run(move |paths| read(paths, what));
-            match self.asked.replace(wanted.clone()) {
-                Some((before, _)) if before != wanted.0 && !stays => {
-                    self.response.request_other(pending);
-                }
-                _ => self.response.request(pending),
+            match is_other && !stays {
+                true => self.response.request_other(pending),
+                false => self.response.request(pending),
             }
         }
         self.response.poll()
     }
 
-    /// Has it read again.
+    /// Whether `what` is to be requested, and if so, whether something else was asked for before.
+    fn wants(&mut self, what: &K, version: DataVersion) -> Option<bool> {
+        let before = self.asked.replace((what.clone(), Some(version)));
+        match before {
+            Some((before, _)) if before != *what => Some(true),
+            Some((_, Some(read))) if read == version => None,
+            _ => Some(false),
+        }
+    }
+
+    /// Has it read again, whether the data have changed or not.
     pub fn read_again(&mut self) {
-        self.asked = None;
+        if let Some((_, version)) = &mut self.asked {
+            *version = None;
+        }
     }
 }
 
@@ -253,5 +264,24 @@ mod tests {
         );
         cached.poll();
         assert!(cached.get().value().is_none());
+    }
+
+    /// Goal: what was asked for is known for as long as a response to it may be shown. Method: the same and something else, with the
+    /// data unchanged, changed, and to be read again.
+    #[test]
+    fn something_else_is_told_from_the_same_read_again() {
+        let mut following = FollowingResponse::<u8, u8>::default();
+        let mut wants = |again: bool, what, version| {
+            if again {
+                following.read_again();
+            }
+            following.wants(&what, (0, version))
+        };
+        assert_eq!(wants(false, 1, 1), Some(false));
+        assert_eq!(wants(false, 1, 1), None);
+        assert_eq!(wants(false, 1, 2), Some(false));
+        assert_eq!(wants(true, 1, 2), Some(false));
+        assert_eq!(wants(true, 2, 2), Some(true));
+        assert_eq!(wants(false, 3, 3), Some(true));
     }
 }

@@ -43,7 +43,7 @@ impl Maintenance {
             replies,
         ) {
             let end = RunEnd {
-                next_index: rows.next_index,
+                next_index: rows.next_index(),
                 oldest_index: rows.oldest_index(),
             };
             replies.push(end.into());

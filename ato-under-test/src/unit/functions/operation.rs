@@ -18,7 +18,7 @@ impl Functions {
         let data = self.twc.data.as_ref();
         let tachometers = self.atp.tachometers();
         let inputs = AtoInputs {
-            mode: self.atp.sequence().mode,
+            mode: self.atp.sequence().mode(),
             limit: self.atp.limit(),
             codes: &around.setup.config.codes,
             heard_within_s: f64::from(around.setup.config.receiver.hold_ms) / 1000.0,
@@ -36,7 +36,7 @@ impl Functions {
             last_marker: self.locator.knows_stop_point(),
             jogs: around.guards.jogging,
             speed: self.wheel_speed(),
-            standstill: tachometers.standstill,
+            standstill: tachometers.standstill(),
             power_cut: self.atp.power_cut() || around.tcms.cuts_power(),
             train: TrainReport {
                 overrides: around.tcms.overrides(),
@@ -103,7 +103,7 @@ impl Functions {
     /// KRN's checks of what ATO needs [S0 §1, §3.3]; its processor is under the watchdog.
     fn ato_checks(&self, around: &Surroundings<'_>) -> Checks {
         let failed = around.self_tester.failed();
-        let run = self.atp.sequence().mode == Mode::AutomaticRun;
+        let run = self.atp.sequence().mode() == Mode::AutomaticRun;
         let causes = [
             (
                 failed.intersects(SelfTest::CONFIGURATION | SelfTest::TRACK_DATABASE),

@@ -260,7 +260,7 @@ impl Tester {
         self.quiet(25);
         self.until(50, |tester| tester.watch.due.is_empty());
         let (due, sent) = (&self.watch.due, self.frames - self.sound);
-        let link = &self.client.link.counters;
+        let link = &self.client.link.counters();
         let mut faults = self.watch.faults;
         if self.watch.refused != sent {
             faults.push(format!(

@@ -131,14 +131,14 @@ impl LinkWatch {
         }
         let heard_any = Channel::ALL.iter().any(|&c| link.last_heard(c).is_some());
         if !heard_any {
-            return Some(self.no_contact(now.since(begun), &link.counters));
+            return Some(self.no_contact(now.since(begun), link.counters()));
         }
         let since = [harness.then_some(begun), asks_since];
         let mut watched = WATCHED.iter().zip(since).zip(self.refused);
         watched.find_map(|((&channel, since), refused_before)| {
             let heard = link.last_heard(channel).unwrap_or(begun).max(since?);
             let silence = now.since(heard.max(self.stalled_until));
-            let refused = RefusedCounts::until_now(&link.counters).since(refused_before);
+            let refused = RefusedCounts::until_now(link.counters()).since(refused_before);
             let at_most = if refused.of_a_start() {
                 STARTING
             } else {

@@ -97,7 +97,7 @@ impl LogSession {
         self.link.push(bytes);
         while let Some(received) = self.link.poll(now) {
             self.watch
-                .note_frame(received.header.channel, &self.link.counters);
+                .note_frame(received.header.channel, self.link.counters());
             match &received.message {
                 Message::Identity(identity) => {
                     self.identified_at = Some((now, identity.uptime_ms));

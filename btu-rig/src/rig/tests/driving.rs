@@ -48,7 +48,7 @@ fn generators_wait_while_the_train_drives() {
         to: Speed::from_kmh(30.0),
         accel_mps2: 1.0,
     };
-    let now = bench.now;
+    let now = bench.now();
     assert!(bench.rig.apply(now, &go).is_err());
     bench.apply(Stimulus::TrainDriven { on: false });
     bench.apply(go);
@@ -79,7 +79,7 @@ fn making_safe_keeps_what_a_turning_wheel_needs() {
         accel_mps2: 3.0,
     });
     bench.run_ms(4000);
-    let now = bench.now;
+    let now = bench.now();
     bench.rig.make_safe(now);
     bench.run_ms(2900);
     let value = |bench: &Bench<FakeUnit>, signal| bench.rig.sample().get(signal).unwrap();
@@ -97,7 +97,7 @@ fn making_safe_keeps_what_a_turning_wheel_needs() {
 #[test]
 fn an_impossible_request_is_refused_with_a_reason() {
     let mut bench = bench(FakeUnit::default());
-    let now = bench.now;
+    let now = bench.now();
     for (stimulus, text) in [
         (
             Stimulus::Tacho {
@@ -168,16 +168,16 @@ fn settling_follows_what_was_begun_last() {
         accel_mps2: 1.0,
     };
     assert_eq!(bench.settle(ramp), Ok(()));
-    assert_eq!(bench.now.as_secs(), 10.0);
+    assert_eq!(bench.now().as_secs(), 10.0);
     bench.apply(Stimulus::Travel {
         distance_m: 200.0,
         speed: to,
         accel_mps2: 1.0,
     });
     assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
-    assert!(bench.now.as_secs() < 11.0 && !bench.rig.motion_settled());
+    assert!(bench.now().as_secs() < 11.0 && !bench.rig.motion_settled());
     while !bench.rig.safe() {
-        let now = bench.now;
+        let now = bench.now();
         bench.rig.make_safe(now);
         bench.run_ms(10);
         assert!(now.as_secs() < 14.0, "10 m/s at 3 m/s² is 3.4 s");

@@ -245,7 +245,7 @@ impl FakeUnit {
                 Status {
                     bits,
                     events: self.next_index(),
-                    rejected_frames: self.link.counters.rejected_total() as u16,
+                    rejected_frames: self.link.counters().rejected_total() as u16,
                     self_test: self.self_test,
                     ..Status::default()
                 }

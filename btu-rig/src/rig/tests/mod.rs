@@ -49,7 +49,7 @@ impl Bench<FakeUnit> {
     }
 
     fn apply(&mut self, stimulus: Stimulus) {
-        let now = self.now;
+        let now = self.now();
         self.rig.apply(now, &stimulus).unwrap();
     }
 

@@ -44,12 +44,12 @@ fn without_a_harness_only_the_tester_speaks() {
     let mut bench = reached(Harness::Auto, aboard());
     assert_eq!(bench.rig.connection(), Some(Connection::Ptu));
     assert_eq!(bench.rig.link_error(), None);
-    let counters = &bench.link.link.counters;
+    let counters = &bench.link.link.counters();
     for channel in [Channel::Io, Channel::Tcms, Channel::Twc] {
         assert_eq!(counters.accepted(channel), 0, "{channel:?}");
     }
     assert!(counters.accepted(Channel::Ptu) > 0);
-    let now = bench.now;
+    let now = bench.now();
     let refused = bench.rig.apply(now, &Stimulus::Hcr { on: false });
     let why = refused.expect_err("goes through the harness").0;
     assert!(
@@ -182,7 +182,7 @@ fn what_others_do_to_the_unit_is_told() {
             armed: 0,
             refusal: ArmRefusal::KeyOff,
         };
-        let now = bench.now;
+        let now = bench.now();
         let mut frame = Vec::new();
         bench.link.link.send(now, &notice.into(), &mut frame);
         bench.rig.receive(now, &frame);

@@ -121,13 +121,13 @@ proptest! {
     ) {
         let mut bench = Bench::new(rig(seed), FakeUnit::default());
         for (stimulus, scans) in steps {
-            let now = bench.now;
+            let now = bench.now();
             let _ = bench.rig.apply(now, &stimulus);
             bench.run_ms(scans * 10);
             check_sample(&bench)?;
             let _ = bench.rig.settled();
         }
-        let now = bench.now;
+        let now = bench.now();
         bench.rig.make_safe(now);
         // 200 km/h at 3 m/s² is 18.5 s.
         bench.run_ms(20_000);
@@ -144,7 +144,7 @@ proptest! {
         let mut pulses = [0u64; 2];
         let mut last = [0u16; 2];
         for (stimulus, scans) in steps {
-            let now = bench.now;
+            let now = bench.now();
             let _ = bench.rig.apply(now, &stimulus);
             for _ in 0..scans {
                 bench.tick().unwrap();
@@ -167,11 +167,11 @@ fn a_disarm_behind_a_self_test_that_hangs_is_not_lost() {
     let mut bench = Bench::new(rig(1), FakeUnit::default());
     bench.run_ms(500);
     for stimulus in [Stimulus::PtuArm, Stimulus::PtuSelfTest, Stimulus::PtuDisarm] {
-        let now = bench.now;
+        let now = bench.now();
         bench.rig.apply(now, &stimulus).unwrap();
         bench.run_ms(300);
     }
-    let now = bench.now;
+    let now = bench.now();
     bench.rig.make_safe(now);
     bench.run_ms(10_000);
     assert!(bench.rig.safe());

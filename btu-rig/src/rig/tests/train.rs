@@ -95,7 +95,7 @@ fn wheels_and_markers_are_what_they_are_not_what_is_configured() {
     ask(&mut bench, 1.0);
     while bench.rig.markers.edges == 0 {
         bench.run_ms(10);
-        assert!(bench.now.as_secs() < 60.0);
+        assert!(bench.now().as_secs() < 60.0);
     }
     let rig = &bench.rig;
     let since_s = f64::from(rig.markers.age_us()) / 1e6;
@@ -243,7 +243,7 @@ fn codes_that_cannot_be_sent_are_refused() {
         };
         line.sections[0].speed_codes = codes.into_iter().map(sent).collect();
         let mut bench = at_departure(&line, Conditions::default());
-        let now = bench.now;
+        let now = bench.now();
         let refusal = bench.rig.apply(now, &along).unwrap_err();
         assert!(refusal.0.contains(words), "{}", refusal.0);
         // In the other order it is the section that is refused.
@@ -274,7 +274,7 @@ fn a_train_can_be_exchanged() {
         car: 1,
         on: true,
     };
-    let now = bench.now;
+    let now = bench.now();
     let refusal = bench.rig.apply(now, &cut_out).unwrap_err();
     assert!(refusal.0.contains("point mass"), "{}", refusal.0);
 }

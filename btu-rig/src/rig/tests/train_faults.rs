@@ -196,7 +196,7 @@ fn reservoir_is_low(bench: &mut Bench<FakeUnit>) -> bool {
 }
 
 fn make_safe(bench: &mut Bench<FakeUnit>) {
-    let now = bench.now;
+    let now = bench.now();
     bench.rig.make_safe(now);
     bench.link.to_tcms = AtcToTcms::default();
     bench.run_ms(3_000);
@@ -212,7 +212,7 @@ fn every_fault_of_the_train_acts_at_its_place_and_nothing_removes_it() {
         assert!(!shows(&mut bench), "{id} before its onset");
         make_safe(&mut bench);
         let onset = POWER_AT + Duration::from_secs(ONSET_S);
-        bench.run_ms(onset.since(bench.now).as_ms() - 20);
+        bench.run_ms(onset.since(bench.now()).as_ms() - 20);
         assert_eq!(bench.rig.faults, TrainFaults::default(), "{id}: too early");
         bench.run_ms(1_000);
         assert!(shows(&mut bench), "{id} after its onset");

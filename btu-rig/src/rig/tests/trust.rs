@@ -114,7 +114,7 @@ fn what_a_line_lost_before_and_after_a_standstill_still_explains_events() {
     let lately = |bench: &Bench<BadLine>| bench.rig.evidence().line.lost_or_damaged_lately;
     let before = lately(&bench);
     assert!(before > 0);
-    let now = bench.now;
+    let now = bench.now();
     bench.rig.note_stalled(now);
     assert!(lately(&bench) >= before, "what was lost is known still");
     assert_eq!(bench.rig.link_error(), None);
@@ -133,13 +133,13 @@ fn a_line_is_silent_from_a_standstill_until_the_unit_is_heard() {
     bench.run_ms(4_000);
     let silent = |bench: &Bench<FakeUnit>| bench.rig.evidence().line.silent;
     assert!(!silent(&bench));
-    let now = bench.now;
+    let now = bench.now();
     bench.rig.note_stalled(now);
     assert!(silent(&bench));
     bench.run_ms(100);
     assert!(!silent(&bench), "the unit is there");
     bench.link.dead = Channel::ALL.to_vec();
-    let now = bench.now;
+    let now = bench.now();
     bench.rig.note_stalled(now);
     bench.run_ms(500);
     assert!(silent(&bench), "the line was pulled");
@@ -172,7 +172,7 @@ fn on_a_good_line_nothing_is_harmed() {
 fn frames_that_are_late_to_a_fast_clock_are_not_the_lines() {
     let mut bench = bench(FakeUnit::with(|it| it.clock_gains = 0.017));
     bench.run_ms(120_000);
-    assert!(bench.link.link.counters.rejected_total() > 200);
+    assert!(bench.link.link.counters().rejected_total() > 200);
     assert_eq!(bench.rig.evidence().line, LineState::default());
     assert_eq!(bench.rig.link_error(), None);
 }
@@ -192,11 +192,11 @@ fn a_fast_clock_is_measured_and_stays_wrong_over_a_stall() {
     bench.run_ms(10_000);
     assert_eq!(bench.rig.evidence().clock_wrong_by_permille, Some(30));
     for _ in 0..30 {
-        let now = bench.now;
+        let now = bench.now();
         bench.rig.note_stalled(now);
         bench.run_ms(4_000);
     }
-    assert!(bench.link.link.counters.rejected_total() > 200);
+    assert!(bench.link.link.counters().rejected_total() > 200);
     assert_eq!(bench.rig.evidence().line, LineState::default());
 }
 

@@ -135,7 +135,7 @@ fn a_standstill_of_the_testers_computer_is_no_silence_of_the_unit() {
     bench.link.dead = vec![Channel::Ptu, Channel::Io];
     for _ in 0..300 {
         bench.tick().unwrap();
-        let now = bench.now;
+        let now = bench.now();
         bench.rig.note_stalled(now);
     }
     bench.run_ms(1400);

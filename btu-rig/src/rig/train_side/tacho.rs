@@ -22,7 +22,7 @@ const MAX_DISPLACED: f64 = 0.3;
 /// One channel's generator.
 #[derive(Debug)]
 pub struct Tacho {
-    pub condition: TachoCondition,
+    condition: TachoCondition,
     metres_per_pulse: f64,
     random: Random,
     /// Distance at which the present condition began, and the phase there: no error adds up.
@@ -43,6 +43,10 @@ pub struct Tacho {
 }
 
 impl Tacho {
+    pub fn condition(&self) -> TachoCondition {
+        self.condition
+    }
+
     /// Channel 0 or 1 at rest, that has not made a pulse for long.
     pub fn new(channel: usize, metres_per_pulse: f64, random: Random) -> Self {
         Self {

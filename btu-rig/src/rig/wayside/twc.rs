@@ -143,8 +143,8 @@ mod tests {
             while unit.poll(now).is_some() {}
             now += PERIOD;
         }
-        assert_eq!(unit.counters.accepted(Channel::Twc), 0);
-        assert_eq!(unit.counters.accepted(Channel::Ptu), 20_000);
-        assert!(unit.counters.rejected_total() >= 10_000);
+        assert_eq!(unit.counters().accepted(Channel::Twc), 0);
+        assert_eq!(unit.counters().accepted(Channel::Ptu), 20_000);
+        assert!(unit.counters().rejected_total() >= 10_000);
     }
 }

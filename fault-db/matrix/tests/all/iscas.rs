@@ -53,7 +53,7 @@ fn huffman(states: u32) -> u32 {
 
 /// For each test the states in which it fails, as bits.
 fn columns(matrix: &Matrix) -> Vec<Vec<u64>> {
-    let states = matrix.states.len();
+    let states = matrix.states().len();
     let column = |test: usize| {
         let mut bits = vec![0; states.div_ceil(64)];
         for state in (0..states).filter(|state| matrix.row(*state)[test] == 1.0) {
@@ -61,7 +61,7 @@ fn columns(matrix: &Matrix) -> Vec<Vec<u64>> {
         }
         bits
     };
-    (0..matrix.tests.len()).map(column).collect()
+    (0..matrix.tests().len()).map(column).collect()
 }
 
 /// Tests in all that any tree of these tests does for the states of a set, at least: every choice of the
@@ -88,7 +88,7 @@ fn least_tests(columns: &[Vec<u64>], set: &[u64], depth: u32) -> u32 {
 #[test]
 fn c17_is_told_apart_by_as_few_tests_as_is_known_of_it() {
     let matrix = matrix(C17, 0.0);
-    assert_eq!((matrix.states.len(), matrix.tests.len()), (22, 32));
+    assert_eq!((matrix.states().len(), matrix.tests().len()), (22, 32));
     let best = planned(&matrix, Method::Optimal);
     assert!(best.optimal);
     near(best.expected_cost, 101.0 / 22.0, 0);
@@ -103,7 +103,7 @@ fn c17_is_told_apart_by_as_few_tests_as_is_known_of_it() {
 fn each_state_of_c432_and_c499_is_isolated_near_the_bound_of_information() {
     for (text, states, most) in [(C432, 458, 1.28), (C499, 723, 1.21)] {
         let matrix = matrix(text, 0.0);
-        assert_eq!(matrix.states.len(), states);
+        assert_eq!(matrix.states().len(), states);
         assert!(matrix.ambiguity_groups().is_empty());
         let made = planned(&matrix, Method::Greedy);
         near(walked(&matrix, &made.tree), made.expected_cost, 0);
@@ -139,15 +139,15 @@ fn greedy_trees_of_a_few_states_of_c432_and_c499_are_near_the_optimum() {
         let mut dice = Dice(20);
         let mut worst = 0.0_f64;
         for turn in 0..5 {
-            let mut left: Vec<usize> = (0..whole.states.len()).collect();
+            let mut left: Vec<usize> = (0..whole.states().len()).collect();
             let some = (0..20).map(|_| left.swap_remove(dice.below(left.len() as u64) as usize));
             let some: Vec<usize> = some.collect();
             let states = some.iter().map(|state| State {
-                id: whole.states[*state].id.clone(),
+                id: whole.states()[*state].id.clone(),
                 probability: 1.0 / some.len() as f64,
             });
             let cells = some.iter().flat_map(|state| whole.row(*state).to_vec());
-            let part = Matrix::new(states.collect(), whole.tests.to_vec(), cells.collect());
+            let part = Matrix::new(states.collect(), whole.tests().to_vec(), cells.collect());
             let part = part.expect("a valid matrix");
             let best = planned(&part, Method::Optimal);
             assert!(best.optimal, "turn {turn}");

@@ -62,7 +62,7 @@ fn answer(matrix: &Matrix, state: usize, tests: &[usize], dice: &mut Dice) -> (u
     let outcomes = tests.iter().map(|test| {
         let failed = dice.share() < matrix.row(state)[*test];
         let outcome = if failed { Outcome::Fail } else { Outcome::Pass };
-        (matrix.tests[*test].id.clone(), outcome)
+        (matrix.tests()[*test].id.clone(), outcome)
     });
     let known = Posterior::given(matrix, &outcomes.collect::<Vec<_>>());
     known.expect("any outcomes are possible").ranked()[0]
@@ -78,8 +78,8 @@ fn answers_from_tests_that_err_are_right_as_often_as_they_say() {
             let matrix = matrix(text, error);
             let mut dice = Dice(7);
             for _ in 0..600 {
-                let state = dice.below(matrix.states.len() as u64) as usize;
-                let all = matrix.tests.len();
+                let state = dice.below(matrix.states().len() as u64) as usize;
+                let all = matrix.tests().len();
                 let count = all / 4 + dice.below(all as u64 * 3 / 4) as usize;
                 let tests = some(count, all, &mut dice);
                 let (named, p) = answer(&matrix, state, &tests, &mut dice);
@@ -106,16 +106,16 @@ fn all_vectors_of_a_circuit_isolate_most_faults_and_name_few_wrong_ones() {
         const SYSTEMS: usize = 250;
         let matrix = matrix(text, error);
         let mut dice = Dice(3);
-        let all: Vec<usize> = (0..matrix.tests.len()).collect();
+        let all: Vec<usize> = (0..matrix.tests().len()).collect();
         let (mut isolated, mut wrong, mut first) = (0, 0, 0);
         for _ in 0..SYSTEMS {
-            let state = dice.below(matrix.states.len() as u64) as usize;
+            let state = dice.below(matrix.states().len() as u64) as usize;
             let (named, p) = answer(&matrix, state, &all, &mut dice);
             first += usize::from(named == state);
             isolated += usize::from(p >= CONFIDENCE);
             wrong += usize::from(p >= CONFIDENCE && named != state);
         }
-        let states = matrix.states.len();
+        let states = matrix.states().len();
         println!(
             "{states} states, {error}: {isolated} isolated, {wrong} of these wrong, {first} right"
         );
@@ -163,24 +163,24 @@ fn run(matrix: &Matrix, state: usize, tests: &[usize], dice: &mut Dice) -> Obser
 fn vector(matrix: &Matrix, test: usize) -> CheckName {
     CheckName {
         procedure: "c17".into(),
-        step: matrix.tests[test].id.clone(),
+        step: matrix.tests()[test].id.clone(),
     }
 }
 
 /// The part at fault: the net of a state's first fault.
 fn part(matrix: &Matrix, state: usize) -> String {
-    let net = matrix.states[state].id.split(['>', '/']).next();
+    let net = matrix.states()[state].id.split(['>', '/']).next();
     format!("net_{}", net.unwrap_or_default())
 }
 
 /// As a campaign makes one: twenty runs of a good circuit and of each fault.
 fn counted(matrix: &Matrix, dice: &mut Dice) -> Dictionary {
-    let all: Vec<usize> = (0..matrix.tests.len()).collect();
+    let all: Vec<usize> = (0..matrix.tests().len()).collect();
     let checks = all.iter().map(|test| vector(matrix, *test)).collect();
     let mut dictionary = Dictionary::new(Basis::default(), vec![1], checks);
     let mut runs = |state| -> Vec<_> { (0..20).map(|_| run(matrix, state, &all, dice)).collect() };
     dictionary.set_healthy(&runs(0));
-    for state in 1..matrix.states.len() {
+    for state in 1..matrix.states().len() {
         let lru = part(matrix, state);
         let mode = ModeName {
             id: format!("{lru}.fault_{state}"),
@@ -202,11 +202,11 @@ fn a_dictionary_counted_from_tests_that_err_is_not_surer_than_it_may_be() {
     for (error, found_at_least) in [(0.01, 0.55), (0.05, 0.30)] {
         const CIRCUITS: usize = 500;
         let matrix = matrix(C17, error);
-        assert_eq!(matrix.states[0].id, "good");
+        assert_eq!(matrix.states()[0].id, "good");
         let mut dice = Dice(11);
         let dictionary = counted(&matrix, &mut dice);
         let settings = Settings {
-            no_fault: 1.0 / matrix.states.len() as f64,
+            no_fault: 1.0 / matrix.states().len() as f64,
             weight_of_step: 0.99,
             // Each fault that a circuit has was counted.
             counted: CountedSettings {
@@ -223,9 +223,9 @@ fn a_dictionary_counted_from_tests_that_err_is_not_surer_than_it_may_be() {
         let mut bands = Bands::default();
         let (mut found, mut wrong) = (0, 0);
         for _ in 0..CIRCUITS {
-            let state = dice.below(matrix.states.len() as u64) as usize;
+            let state = dice.below(matrix.states().len() as u64) as usize;
             let count = 8 + dice.below(25) as usize;
-            let tests = some(count, matrix.tests.len(), &mut dice);
+            let tests = some(count, matrix.tests().len(), &mut dice);
             let seen = run(&matrix, state, &tests, &mut dice);
             let answer = Diagnosis::of(&model, &seen);
             let likeliest = &answer.parts[0];

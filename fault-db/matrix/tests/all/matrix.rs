@@ -98,9 +98,9 @@ fn chance(matrix: &Matrix, state: usize, test: usize, outcome: usize) -> f64 {
 
 /// Least cost of telling states apart by certain tests: every order of every test tried.
 pub(super) fn exhaustive_crisp(matrix: &Matrix, states: &[usize]) -> f64 {
-    let mass: f64 = states.iter().map(|s| matrix.states[*s].probability).sum();
+    let mass: f64 = states.iter().map(|s| matrix.states()[*s].probability).sum();
     let mut best = f64::INFINITY;
-    for (test, it) in matrix.tests.iter().enumerate() {
+    for (test, it) in matrix.tests().iter().enumerate() {
         let parts = (0..matrix.words(test).len().max(2)).map(|outcome| {
             let is_here = |state: &usize| chance(matrix, *state, test, outcome) > 0.0;
             let part = states.iter().copied().filter(is_here);
@@ -153,7 +153,7 @@ pub(super) fn exhaustive_noisy(matrix: &Matrix, weights: &[f64], used: &mut Vec<
             continue;
         }
         used[test] = true;
-        let mut cost = total * matrix.tests[test].cost;
+        let mut cost = total * matrix.tests()[test].cost;
         for part in parts.iter().filter(|part| part.iter().sum::<f64>() > 0.0) {
             cost += exhaustive_noisy(matrix, part, used);
         }
@@ -165,7 +165,7 @@ pub(super) fn exhaustive_noisy(matrix: &Matrix, weights: &[f64], used: &mut Vec<
 
 /// Sends every state down the tree with its probability; checks the ends and gives the cost.
 pub(super) fn walked(matrix: &Matrix, tree: &Tree) -> f64 {
-    let prior: Vec<f64> = matrix.states.iter().map(|s| s.probability).collect();
+    let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
     let mut open = vec![(0, prior, Vec::new())];
     let mut cost = 0.0;
     while let Some((place, weights, way)) = open.pop() {
@@ -178,7 +178,7 @@ pub(super) fn walked(matrix: &Matrix, tree: &Tree) -> f64 {
             } => {
                 assert!(!way.contains(test), "a test is done once on a way");
                 assert!((reached - mass).abs() < 1e-9);
-                cost += mass * matrix.tests[*test].cost;
+                cost += mass * matrix.tests()[*test].cost;
                 let way = [&way[..], &[*test]].concat();
                 for (outcome, node) in ways.iter().rev() {
                     let weigh = |s: usize| weights[s] * chance(matrix, s, *test, *outcome);
@@ -230,7 +230,7 @@ fn optimum_of_200_random_matrices_is_the_exhaustive_one() {
         let noisy_in_ten = if crisp { 0 } else { 1 + dice.below(10) };
         let matrix = random(&mut dice, states, tests, noisy_in_ten);
         let all: Vec<usize> = (0..states).collect();
-        let prior: Vec<f64> = matrix.states.iter().map(|s| s.probability).collect();
+        let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
         let wanted = match matrix.is_crisp() {
             true => exhaustive_crisp(&matrix, &all),
             false => exhaustive_noisy(&matrix, &prior, &mut vec![false; tests]),
@@ -292,7 +292,7 @@ fn tests_of_several_outcomes_make_the_cheapest_tree() {
         let mut dice = Dice(seed);
         let noisy_in_ten = 5 * (seed % 2);
         let matrix = random_words(&mut dice, 6, 5, noisy_in_ten);
-        let prior: Vec<f64> = matrix.states.iter().map(|s| s.probability).collect();
+        let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
         let wanted = match matrix.is_crisp() {
             true => exhaustive_crisp(&matrix, &(0..6).collect::<Vec<_>>()),
             false => exhaustive_noisy(&matrix, &prior, &mut vec![false; 5]),
@@ -359,7 +359,7 @@ fn outcomes_leave_the_tree_that_is_left() {
         let Some(Node::Test { test, ways, .. }) = whole.tree.nodes.first() else {
             continue;
         };
-        let found = [(matrix.tests[*test].id.clone(), Outcome::Fail)];
+        let found = [(matrix.tests()[*test].id.clone(), Outcome::Fail)];
         let known = Posterior::given(&matrix, &found).expect("it can fail");
         let options = PlanOptions {
             method: Some(Method::Optimal),

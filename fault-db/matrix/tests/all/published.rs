@@ -81,7 +81,7 @@ fn the_polybox_is_measured_at_x_first() {
     let tests = ["x", "y", "z"].map(test).to_vec();
     let matrix = Matrix::new(states.collect(), tests, cells.collect()).expect("a valid matrix");
 
-    let prior: Vec<f64> = matrix.states.iter().map(|s| s.probability).collect();
+    let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
     let wanted = exhaustive_noisy(&matrix, &prior, &mut vec![false; 3]);
     for method in [Method::Optimal, Method::Greedy] {
         let made = planned(&matrix, method);
@@ -135,7 +135,7 @@ fn a_row_of_four_inverters_is_halved_twice() {
     });
     let tests = ["b", "c", "d"].map(test).to_vec();
     let matrix = Matrix::new(states.collect(), tests, cells).expect("a valid matrix");
-    let prior: Vec<f64> = matrix.states.iter().map(|s| s.probability).collect();
+    let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
     let wanted = exhaustive_noisy(&matrix, &prior, &mut vec![false; 3]);
     assert!((wanted - 2.0).abs() < 0.02, "{wanted}");
     for method in [Method::Optimal, Method::Greedy] {

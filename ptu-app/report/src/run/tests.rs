@@ -57,7 +57,7 @@ pub(super) fn stored(steps: u32, ended: bool) -> (Stored, Id) {
                 .expect("a trace");
         }
     }
-    let id = writer.id;
+    let id = writer.id();
     let verdict = if steps > 0 {
         Verdict::Failed
     } else {

@@ -26,7 +26,7 @@ pub fn usual(view: &TraceView) -> Vec<String> {
     let mut chosen: Vec<usize> = always
         .filter(|place| !matches!(view.summary(*place), Summary::Unknown))
         .collect();
-    let mut others: Vec<(usize, f64)> = (0..view.data.channels.len())
+    let mut others: Vec<(usize, f64)> = (0..view.data().channels.len())
         .filter(|place| !chosen.contains(place) && !NEVER.contains(&name(*place)))
         .filter(|place| !matches!(view.summary(*place), Summary::Quantity(_)))
         .map(|place| (place, activity(view, place)))
@@ -46,10 +46,10 @@ pub fn usual(view: &TraceView) -> Vec<String> {
 /// Activity of a signal around the trigger: a quantity by the share of all it ever did, from 0 to 1; a
 /// choice or bit 1 when it changed, and hardly more when it did so often.
 fn activity(view: &TraceView, place: usize) -> f64 {
-    let around = (AROUND_S * 1e6 / view.data.period_us.max(1) as f64) as usize;
+    let around = (AROUND_S * 1e6 / view.data().period_us.max(1) as f64) as usize;
     let trigger = view.trigger_row();
     let from = trigger.saturating_sub(around);
-    let to = (trigger + around + 1).min(view.data.rows());
+    let to = (trigger + around + 1).min(view.data().rows());
     match view.summary(place) {
         Summary::Quantity(pyramid) => {
             let there = pyramid.range(view.samples(place), from, to);

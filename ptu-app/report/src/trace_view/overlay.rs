@@ -87,14 +87,14 @@ impl Overlay {
         let rule = self.rule.shifted(shift_rows);
         let beside;
         let came = match &self.has {
-            None => &came.data,
+            None => came.data(),
             // What a part of a trace leaves out does not differ.
             Some(has) => {
-                beside = only(&came.data, has, shift_rows);
+                beside = only(came.data(), has, shift_rows);
                 &beside
             }
         };
-        let (found, trouble) = match compare(came, &self.view.data, &rule, &[]) {
+        let (found, trouble) = match compare(came, self.view.data(), &rule, &[]) {
             Ok(found) => (Some(found), None),
             Err(failure) => (None, Some(failure.message)),
         };

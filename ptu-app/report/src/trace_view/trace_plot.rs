@@ -74,7 +74,7 @@ pub struct TracePlot {
 impl TracePlot {
     /// All of a trace over time, with these signals; with the usual ones if there are none.
     pub fn new(opened: Arc<OpenTrace>, signals: &[String]) -> Self {
-        let axis = Axis::time(&opened.view.data, opened.view.trigger_row() as i64);
+        let axis = Axis::time(opened.view.data(), opened.view.trigger_row() as i64);
         let mut scene = Self {
             camera: camera(&axis, &opened.view),
             axis,
@@ -95,7 +95,7 @@ impl TracePlot {
     }
 
     pub fn window(&self) -> Window {
-        self.camera.window
+        self.camera.window()
     }
 
     /// Counts time or distance; false when the trace tells no distance. The same rows stay in view.
@@ -305,7 +305,7 @@ impl TracePlot {
 
 fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
     let least = match axis.kind() {
-        Kind::Time => FEWEST_ROWS * view.data.period_us as f64 / 1e6,
+        Kind::Time => FEWEST_ROWS * view.data().period_us as f64 / 1e6,
         Kind::Distance => LEAST_WAY_M,
     };
     VisibleRange::new(axis.whole(), least)
@@ -315,8 +315,8 @@ fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
 fn axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Option<Axis> {
     let zero_row = (view.trigger_row() as i64).saturating_sub(shift_rows);
     match kind {
-        Kind::Time => Some(Axis::time(&view.data, zero_row)),
-        Kind::Distance => Axis::distance(&view.data, zero_row),
+        Kind::Time => Some(Axis::time(view.data(), zero_row)),
+        Kind::Distance => Axis::distance(view.data(), zero_row),
     }
 }
 

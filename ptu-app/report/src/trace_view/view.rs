@@ -12,7 +12,7 @@ use super::runs::Runs;
 /// A trace made ready to be drawn.
 #[derive(Debug)]
 pub struct TraceView {
-    pub data: TraceData,
+    data: TraceData,
     summaries: Vec<Summary>,
 }
 
@@ -30,6 +30,10 @@ pub enum Summary {
 }
 
 impl TraceView {
+    pub fn data(&self) -> &TraceData {
+        &self.data
+    }
+
     /// Summarises all signals of a trace.
     pub fn new(data: TraceData) -> Self {
         let summaries = data

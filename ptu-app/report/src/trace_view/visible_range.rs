@@ -8,12 +8,16 @@ const BEYOND: f64 = 0.02;
 /// Part of the axis in view, and its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibleRange {
-    pub window: Window,
+    window: Window,
     whole: Window,
     least: f64,
 }
 
 impl VisibleRange {
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
     /// All of it in view; no less than `least` can be.
     pub fn new(whole: Window, least: f64) -> Self {
         let room = whole.length() * BEYOND;

@@ -106,7 +106,7 @@ impl UnitAboard {
     /// # Errors
     /// The stimulus is impossible for the train, or is for a tester alone.
     pub fn apply(&mut self, stimulus: &Stimulus) -> Result<(), Refusal> {
-        let now = self.train.now;
+        let now = self.train.now();
         self.train.rig.apply(now, stimulus)
     }
 
@@ -138,7 +138,7 @@ impl UnitAboard {
 
     /// Switches the unit's supply off, or on again: it is powered up again then.
     pub fn set_power(&mut self, on: bool) {
-        let now = self.train.now;
+        let now = self.train.now();
         self.train.link.set_power(now, on);
     }
 
@@ -154,7 +154,7 @@ impl UnitAboard {
 
     /// Time of the last scan.
     pub fn now(&self) -> Instant {
-        self.train.now
+        self.train.now()
     }
 
     /// Another tester is connected from now on.

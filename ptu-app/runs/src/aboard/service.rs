@@ -61,7 +61,7 @@ impl UnitAboard {
         });
         let outcome = loop {
             self.scan()?;
-            let now = self.train.now;
+            let now = self.train.now();
             if let Some(outcome) = drive.step(now, &mut self.train.rig) {
                 break outcome;
             }

@@ -64,7 +64,7 @@ impl Laptop {
                 self.messages.push(received.message);
             }
         }
-        assert_eq!(self.link.counters.rejected_total(), 0);
+        assert_eq!(self.link.counters().rejected_total(), 0);
     }
 
     /// The last one that was heard.

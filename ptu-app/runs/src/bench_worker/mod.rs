@@ -60,15 +60,23 @@ enum Order {
 /// The window's side of a bench thread. Dropping it stops the run, makes outputs safe and disarms.
 pub struct BenchWorker {
     orders: Option<Sender<Order>>,
-    /// State of the run that the operator acts on: pause, single step, answers.
-    pub live_state: Arc<LiveState>,
+    live_state: Arc<LiveState>,
     events: Receiver<BenchEvent>,
-    /// Stops the run that was ordered last.
-    pub stop: Stop,
+    stop: Stop,
     thread: Option<JoinHandle<()>>,
 }
 
 impl BenchWorker {
+    /// State of the run that the operator acts on: pause, single step, answers.
+    pub fn live_state(&self) -> &Arc<LiveState> {
+        &self.live_state
+    }
+
+    /// Stops the run that was ordered last: the first press ends the step and goes on to clean-up, the second cuts that short.
+    pub fn stop(&self) -> &Stop {
+        &self.stop
+    }
+
     /// Starts the bench thread, without a unit.
     ///
     /// # Errors
@@ -133,7 +141,7 @@ impl BenchWorker {
 
     /// Stops a run and takes every stimulus away; the unit stays connected, disarmed.
     ///
-    /// Asked for again it does no more: clean-up is cut short only by [`stop_run`](Self::stop_run).
+    /// Asked for again it does no more: clean-up is cut short only by [`stop`](Self::stop).
     pub fn stop_all(&self) {
         self.stop.press_once();
         self.send(Order::MakeSafe);

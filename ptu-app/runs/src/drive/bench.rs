@@ -44,7 +44,7 @@ pub fn drive(bench: &DriveBench, plan: DrivePlan, seed: u64) -> Outcome {
     let mut drive = Drive::new(plan);
     loop {
         let ticked = bench.tick();
-        let now = bench.now;
+        let now = bench.now();
         if let Err(why) = ticked {
             return drive.abandon(Ending::LinkLost(why));
         }

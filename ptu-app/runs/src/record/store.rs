@@ -54,7 +54,7 @@ pub fn pull(store: &Store, source: &Source, runs: Vec<RecordedRun>) -> Result<Pu
         bench_time_us: 0,
         wall_time_us: source.until_us - source.from_us,
     })?;
-    pulled.run = Some(writer.id);
+    pulled.run = Some(writer.id());
     Ok(pulled)
 }
 

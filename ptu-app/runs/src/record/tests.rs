@@ -47,12 +47,12 @@ fn driven(case: &Case) -> LogRead {
     let mut drive = Drive::new(plan);
     loop {
         bench.tick().expect("the embedded unit");
-        let now = bench.now;
+        let now = bench.now();
         if drive.step(now, &mut bench.rig).is_some() {
             break;
         }
     }
-    let now = bench.now;
+    let now = bench.now();
     let mut pace = Pace::Virtual;
     let stop = Stop::default();
     read_log(

@@ -65,7 +65,7 @@ pub(super) fn from_here<L: UnitLink>(
     session.idle(
         CYCLE,
         |_, _, _| {},
-        |bench| bench.now.as_us() % CYCLE.as_us() == began_us % CYCLE.as_us(),
+        |bench| bench.now().as_us() % CYCLE.as_us() == began_us % CYCLE.as_us(),
     );
     let shift_us = session.now().since(Instant::ZERO).as_us() as i64 - began_us as i64;
     play(

@@ -145,7 +145,7 @@ pub fn rerun(
         wall_time_us,
     })?;
     Ok(Rerun {
-        run_id: writer.id,
+        run_id: writer.id(),
         trace_id,
         serial,
         likeness,

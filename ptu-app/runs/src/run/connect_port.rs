@@ -130,11 +130,7 @@ impl BenchSetup {
         if let Some(why) = session.bench.rig.turned_away() {
             return Err(NoUnit::Taken(at(), why).into());
         }
-        if let Some(why) = session
-            .link_error
-            .as_ref()
-            .filter(|why| !why.is_of_the_bench())
-        {
+        if let Some(why) = session.link_failure().filter(|why| !why.is_of_the_bench()) {
             return Err(NoUnit::PortFailed(why.clone()).into());
         }
         self.link_holds(session)?;

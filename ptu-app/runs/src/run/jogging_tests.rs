@@ -100,7 +100,7 @@ impl Stop {
     }
 
     fn apply(&mut self, stimulus: Stimulus) {
-        let now = self.bench.now;
+        let now = self.bench.now();
         let done = self.bench.rig.apply(now, &stimulus);
         done.unwrap_or_else(|refusal| panic!("{stimulus}: {refusal:?}"));
     }

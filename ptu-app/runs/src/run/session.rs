@@ -31,7 +31,7 @@ pub struct Session<L: UnitLink> {
     stop: Stop,
     recorder: Recorder,
     sample: Sample,
-    pub link_error: Option<LinkTrouble>,
+    link_failure: Option<LinkTrouble>,
     /// Permitted lag of the bench behind the wall clock; `None` for a unit in virtual time.
     pub max_lag: Option<Duration>,
     /// Largest lag beyond `max_lag` since it was last taken.
@@ -68,7 +68,7 @@ impl<L: UnitLink> Session<L> {
             stop,
             recorder: Recorder::default(),
             sample: Sample::default(),
-            link_error: None,
+            link_failure: None,
             max_lag: None,
             stalled: None,
             paused: None,
@@ -110,7 +110,7 @@ impl<L: UnitLink> Session<L> {
 
     /// Bench time.
     pub fn now(&self) -> Instant {
-        self.bench.now
+        self.bench.now()
     }
 
     /// Scans until `done` or for `at_most`; events of the unit go to `seen`. False when time ran
@@ -121,11 +121,11 @@ impl<L: UnitLink> Session<L> {
         mut seen: impl FnMut(&UnitEvent, Instant, &Sample),
         mut done: impl FnMut(&Bench<L>) -> bool,
     ) -> bool {
-        let until = self.bench.now + at_most;
-        while self.bench.now < until && self.stop.presses() == 0 && self.link_error.is_none() {
+        let until = self.bench.now() + at_most;
+        while self.bench.now() < until && self.stop.presses() == 0 && self.link_failure.is_none() {
             self.scan(&mut |_| {});
             for entry in self.take_events() {
-                seen(&entry, self.bench.now, &self.sample);
+                seen(&entry, self.bench.now(), &self.sample);
             }
             if done(&self.bench) {
                 return true;
@@ -152,12 +152,12 @@ impl<L: UnitLink> Session<L> {
         // A computer that is too slow for good never catches up.
         let at_most = 100 + 3 * self.behind().as_us() / SCAN.as_us();
         for _ in 0..at_most {
-            if self.behind() < IN_TIME || self.stop.presses() > 0 || self.link_error.is_some() {
+            if self.behind() < IN_TIME || self.stop.presses() > 0 || self.link_failure.is_some() {
                 break;
             }
             self.scan(cut);
             for entry in self.take_events() {
-                seen(&entry, self.bench.now, &self.sample);
+                seen(&entry, self.bench.now(), &self.sample);
             }
         }
     }
@@ -167,10 +167,15 @@ impl<L: UnitLink> Session<L> {
         self.max_lag.map_or(Duration::ZERO, |_| self.pace.behind())
     }
 
+    /// Reason for which nothing can be sent or received any more; none if the link works.
+    pub fn link_failure(&self) -> Option<&LinkTrouble> {
+        self.link_failure.as_ref()
+    }
+
     /// Reason for which nothing can be judged, if there is one: the unit cannot be reached, another one
     /// answers, or its log cannot be read.
     pub fn link_error(&self) -> Option<LinkTrouble> {
-        self.link_error
+        self.link_failure
             .clone()
             .or_else(|| self.bench.rig.link_error())
     }
@@ -191,20 +196,20 @@ impl<L: UnitLink> Session<L> {
     fn scan(&mut self, cut: &mut dyn FnMut(RecordedWindow)) {
         self.pace.wait();
         if let Err(failure) = self.bench.tick() {
-            self.link_error.get_or_insert(failure);
+            self.link_failure.get_or_insert(failure);
         }
         self.keep_in_step();
         let late = self.bench.link.take_late();
         let behind = self.behind().max(late);
         let is_late = late > Duration::ZERO || self.max_lag.is_some_and(|at_most| behind > at_most);
         // A link that broke is late, too, and to repeat the step does not repair it.
-        if is_late && self.link_error.is_none() {
+        if is_late && self.link_failure.is_none() {
             self.stalled = self.stalled.max(Some(behind));
-            let now = self.bench.now;
+            let now = self.bench.now();
             self.bench.rig.note_stalled(now);
         }
         self.sample.clone_from(self.bench.rig.sample());
-        let now = self.bench.now;
+        let now = self.bench.now();
         if !now.as_us().is_multiple_of(CYCLE.as_us()) {
             return;
         }
@@ -250,24 +255,26 @@ impl<L: UnitLink> Session<L> {
         refused: &mut Vec<String>,
     ) -> Option<TraceData> {
         // A unit that falls silent is what some traces show: only a broken connection ends it early.
-        while self.bench.now < window.until && self.stop.presses() == 0 && self.link_error.is_none()
+        while self.bench.now() < window.until
+            && self.stop.presses() == 0
+            && self.link_failure.is_none()
         {
             self.scan(&mut |_| {});
             self.take_events();
-            let now = self.bench.now;
+            let now = self.bench.now();
             let refusals = player.play(now, &mut self.bench.rig);
             refused.extend(refusals.into_iter().map(|refusal| refusal.0));
         }
-        let partial = self.bench.now < window.until;
+        let partial = self.bench.now() < window.until;
         let cut = self.recorder.cut(window.from, window.trigger, partial)?;
         Some(trace_data(&cut))
     }
 
     /// Brings the bench to the quiescent state, for as long as that may take.
     pub fn make_safe(&mut self) -> bool {
-        let until = self.bench.now + SAFE_WITHIN;
-        while self.bench.now < until && self.link_error().is_none() {
-            let now = self.bench.now;
+        let until = self.bench.now() + SAFE_WITHIN;
+        while self.bench.now() < until && self.link_error().is_none() {
+            let now = self.bench.now();
             self.bench.rig.make_safe(now);
             if self.bench.rig.safe() {
                 return true;

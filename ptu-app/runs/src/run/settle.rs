@@ -46,8 +46,8 @@ pub(crate) fn settled<L: UnitLink>() -> impl FnMut(&Bench<L>) -> bool {
         if !started(bench) || !bench.rig.log_up_to_date() {
             return false;
         }
-        let since = *quiet_since.get_or_insert(bench.now);
-        bench.now.since(since) >= SETTLE
+        let since = *quiet_since.get_or_insert(bench.now());
+        bench.now().since(since) >= SETTLE
     }
 }
 

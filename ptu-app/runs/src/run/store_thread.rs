@@ -187,7 +187,7 @@ fn write(
     // Nothing is lost yet: a file that is locked, or has two names, is said as soon as any.
     let mut writer = RunWriter::begin(store, record)?;
     store.set_busy_timeout_ms(busy_timeout.stops_ms)?;
-    let _ = begun.send(writer.id);
+    let _ = begun.send(writer.id());
     let result = write_entries(&mut writer, &mut kept, entries, (busy_timeout, stop));
     let Err((error, at_hand)) = result else {
         return Ok(None);

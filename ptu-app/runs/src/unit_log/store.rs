@@ -99,7 +99,7 @@ pub fn import(store: &Store, source: &Source, faults: &[Entry]) -> Result<Import
         bench_time_us: 0,
         wall_time_us: source.until_us - source.from_us,
     })?;
-    imported.run = Some(writer.id);
+    imported.run = Some(writer.id());
     Ok(imported)
 }
 

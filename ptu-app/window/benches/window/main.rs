@@ -235,8 +235,8 @@ fn report_memory() {
     if let (Some(before), Some(after)) = (before, after) {
         println!(
             "{} rows of {} signals take {:.1} MiB",
-            view.data.rows(),
-            view.data.channels.len(),
+            view.data().rows(),
+            view.data().channels.len(),
             after - before
         );
     }

@@ -16,7 +16,7 @@ pub fn row(ui: &mut Ui, goes_on: bool, context: &mut PageContext<'_>) {
     };
     let said = words.finding(loss);
     let place = ActionPlace::new(ui, "lost run", unit.id);
-    let why_not = match (unit.is_other, goes_on) {
+    let why_not = match (unit.is_other(), goes_on) {
         (true, _) => Some(frame.go_on_other),
         (false, false) => Some(frame.go_on_not),
         (false, true) => None,

@@ -22,7 +22,7 @@ pub struct Done {
 }
 
 impl Done {
-    /// Work that was done to its end.
+    /// Work that ended without an error.
     pub fn all(text: String, notes: Vec<String>) -> Self {
         Self {
             text,

@@ -12,6 +12,7 @@ const BOX: f32 = 90.0;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct UnitFilter {
     connected: Option<String>,
+    /// The unit that was chosen; none = all.
     pub taken: Option<String>,
 }
 

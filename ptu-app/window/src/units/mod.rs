@@ -17,12 +17,16 @@ pub struct Units {
     more: Vec<Unit>,
     chosen: usize,
     next_id: u64,
-    /// Counts the times everything was stopped: what was ordered before is not begun after.
-    pub stops: u64,
+    stops: u64,
     wake: Wake,
 }
 
 impl Units {
+    /// Counts the times everything was stopped: what was ordered before is not begun after.
+    pub fn stops(&self) -> u64 {
+        self.stops
+    }
+
     /// One unit that is not connected.
     ///
     /// # Errors
@@ -116,7 +120,7 @@ impl Units {
             } else {
                 Watched::Bar
             };
-            unit.bench.live_state.watch(watched);
+            unit.bench.live_state().watch(watched);
         }
     }
 

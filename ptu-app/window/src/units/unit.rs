@@ -39,8 +39,7 @@ pub struct Unit {
     pub lost: bool,
     /// The run broke off with the link, and nobody has ended it.
     waits: bool,
-    /// The run is of another unit than the one connected now.
-    pub is_other: bool,
+    is_other: bool,
     /// Everything is being stopped, and it is not known to be safe yet.
     pub stopping: bool,
     /// Nothing is begun: no name has been given.
@@ -50,6 +49,11 @@ pub struct Unit {
 }
 
 impl Unit {
+    /// The run is of another unit than the one connected now.
+    pub fn is_other(&self) -> bool {
+        self.is_other
+    }
+
     pub(super) fn new(id: u64, choice: BenchChoice, wake: Wake) -> Result<Self, Failure> {
         Ok(Self {
             id,
@@ -163,7 +167,7 @@ impl Unit {
         if let Some(present) = self.run.as_mut().and_then(|run| run.present.as_mut())
             && present.prompt.take().is_some()
         {
-            self.bench.live_state.answer(yes);
+            self.bench.live_state().answer(yes);
         }
     }
 

@@ -68,7 +68,7 @@ impl<L: UnitLink> Session<L> {
     /// Time in which the unit stood still as well is none, for both: nothing of what it does is spoiled.
     pub(super) fn keep_in_step(&mut self) {
         let pause = self.bench.link.take_pause();
-        let now = self.bench.now;
+        let now = self.bench.now();
         if pause > Duration::ZERO {
             self.bench.rig.note_pause(now, pause);
             self.in_step.begin(now, pause);

@@ -64,7 +64,7 @@ impl<L: UnitLink> Session<L> {
         };
         let sink = &mut sink;
         let mut recorded = RecordedStimuli {
-            began: self.bench.now,
+            began: self.bench.now(),
             record: StimulusRecord::default(),
         };
         let mut rounds = RepetitionTally::new(options.repeat);
@@ -72,7 +72,7 @@ impl<L: UnitLink> Session<L> {
         if let Some(why) = self.bench.rig.cannot_run(procedure) {
             runner.pass_over_all(why);
         }
-        let mut progress = Progress::new(procedure, &options.traced, self.bench.now);
+        let mut progress = Progress::new(procedure, &options.traced, self.bench.now());
         for fault in found {
             runner.found_before(&fault.name, fault.at);
             self.report(fault, &mut progress, sink);
@@ -86,7 +86,7 @@ impl<L: UnitLink> Session<L> {
                 self.make_up(&mut cut, &mut |_, _, _| {});
             }
             self.interrupt(&mut runner, &mut presses);
-            let now = self.bench.now;
+            let now = self.bench.now();
             let events = self.take_events();
             let link_error = self.link_error();
             if let Some(error) = link_error.as_ref().filter(|_| !link_lost) {
@@ -123,7 +123,7 @@ impl<L: UnitLink> Session<L> {
             }
             self.settle_again(Before::Repetition, &mut rounds, &mut progress, sink);
             if let Some((verdict, why)) = self.stop.left_out() {
-                let now = self.bench.now;
+                let now = self.bench.now();
                 let event = rounds.outside(Outside::Stop, verdict, why, now);
                 sink(SessionEvent::Run(event));
                 break;
@@ -135,7 +135,7 @@ impl<L: UnitLink> Session<L> {
         }
         self.hand_rows(1, sink);
         sink(SessionEvent::Run(
-            rounds.finished(link_lost, self.bench.now),
+            rounds.finished(link_lost, self.bench.now()),
         ));
         if traced.get() {
             sink(SessionEvent::Recording(Box::new(recorded)));
@@ -156,7 +156,7 @@ impl<L: UnitLink> Session<L> {
             runner.stood_still(behind);
         }
         if let Some(pause) = self.paused.take() {
-            runner.paused_with_unit(self.bench.now, pause);
+            runner.paused_with_unit(self.bench.now(), pause);
         }
         if let Some(why) = self.bench.rig.take_intervention() {
             runner.interrupted(why);
@@ -188,7 +188,7 @@ impl<L: UnitLink> Session<L> {
         sink: &mut dyn FnMut(SessionEvent),
     ) {
         progress.step = None;
-        progress.step_began = self.bench.now;
+        progress.step_began = self.bench.now();
         for fault in between_procedures(self) {
             let name = fault.name.clone();
             let found = Finding::FoundBefore {
@@ -225,7 +225,7 @@ impl<L: UnitLink> Session<L> {
         progress: &mut Progress<'_>,
         sink: &mut dyn FnMut(SessionEvent),
     ) {
-        let now = self.bench.now;
+        let now = self.bench.now();
         let fault = match event {
             RunEvent::StepStarted { index, at, .. } => {
                 progress.step = Some(*index);

@@ -18,7 +18,7 @@ pub(super) fn keep_rest(
     at_hand: Option<Box<Entry>>,
     entries: &Receiver<Entry>,
 ) -> Option<PathBuf> {
-    let path = beside(writer.path(), writer.id);
+    let path = beside(writer.path(), writer.id());
     let store = Store::open(&path, clock::open_options()).ok()?;
     let mut rest = writer.continue_in(&store, record).ok()?;
     for entry in at_hand
@@ -54,7 +54,7 @@ pub(super) fn keep_beside(
     mut kept: RecordedIds,
     error: Arc<StoreError>,
 ) -> Result<(Store, Trouble), Failure> {
-    let run = writer.id;
+    let run = writer.id();
     let beside = beside(store.path(), run);
     let elsewhere = std::env::temp_dir().join(beside.file_name().unwrap_or_default());
     let made = [beside, elsewhere].into_iter().find_map(|path| {

@@ -91,15 +91,15 @@ impl<'a> Player<'a> {
         let config = &self.setup.config.content;
         let mut monitor = Monitor::new(config, &self.setup.line.content);
         self.begin();
-        let begin = self.bench.now;
+        let begin = self.bench.now();
         let end = begin + Duration::from_ms(u64::from(self.plan.length_ms));
         let held_ms = 2 * config.receiver.hold_ms + config.receiver.detect_ms + 500;
         let started = Duration::from_ms(u64::from(held_ms.max(STARTED_MS)));
         let mut seen_from = begin + started;
         let mut acts = self.plan.acts.iter().peekable();
         let mut found: Option<(Find, u32)> = None;
-        while self.bench.now < end {
-            let now = self.bench.now;
+        while self.bench.now() < end {
+            let now = self.bench.now();
             self.scan(begin, &mut acts);
             // Without TCMS nothing tells of motion that no tachometer sees.
             if !self.powered || self.blind() && !self.tcms_good {
@@ -129,7 +129,7 @@ impl<'a> Player<'a> {
         begin: Instant,
         acts: &mut Peekable<impl Iterator<Item = &'p (u32, Act)>>,
     ) {
-        let now = self.bench.now;
+        let now = self.bench.now();
         let due = |at_ms: u32| now >= begin + Duration::from_ms(u64::from(at_ms));
         while let Some((_, act)) = acts.next_if(|(at_ms, _)| due(*at_ms)) {
             self.act(*act);
@@ -142,11 +142,11 @@ impl<'a> Player<'a> {
     /// The limit in each scan, km/h.
     fn limits(mut self) -> Vec<f64> {
         self.begin();
-        let begin = self.bench.now;
+        let begin = self.bench.now();
         let end = begin + Duration::from_ms(u64::from(self.plan.length_ms));
         let mut acts = self.plan.acts.iter().peekable();
         let mut limits = Vec::new();
-        while self.bench.now < end {
+        while self.bench.now() < end {
             self.scan(begin, &mut acts);
             limits.push(self.bench.rig.sample().get(Signal::Limit).unwrap_or(0.0));
         }
@@ -154,7 +154,7 @@ impl<'a> Player<'a> {
     }
 
     fn observed(&self) -> Observed<'_> {
-        let (rig, now) = (&self.bench.rig, self.bench.now);
+        let (rig, now) = (&self.bench.rig, self.bench.now());
         let truth = rig.truth();
         Observed {
             now,
@@ -227,7 +227,7 @@ impl<'a> Player<'a> {
             self.apply(stimulus);
         }
         if ride {
-            self.ride = Ride::At(self.bench.now);
+            self.ride = Ride::At(self.bench.now());
         }
     }
 
@@ -252,7 +252,7 @@ impl<'a> Player<'a> {
     }
 
     fn act(&mut self, act: Act) {
-        let now = self.bench.now;
+        let now = self.bench.now();
         match act {
             Act::Do(stimulus) => self.apply(stimulus),
             Act::Supply(on) => {
@@ -287,7 +287,7 @@ impl<'a> Player<'a> {
 
     /// Applies a stimulus; an impossible one is left out, as a bench refuses it.
     pub(super) fn apply(&mut self, stimulus: Stimulus) {
-        let now = self.bench.now;
+        let now = self.bench.now();
         // No train that moves comes to stand on a bench, or off it, in no time.
         if matches!(stimulus, Stimulus::TrainDriven { .. }) && self.observed().kmh() > MOVES_KMH {
             return;

@@ -68,7 +68,7 @@ impl Rows {
         self.values.iter_mut().for_each(Vec::clear);
         let before_s = |at: protocol::Instant| -live.now.since(at).as_secs();
         // One row beyond the left edge: its values hold until the next.
-        let rows = &live.rows.rows;
+        let rows = &live.rows.rows();
         let first = rows.partition_point(|row| before_s(row.at) < -span_s);
         for row in rows.range(first.saturating_sub(1)..) {
             self.times_s.push(before_s(row.at));

@@ -220,10 +220,10 @@ impl CasePage {
         let place = ActionPlace::new(ui, "case back", self.stage);
         if self.is_running(has_orders, context) {
             let unit = context.units.chosen();
-            let place = ActionPlace::new(ui, "case stop", unit.bench.stop.presses());
+            let place = ActionPlace::new(ui, "case stop", unit.bench.stop().presses());
             let stop = Face::new(Look::Danger, context.words.procedures.stop).show(ui);
             if place.clicked(&stop) {
-                unit.bench.stop.press();
+                unit.bench.stop().press();
             }
         } else {
             let back = self.back(context);

@@ -84,6 +84,7 @@ impl FaultsPage {
     }
     pub fn open(&mut self, id: Id) {
         self.chosen = Some(id);
+        self.detail.read_again();
     }
 
     /// Shows the faults that a bar of the statistics stands for.

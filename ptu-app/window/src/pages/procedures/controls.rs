@@ -19,12 +19,12 @@ impl ProceduresPage {
         ui.horizontal_wrapped(|ui| {
             let unit = context.units.chosen();
             let phase = unit.phase();
-            let live_state = &unit.bench.live_state;
+            let live_state = &unit.bench.live_state();
             let state = (
                 unit.id,
                 phase == Phase::Running,
                 live_state.paused(),
-                unit.bench.stop.presses(),
+                unit.bench.stop().presses(),
             );
             let place = ActionPlace::new(ui, "run", state);
             if phase == Phase::Running {
@@ -84,7 +84,7 @@ pub fn why_not(unit: &Unit, words: &Words) -> &'static str {
 fn running(ui: &mut Ui, context: &mut PageContext<'_>, place: &ActionPlace) {
     let words = &context.words.procedures;
     let worker = &context.units.chosen().bench;
-    let live_state = &worker.live_state;
+    let live_state = &worker.live_state();
     let paused = live_state.paused();
     let pause = if paused { words.resume } else { words.pause };
     let pause = Face::new(Look::Secondary, pause).icon(ICON_PAUSE);
@@ -99,13 +99,13 @@ fn running(ui: &mut Ui, context: &mut PageContext<'_>, place: &ActionPlace) {
     {
         live_state.single_step();
     }
-    let stop = if worker.stop.presses() == 0 {
+    let stop = if worker.stop().presses() == 0 {
         words.stop
     } else {
         words.stop_again
     };
     let stop = Face::new(Look::Danger, stop).icon(ICON_STOP);
     if place.clicked(&stop.show(ui)) {
-        worker.stop.press();
+        worker.stop().press();
     }
 }

@@ -81,7 +81,7 @@ impl ProceduresPage {
             return;
         };
         let connection = of.connection();
-        let same = of.waiting_run().filter(|_| !of.is_other);
+        let same = of.waiting_run().filter(|_| !of.is_other());
         let rest = same.map(|(run, _)| (Selection::rest(run), run.id()));
         if let Wanted::Rest = wanted
             && rest.is_some()

@@ -79,8 +79,9 @@ impl SignalsPage {
     /// Form of the file, the devices and the waveform; its main button stands at the foot.
     fn form(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
-        let Request::Ready(offered) = &self.offered else {
-            if (self.offered).missing(ui, words, words.signals.not_done) {
+        let Some(offered) = self.offered.shown(ui, words) else {
+            let is_failed = matches!(self.offered, Request::Failed(_));
+            if is_failed && ui.button(words.common.refresh).clicked() {
                 self.offered = Request::Idle;
             }
             return;

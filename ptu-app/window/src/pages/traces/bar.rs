@@ -91,7 +91,7 @@ pub fn moved_back(ui: &mut Ui, scene: &TracePlot, words: &Traces) {
     } = &scene.axis
         && *rows_back > 0
     {
-        let seconds = *rows_back as f64 * scene.view().data.period_us as f64 / 1e6;
+        let seconds = *rows_back as f64 * scene.view().data().period_us as f64 / 1e6;
         let text = fill(
             words.moved_back,
             &[

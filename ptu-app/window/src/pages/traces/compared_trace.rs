@@ -174,7 +174,7 @@ pub fn file_name(file: &Path) -> String {
 
 fn offset(ui: &mut Ui, scene: &mut TracePlot, context: &PageContext<'_>) {
     let words = &context.words.traces;
-    let period_s = scene.view().data.period_us as f64 / 1e6;
+    let period_s = scene.view().data().period_us as f64 / 1e6;
     let Some(shift_rows) = scene.behind.as_ref().map(|behind| behind.shift_rows) else {
         return;
     };

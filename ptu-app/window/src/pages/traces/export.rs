@@ -111,7 +111,7 @@ impl Export {
         let axis = (scene.axis.kind() == Kind::Distance).then(|| scene.axis.clone());
         let name = self.name.clone();
         let question = move |_: &_| {
-            let text = csv(&opened.view.data, &channels, rows, axis.as_ref());
+            let text = csv(opened.view.data(), &channels, rows, axis.as_ref());
             let place = with_ending(&name, "csv");
             let mut file = NewFile::begin_beside(&place)?;
             let written = file.write_all(text.as_bytes());

@@ -133,7 +133,7 @@ fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
         let font = FontId::proportional(lane::TEXT);
         painter.text(at, Align2::LEFT_TOP, text, font, colour);
     };
-    let when = clock::local(opened.view.data.t0_us);
+    let when = clock::local(opened.view.data().t0_us);
     let own = format!("{}  {when}", opened.id.short());
     line(0.0, own, sheet.palette.accent);
     if let Some(behind) = sheet.scene.behind.as_ref() {
@@ -141,7 +141,7 @@ fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
             OverlaySource::Twin => sheet.words.traces.good_twin.to_owned(),
             OverlaySource::File(file) => file_name(file),
             OverlaySource::Trace(id) => {
-                let when = clock::local(behind.overlay.view.data.t0_us);
+                let when = clock::local(behind.overlay.view.data().t0_us);
                 format!("{}  {when}", id.short())
             }
         };

@@ -184,7 +184,7 @@ fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageC
     let title = fill(words.traces.of_unit, &[("unit", &unit), ("when", &when)]);
     let title = ui.label(RichText::new(title).strong());
     title.on_hover_text(opened.id.to_string());
-    let data = &opened.view.data;
+    let data = &opened.view.data();
     let warn = Palette::of(ui).warn;
     for (amiss, text) in [
         (data.partial, words.traces.cut_short),

@@ -67,7 +67,7 @@ impl TraceNotes {
         let rows = row as i64 - view.trigger_row() as i64;
         let place = TracePlace {
             trace: scene.opened.id,
-            at_us: rows.saturating_mul(view.data.period_us),
+            at_us: rows.saturating_mul(view.data().period_us),
         };
         ui.horizontal_wrapped(|ui| {
             let who = &context.settings.operator;
@@ -107,7 +107,7 @@ impl TraceNotes {
 
 /// The row at its time, if the trace has it.
 fn row_of(note: &TraceNote, view: &TraceView) -> Option<usize> {
-    let data = &view.data;
+    let data = &view.data();
     let rows = note.time_us.div_euclid(data.period_us);
     let row = rows.saturating_add(view.trigger_row() as i64);
     usize::try_from(row).ok().filter(|row| *row < data.rows())

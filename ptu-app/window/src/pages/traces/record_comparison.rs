@@ -26,7 +26,7 @@ impl RecordComparison {
                 found: Request::Idle,
             };
         }
-        let has = |name: &str| opened.view.data.column(name).is_some();
+        let has = |name: &str| opened.view.data().column(name).is_some();
         // A bench records every signal, a unit its own target and no limit.
         if !has("target") || has("limit") {
             return;

@@ -55,7 +55,7 @@ pub fn choose(
         ui.label(RichText::new(words.all_signals).color(Palette::of(ui).quiet));
         let wanted = find.trim().to_lowercase();
         let view = scene.view();
-        for (place, channel) in view.data.channels.iter().enumerate() {
+        for (place, channel) in view.data().channels.iter().enumerate() {
             if !channel.name.contains(&wanted) {
                 continue;
             }

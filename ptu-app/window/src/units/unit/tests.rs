@@ -65,7 +65,7 @@ fn a_run_that_a_bench_has_not_begun_yet_is_not_ordered_again() {
     };
     let mut unit = Unit::new(0, BenchChoice::default(), wake).expect("a thread");
     let let_go = ReleaseOnDrop(held_up.clone());
-    assert!(held_up.0.set(unit.bench.live_state.clone()).is_ok());
+    assert!(held_up.0.set(unit.bench.live_state().clone()).is_ok());
     let setup = unit.choice.setup(&scripts()).expect("its configuration");
     unit.bench.connect(setup.clone());
     let began = Instant::now();
