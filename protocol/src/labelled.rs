@@ -16,7 +16,7 @@ macro_rules! labelled {
             /// All of them, in this order.
             pub const ALL: [Self; Self::LABELS.len()] = [$( Self::$variant ),+];
 
-            /// Its text.
+            /// Text of the variant, as its declaration has it.
             pub const fn $text(self) -> &'static str {
                 Self::LABELS[self as usize]
             }

@@ -60,7 +60,7 @@ impl Values {
         self.squares += off * (value - self.mean);
     }
 
-    /// These as at most so many runs would have them: with the same mean and standard deviation.
+    /// Statistics of these values as at most so many runs would have them: with the same mean and standard deviation.
     fn of_runs(self, runs: u32) -> Self {
         if self.n + self.missing <= runs {
             return self;
@@ -78,7 +78,7 @@ impl Values {
         }
     }
 
-    /// Those of both together.
+    /// Statistics of the values of both together.
     fn with(&self, other: &Self) -> Self {
         let [here, there] = [self, other].map(|values| f64::from(values.n));
         let (of_other, apart) = (there / (here + there), other.mean - self.mean);
@@ -174,7 +174,7 @@ impl Cell {
         }
     }
 
-    /// The same with the values of at most so many runs: those taken from a healthy unit are of many more.
+    /// These counts with the values of at most so many runs: values taken from a healthy unit are of many more.
     pub fn with_values_of(mut self, runs: u32) -> Self {
         self.values
             .values_mut()

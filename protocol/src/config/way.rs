@@ -104,7 +104,7 @@ const fn thousandths<const N: u32>() -> f64 {
     N as f64 / 1000.0
 }
 
-/// The same as a whole number.
+/// Value of a key that a configuration may go without, as `sg100` has it: a whole number.
 const fn whole<const N: u32>() -> u32 {
     N
 }

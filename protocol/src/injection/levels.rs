@@ -13,7 +13,7 @@ const FULL_EFFORT: f64 = 1024.0;
 const HALF: f64 = 0.5;
 
 crate::labelled! {
-    /// What kind of fault a mode is.
+    /// How a fault mode acts: all the time, now and then, or in part.
     #[derive(
         Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
     )]

@@ -152,7 +152,7 @@ type DataVersion = (usize, u64);
 
 /// A response that is requested again when the data have changed, or something else is to be read.
 pub struct FollowingResponse<K, T> {
-    /// What was asked for, and the version of the data then; without a version it is to be requested anew.
+    /// What was asked for, and the version of the data then; without a version it is to be requested again.
     asked: Option<(K, Option<DataVersion>)>,
     response: CachedResponse<T>,
 }

@@ -16,11 +16,12 @@ use super::cars::name_cars;
 use super::confirmed::take_confirmed;
 use super::dictionary::{Chosen, Origin, choose};
 use super::history::OwnHistory;
+use super::stored_run::StoredRun;
 use super::{UNIT_CONFIG, settings};
 use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
 use crate::failure::{DiagnosisTrouble, Failure, Trouble, Unknown, did_you_mean};
-use crate::replay::{Original, first_traces, residuals};
+use crate::replay::{Original, residuals};
 use crate::run::{Adaptive, of_run};
 use crate::stop::Stop;
 use crate::stored::{DEPARTURE, findings};
@@ -101,15 +102,22 @@ pub fn diagnose(
         with,
         why_not,
     } = *asked;
-    let run = store.run(id)?;
-    let occurrences = store.run_occurrences(id)?;
+    let asked = StoredRun::read(store, id)?;
+    let mut runs = Vec::new();
+    for other in with {
+        let other = StoredRun::read(store, *other)?;
+        asked.same_unit(&other)?;
+        runs.push(other);
+    }
+    runs.insert(0, asked);
     let settings = settings(directory)?;
-    let traces = first_traces(store, &occurrences);
     let stop = Stop::default();
-    // Repeating what was recorded takes as long as reading what it is held against.
+    let repeat = |run: &StoredRun| residuals(&run.traces, directory, &stop);
+    let repeat_all = || runs.iter().map(repeat).collect::<Vec<_>>();
+    // Repeating what was recorded takes as long as reading the dictionary.
     let (chosen, repeated) = std::thread::scope(|scope| {
-        let repeating = scope.spawn(|| residuals(&traces, directory, &stop));
-        let chosen = choose(Some(store), directory, connection_of(&run));
+        let repeating = scope.spawn(repeat_all);
+        let chosen = choose(Some(store), directory, connection_of(&runs[0].run));
         if chosen.is_err() {
             stop.press();
         }
@@ -121,26 +129,25 @@ pub fn diagnose(
         mut warnings,
         current,
     } = chosen?;
-    let mut seen = of_run(&run, &occurrences);
-    seen.residuals = repeated.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-    let mut seen = comparable((&run, &traces), seen, &dictionary, &mut warnings);
-    let mut of_all = occurrences.clone();
-    for other in with {
-        let other = of_same_unit(store, &run, *other)?;
-        let occurrences = store.run_occurrences(other.run.id)?;
-        let traces = first_traces(store, &occurrences);
-        let mut more = of_run(&other, &occurrences);
-        more.residuals = residuals(&traces, directory, &stop);
-        let more = comparable((&other, &traces), more, &dictionary, &mut warnings);
-        seen.steps.extend(more.steps);
-        seen.signs.extend(more.signs);
-        seen.residuals.extend(more.residuals);
-        of_all.extend(occurrences);
+    let residuals = repeated.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    let mut seen = Observation::default();
+    for (run, residuals) in runs.iter().zip(residuals) {
+        let shown = Observation {
+            residuals,
+            ..of_run(&run.run, &run.occurrences)
+        };
+        let shown = comparable((&run.run, &run.traces), shown, &dictionary, &mut warnings);
+        seen.steps.extend(shown.steps);
+        seen.signs.extend(shown.signs);
+        seen.residuals.extend(shown.residuals);
     }
+    let StoredRun {
+        run, occurrences, ..
+    } = &runs[0];
     if seen.is_empty() {
         warnings.push(Warning::NothingToDiagnose);
     }
-    let mut history = OwnHistory::before(&run, &occurrences, store, &settings)?;
+    let mut history = OwnHistory::before(run, occurrences, store, &settings)?;
     let of = RepairsOf {
         before_us: run.run.started_at_us,
         unit_type: &run.run.unit_config_name,
@@ -158,7 +165,7 @@ pub fn diagnose(
         Relations::default()
     });
     let mut names = catalogue.map(|all| all.lrus).unwrap_or_default();
-    name_cars(&mut names, &of_all);
+    name_cars(&mut names, runs.iter().flat_map(|run| &run.occurrences));
     // A symptom that this directory's file no longer has says nothing.
     let said = run.run.symptom.as_deref();
     if let Some(symptom) = said.and_then(|id| symptoms::find(directory, &names, id).ok()) {
@@ -174,15 +181,15 @@ pub fn diagnose(
     });
     history.explain(&mut diagnosis);
     let why_not = why_not.transpose()?;
-    cannot_tell_unless_passed(&run, &mut diagnosis);
+    cannot_tell_unless_passed(run, &mut diagnosis);
     let mut traces: BTreeMap<String, Vec<Id>> = BTreeMap::new();
-    for occurrence in &occurrences {
+    for occurrence in occurrences {
         let of_part = traces.entry(occurrence.lru.clone()).or_default();
         of_part.extend(occurrence.trace_id.filter(|id| !of_part.contains(id)));
     }
     Ok(Answer {
-        cause: cause.map(|cause| with_faults(cause, &run, &occurrences)),
-        run,
+        cause: cause.map(|cause| with_faults(cause, run, occurrences)),
+        run: runs.swap_remove(0).run,
         diagnosis,
         why_not,
         traces,
@@ -203,25 +210,6 @@ pub(super) fn observed(
     let seen = of_run(&run, &store.run_occurrences(run.run.id)?);
     let seen = comparable((&run, &[]), seen, dictionary, &mut Vec::new());
     Ok((run, seen))
-}
-
-/// Another run of the unit.
-fn of_same_unit(store: &Store, run: &RunDetail, other: Id) -> Result<RunDetail, Failure> {
-    let other = store.run(other)?;
-    let (this, that) = (&run.run, &other.run);
-    if this.id == that.id {
-        return Err(Failure::usage(DiagnosisTrouble::RunTwice(that.id)));
-    }
-    if this.unit_serial != that.unit_serial || this.unit_config_sha256 != that.unit_config_sha256 {
-        return Err(Failure::usage(DiagnosisTrouble::OtherUnit(
-            that.id,
-            that.unit_serial.clone(),
-            that.unit_config_name.clone(),
-            this.unit_serial.clone(),
-            this.unit_config_name.clone(),
-        )));
-    }
-    Ok(other)
 }
 
 fn no_such_part(part: &LruId, model: &Model<'_>) -> Failure {

@@ -9,9 +9,14 @@ use protocol::injection::Lru;
 use crate::stored::findings;
 
 /// Adds to the name of a part the car on which faults of a run name it, where they all name one.
-pub(super) fn name_cars(names: &mut [Lru], occurrences: &[RunOccurrence]) {
+pub(super) fn name_cars<'a>(
+    names: &mut [Lru],
+    occurrences: impl Iterator<Item = &'a RunOccurrence> + Clone,
+) {
     for part in names {
-        let of_part = occurrences.iter().filter(|one| part.id.as_str() == one.lru);
+        let of_part = occurrences
+            .clone()
+            .filter(|one| part.id.as_str() == one.lru);
         let mut cars: BTreeSet<i32> = of_part.filter_map(car).collect();
         if let (Some(car), true) = (cars.pop_first(), cars.is_empty()) {
             part.name = format!("{} of car {car}", part.name);

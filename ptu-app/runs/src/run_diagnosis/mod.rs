@@ -9,6 +9,7 @@ mod dictionary;
 mod history;
 mod proof;
 mod repairs;
+mod stored_run;
 
 pub use answer::{Answer, Bench, Question, adaptive, diagnose, diagnose_run};
 pub use basis::{LINE, TRAIN, UNIT_CONFIG, basis, settings};
