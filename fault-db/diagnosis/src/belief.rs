@@ -26,9 +26,9 @@ pub struct Belief<'m, 'd> {
     pub model: &'m Model<'d>,
     /// Logarithms of the likelihood of all steps, without their signs, under each effect.
     effects: Vec<f64>,
-    /// The same under a fault that acts more or less like each effect.
+    /// Logarithms of the likelihood of all steps, without their signs, under a fault that acts more or less like each effect.
     like_effects: Vec<f64>,
-    /// The same on a healthy unit, with their signs.
+    /// Logarithm of the likelihood of all steps on a healthy unit, with their signs.
     healthy: f64,
     signs: SignsSeen,
     /// What deviated first in each trace.
@@ -42,11 +42,11 @@ pub struct Belief<'m, 'd> {
 /// A step that the dictionary knows, with its likelihoods.
 #[derive(Clone, Debug)]
 pub(super) struct WeighedStep {
-    /// Its index in the observation, or among the steps added.
+    /// Index of the step in the observation, or among the steps added.
     pub seen: usize,
     /// Index of its check in the dictionary.
     pub place: usize,
-    /// Logarithms of its likelihood.
+    /// Logarithms of the step's likelihood.
     pub ln: StepLikelihoods,
 }
 
@@ -162,8 +162,8 @@ impl<'m, 'd> Belief<'m, 'd> {
         self.effects[effect]
     }
 
-    /// What `like_effects` has, as far as it tells what the checks to come will show: a mode that was not seen yet is no twin of
-    /// another, however alike they were so far.
+    /// The values of `like_effects` with the steps so far weighed by `foresight`: they say less of what checks to come will
+    /// show, as a mode that was not seen yet is no twin of another, however alike the two were so far.
     pub(super) fn vaguely_like_effects(&self, part: usize) -> Vec<f64> {
         let alike = self.model.resemblance(part).iter();
         let like = alike.zip(&self.like_effects);
@@ -171,7 +171,7 @@ impl<'m, 'd> Belief<'m, 'd> {
             .collect()
     }
 
-    /// The effect that a fault has, or most likely acts like, by its index among them.
+    /// Index of the effect that a fault has, or most likely acts like.
     pub(super) fn acts_like(&self, hypothesis: Hypothesis) -> Option<usize> {
         match hypothesis {
             Hypothesis::Mode { .. } => self.model.effect(hypothesis),

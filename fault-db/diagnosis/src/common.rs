@@ -67,9 +67,9 @@ struct Steps<'b> {
 /// A step that did not pass, or showed a sign.
 struct StrangeStep<'b> {
     ln_healthy: f64,
-    /// Logarithms of its likelihood under each effect.
+    /// Logarithms of the step's likelihood under each effect.
     ln: &'b [f64],
-    /// Probability of its result under each effect, and that times the likelihood.
+    /// Probability of the step's result under each effect, and the product of that probability and the likelihood.
     weighted: Vec<(f64, f64)>,
 }
 
@@ -98,8 +98,8 @@ impl<'b> Steps<'b> {
         Self { passed, strange }
     }
 
-    /// Modes that explain the failures better than a healthy unit, with their best level, the best first; by the
-    /// index of the effect.
+    /// Indexes of the effects that explain the failures better than a healthy unit, one for each mode at its best level, the best
+    /// first.
     fn explaining(&self, model: &Model<'_>) -> Vec<usize> {
         let explained = |effect: usize| -> f64 {
             let strange = self.strange.iter();
@@ -126,7 +126,7 @@ impl<'b> Steps<'b> {
     /// Logarithm of the likelihood of all steps under two effects.
     fn ln_of_both(&self, first: usize, second: usize) -> f64 {
         let passed = self.passed.iter().map(|ln| ln[first].min(ln[second]));
-        // Whose the effect is, is not known: as likely each one's as it is its own.
+        // Either fault may have caused the result: each with the probability that the result has under that fault.
         let strange = self.strange.iter().map(|step| {
             let (result, weighted) = step.weighted[first];
             let (other_result, other_weighted) = step.weighted[second];

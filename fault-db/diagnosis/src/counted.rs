@@ -1,5 +1,5 @@
-//! How likely it is that the fault of a run is one that was counted: the run is as counted under the likeliest fault of the
-//! dictionary, or results, values, first deviations and signs are not.
+//! How likely it is that the fault of a run is one that was counted: judged by how far results, values, first deviations and
+//! signs are from the counts under the likeliest fault of the dictionary.
 //!
 //! The question is that of a posterior-predictive check (Rubin 1984); the weights are those of a logistic regression over
 //! runs of modes that were counted and of modes that were left out.
@@ -11,10 +11,10 @@ use super::model::FIRST_EFFECT;
 use super::observation::Observation;
 use super::settings::CountedSettings;
 
-/// What of a run is not as counted under the likeliest fault of the dictionary.
+/// What in a run differs from the counts under the likeliest fault of the dictionary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misfit {
-    /// Checks that end as they seldom did.
+    /// Checks that end with a verdict they seldom had.
     results: usize,
     /// Values far from those counted, and values missing that never were.
     values: usize,
@@ -33,7 +33,7 @@ impl Misfit {
         let effects = ln[FIRST_EFFECT..].iter().zip(model.effects()).enumerate();
         let likeliest = effects.max_by(|a, b| a.1.0.total_cmp(b.1.0));
         let (number, (_, likeliest)) = likeliest?;
-        // However often a check was made, what lasts counts once.
+        // A lasting difference counts once, however often its check was made.
         let mut checks: BTreeMap<usize, (bool, usize)> = BTreeMap::new();
         for weighed in belief.steps() {
             let step = &seen.steps[weighed.seen];

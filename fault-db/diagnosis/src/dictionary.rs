@@ -12,14 +12,14 @@ use serde::{Deserialize, Serialize};
 use super::cell::Cell;
 use super::observation::{CheckName, Observation, Sign};
 
-/// Compression level: read often, written seldom.
+/// Compression level of zstd: a dictionary is read often and written seldom.
 const ZSTD_LEVEL: i32 = 15;
-/// Level of real runs.
+/// Name of the level that holds real runs.
 const CASES: &str = "cases";
 /// A dictionary unpacks to at most this many bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// Provenance of a dictionary. With any other it may be wrong.
+/// Provenance of a dictionary. For a unit, scripts or a line of other provenance the dictionary may be wrong.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Basis {
     /// SHA-256 over everything below and all other inputs, in hex.
@@ -37,7 +37,7 @@ pub struct Basis {
     pub app_version: String,
 }
 
-/// Dictionaries of before were all made on benches.
+/// Value of a file that does not say how the units were reached: on a bench.
 fn harness() -> String {
     "harness".into()
 }
@@ -95,7 +95,7 @@ pub struct Dictionary {
     pub seeds: Vec<u64>,
     /// Checks in the order of the suite.
     pub checks: Vec<CheckName>,
-    /// For each check the part that its script suspects when it fails.
+    /// The part that the script of each check suspects when the check fails, in the order of the checks.
     #[serde(default)]
     pub suspects: Vec<Option<LruId>>,
     /// Counts of a healthy unit.
@@ -105,7 +105,7 @@ pub struct Dictionary {
     /// All parts that can be replaced, those without a mode among them.
     #[serde(default)]
     pub parts: Vec<LruId>,
-    /// Indexes of the checks by name.
+    /// Index of each check by its name.
     #[serde(skip)]
     places: BTreeMap<CheckName, usize>,
 }
@@ -123,9 +123,10 @@ impl Dictionary {
         dictionary
     }
 
-    /// Compresses it for storage.
+    /// Compresses the dictionary for storage.
     ///
-    /// Out of memory.
+    /// # Errors
+    /// The compressor has no memory.
     pub fn to_bytes(&self) -> Result<Vec<u8>, String> {
         let json = serde_json::to_vec(self).map_err(|error| error.to_string())?;
         pack(&json).map_err(|error| error.to_string())

@@ -1,4 +1,4 @@
-//! What of a run the likeliest fault explains: consequences of one cause.
+//! What the likeliest fault explains of a run: the consequences of one cause.
 
 use std::collections::BTreeSet;
 
@@ -21,7 +21,7 @@ pub struct Cause {
     pub checks: BTreeSet<CheckName>,
 }
 
-/// Of the parts one of which has failed for certain the one that is likelier than all others, with what it explains.
+/// The part of the answer's set that is likelier than all other parts together, with what it explains; `None` where no part is.
 pub fn cause(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) -> Option<Cause> {
     let model = belief.model;
     let found = weights.set.first().filter(|part| part.probability > 0.5)?;
@@ -59,8 +59,8 @@ pub fn cause(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) -> 
     })
 }
 
-/// The effects that the fault of a part may have, each with its weight; together 1. A fault that was not seen yet has
-/// the one that it most likely acts like.
+/// The effects that the fault of a part may have, each with its weight; the weights add up to 1. A fault that was not seen
+/// yet has the effect that it most likely acts like.
 fn effects_of(belief: &Belief<'_, '_>, weights: &Weights, part: &LruId) -> Vec<(usize, f64)> {
     let of_part = |hypothesis: Hypothesis| belief.model.lru(hypothesis) == Some(part);
     let faults = weights

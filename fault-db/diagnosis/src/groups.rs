@@ -42,14 +42,14 @@ pub struct Relations {
     pub of_bench: BTreeSet<LruId>,
     /// Procedures in which the bench has no part.
     pub without_bench: Vec<String>,
-    /// Of each signal the parts that make it of others.
+    /// The parts that make each signal out of other signals.
     pub makers: BTreeMap<String, BTreeSet<LruId>>,
-    /// Of each signal those that it is made of and that the bench records on their way to the unit: a wire of the bench that
-    /// breaks behind that place shows first where the unit makes something of them.
+    /// For each signal the signals that it is made of and that the bench records on their way to the unit. A wire of the bench
+    /// that breaks behind the place of recording shows first at the signal that the unit makes.
     pub on_the_way: BTreeMap<String, BTreeSet<String>>,
 }
 
-/// Parts that do not depend on each other, as far as is known.
+/// No relation between parts is known.
 pub static NO_RELATIONS: Relations = Relations {
     groups: Vec::new(),
     shared: Vec::new(),
@@ -72,8 +72,9 @@ impl Relations {
         groups.any(|group| group.parts.contains(one) && group.parts.contains(other))
     }
 
-    /// The measurement that tells parts apart, the likeliest first: of the smallest group that has all of them, of what one of
-    /// them is and the others share, or of the group that tells the likeliest from most others; empty where there is none.
+    /// The measurement that tells `parts` (the likeliest first) apart: the one of the smallest group that has them all; else,
+    /// where one of the parts is what the others share, the one for what they share; else the one of the group that tells the
+    /// likeliest from most others. Empty where there is none.
     pub fn measure(&self, parts: &[&LruId]) -> Measure {
         let told = |group: &&Group| {
             let told = parts.iter().filter(|part| group.parts.contains(part));
@@ -104,9 +105,9 @@ impl Relations {
     }
 }
 
-/// Parts of the bench of a group with a part of the unit: what comes from the bench cannot tell the bench from the part that
-/// the bench reaches. None where no trace deviates first where a fault of the part of the bench shows, or a step failed that
-/// judges the part of the unit without the bench.
+/// Parts of the bench that stand in one group with a part of the unit: a stimulus that does not arrive may be the fault of
+/// either. There are none where traces deviate first at signals that a fault of the bench does not touch, or where a step
+/// failed that judges the part of the unit without the bench.
 pub fn rivals<'m>(belief: &Belief<'m, '_>, part: &LruId) -> BTreeSet<&'m LruId> {
     let relations = belief.model.relations;
     if relations.of_bench.contains(part) || fails_without_bench(belief, part) {
@@ -122,8 +123,8 @@ pub fn rivals<'m>(belief: &Belief<'m, '_>, part: &LruId) -> BTreeSet<&'m LruId> 
         .collect()
 }
 
-/// Whether a trace deviates first at a signal that a part of the bench makes, or at one that is made of a signal which the bench
-/// records on its way to the part. Any trace may where none was held against a sound unit's, or none deviated.
+/// Whether a trace deviates first at a signal that the part of the bench makes, or at a signal that is made of one which the
+/// bench records on its way to the part of the unit. True where no trace was held against a sound unit's, or none deviated.
 fn may_deviate_at(belief: &Belief<'_, '_>, bench: &LruId, part: &LruId) -> bool {
     let relations = belief.model.relations;
     let reaches = |from: &String| relations.makes(bench, from) && relations.makes(part, from);
@@ -135,7 +136,7 @@ fn may_deviate_at(belief: &Belief<'_, '_>, bench: &LruId, part: &LruId) -> bool 
     deviating.is_empty() || deviating.iter().any(shows)
 }
 
-/// Whether a step failed that judges the part and that the bench has no part in.
+/// Whether a step failed that judges the part in a procedure without the bench.
 fn fails_without_bench(belief: &Belief<'_, '_>, part: &LruId) -> bool {
     let dictionary = belief.model.dictionary;
     let procedures = &belief.model.relations.without_bench;

@@ -20,7 +20,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Of a healthy unit's values.
+    /// The range of a healthy unit's values.
     pub fn of_healthy(values: &Values) -> Self {
         Self {
             low: values.low,
@@ -29,7 +29,7 @@ impl Scale {
         }
     }
 
-    /// Widened by another hypothesis.
+    /// Widens the range to the values under another hypothesis.
     pub fn widen(&mut self, values: &Values) {
         if values.n > 0 {
             self.low = self.low.min(values.low);

@@ -65,11 +65,11 @@ pub struct Model<'a> {
     pub hypotheses: Vec<Hypothesis>,
     /// Logarithms of their priors.
     pub ln_priors: Vec<f64>,
-    /// How parts depend on each other.
+    /// Groups of parts, what they share, and which signals they make.
     pub relations: &'a Relations,
     parts: Vec<&'a LruId>,
     effects_of_parts: Vec<Vec<usize>>,
-    /// For each part, logarithms of the probability that an unseen mode of it acts like each effect.
+    /// Logarithms of the probability that an unseen mode of a part acts like each effect, by part and effect.
     resemblance: Vec<Vec<f64>>,
     /// What each check may show.
     pub outlooks: Vec<Outlook>,
@@ -147,7 +147,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// With how parts depend on each other; without that, traces are no evidence.
+    /// Adds how parts depend on each other; without these relations traces are no evidence.
     pub fn with_relations(self, relations: &'a Relations) -> Self {
         let residuals = Residuals::new(self.dictionary, &self.parts, relations, self.settings);
         Self {
@@ -166,7 +166,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// That part's place among the parts.
+    /// Index of the part that has failed under a hypothesis; `None` if the unit is healthy.
     pub fn part(&self, hypothesis: Hypothesis) -> Option<usize> {
         let lru = self.lru(hypothesis)?;
         self.parts.binary_search(&lru).ok()
@@ -228,7 +228,7 @@ impl<'a> Model<'a> {
     pub fn is_like_healthy(&self, hypothesis: Hypothesis, place: usize) -> bool {
         match hypothesis {
             Hypothesis::Mode { .. } => !self.column(hypothesis).cells.contains_key(&place),
-            // Their effects were never counted.
+            // No check was counted under these.
             _ => true,
         }
     }

@@ -3,10 +3,11 @@
 //! A procedure sets the unit up at its start and its steps build on each other. So a check costs all steps
 //! of its procedure before it, except those that have just run.
 //!
-//! Where no other check tells more, one that was made may: what comes and goes hits other checks the next time. What lasts
-//! shows the same again.
+//! Where no other check tells more, a check that was made may be made again: an intermittent fault hits other checks the next
+//! time, a lasting one shows the same again.
 //!
-//! What a person is told decides by passing or not: signs beside the result may have been seen before.
+//! A check that a person is told to make is rated by passing or not alone: the signs beside the result may have been seen
+//! before.
 
 use std::collections::BTreeSet;
 
@@ -20,7 +21,7 @@ use super::observation::CheckName;
 use super::verdict::PartProbability;
 use super::weights::ratio;
 
-/// A part is told by a check that passes, or does not, with this probability if the part has failed.
+/// A check decides about a part if it passes, or does not pass, with at least this probability while the part has failed.
 const MOSTLY: f64 = 0.7;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -32,11 +33,11 @@ pub struct NextCheck {
     pub gain_bits: f64,
     /// Duration, s, including the steps before it and the set-up of the unit.
     pub cost_s: f64,
-    /// It was made already, and is worth making again.
+    /// The check was made already, and is worth making again.
     pub again: bool,
-    /// Likely parts with whose fault it passes.
+    /// Likely parts with whose fault the check passes.
     pub passes_with: Vec<LruId>,
-    /// Likely parts with whose fault it does not.
+    /// Likely parts with whose fault the check does not pass.
     pub fails_with: Vec<LruId>,
 }
 
@@ -48,7 +49,7 @@ fn as_text<S: serde::Serializer>(check: &CheckName, to: S) -> Result<S::Ok, S::E
 struct Classes {
     /// Probability of each class.
     all: Vec<f64>,
-    /// For each effect, the probability of each class with it.
+    /// Probability of each class with each effect, by effect and class.
     with_effect: Vec<Vec<f64>>,
 }
 
@@ -141,7 +142,7 @@ impl Belief<'_, '_> {
         passing
     }
 
-    /// Whether this outcome of the check at `place` is a pass.
+    /// Whether the check at `place` passes with this outcome.
     fn passed(&self, place: usize, outcome: usize) -> bool {
         let known = self.model.outlooks[place].outcomes.get(outcome);
         known.is_some_and(|known| known.result == Verdict::Passed)
@@ -176,7 +177,7 @@ impl Belief<'_, '_> {
         parted
     }
 
-    /// By Bayes' rule, or where the parts have these probabilities.
+    /// The classes with their probabilities by Bayes' rule; parts in `pooled` have the probabilities given there.
     fn classes(&self, pooled: &[PartProbability]) -> Classes {
         let parts = self.model.parts();
         let classes = FIRST_EFFECT + parts.len();
@@ -285,12 +286,11 @@ pub fn costs<'a>(
     })
 }
 
-/// Of checks with their cost and worth the one with the greatest worth per second.
+/// The check with the greatest worth per second; each item is its index, its cost in s, and its worth. Of equal checks the first.
 pub fn most_per_second(
     checks: impl Iterator<Item = (usize, f64, f64)>,
 ) -> Option<(usize, f64, f64)> {
     let per_second = |(_, cost_s, worth): &(usize, f64, f64)| worth / cost_s.max(0.1);
-    // Of several the first.
     checks.reduce(|best, next| match per_second(&next) > per_second(&best) {
         true => next,
         false => best,

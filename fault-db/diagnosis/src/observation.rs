@@ -50,12 +50,12 @@ pub const CLOCK_WRONG: &str = "clock_wrong";
 pub struct Sign {
     /// Name of the fault.
     pub fault: String,
-    /// Part it points at.
+    /// Part that the fault points at.
     pub lru: Option<LruId>,
 }
 
 impl Sign {
-    /// The tester has measured it.
+    /// Whether the tester has measured the fault itself.
     pub(crate) fn is_measured(&self) -> bool {
         self.fault == CLOCK_WRONG
     }
@@ -66,7 +66,7 @@ impl Sign {
     }
 }
 
-// By the words: the order of signs in stored dictionaries.
+// Stored dictionaries have their signs in the order of these words.
 impl Ord for Sign {
     fn cmp(&self, other: &Self) -> Ordering {
         (&self.fault, self.part()).cmp(&(&other.fault, other.part()))
@@ -103,14 +103,14 @@ impl TryFrom<String> for Sign {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObservedStep {
     pub check: CheckName,
-    /// Its verdict, one that [`is_observed`].
+    /// Verdict of the step, one that [`is_observed`].
     #[serde(deserialize_with = "observed")]
     pub result: Verdict,
-    /// Bench time it took, s.
+    /// Bench time that the step took, s.
     pub time_s: f64,
-    /// Its measured values by name; `None` where nothing could be measured.
+    /// Measured values by name; `None` where nothing could be measured.
     pub values: Vec<(String, Option<f64>)>,
-    /// Signs that showed while it ran, or during the set-up of its procedure.
+    /// Signs that showed while the step ran, or during the set-up of its procedure.
     pub signs: BTreeSet<Sign>,
 }
 
@@ -121,7 +121,7 @@ pub struct Observation {
     pub steps: Vec<ObservedStep>,
     /// Signs from the unit's own log, which belong to no step.
     pub signs: BTreeSet<Sign>,
-    /// Of the first trace of each procedure the signal that was the first to leave that of a sound unit.
+    /// The signal that was the first to leave a sound unit's, one for the first trace of each procedure.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub residuals: Vec<String>,
 }

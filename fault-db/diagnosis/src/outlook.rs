@@ -10,9 +10,9 @@ type Shares = Vec<(usize, f64)>;
 #[derive(Clone, Debug, Default)]
 pub struct Outlook {
     pub outcomes: Vec<StepOutcome>,
-    /// On a healthy unit.
+    /// The outcomes on a healthy unit.
     pub healthy: Shares,
-    /// Under the effects that differ from a healthy unit here, each by its index.
+    /// The outcomes under each effect that differs from a healthy unit at this check, by the index of the effect.
     pub effects: Vec<(usize, Shares)>,
 }
 

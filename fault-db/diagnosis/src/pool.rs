@@ -1,11 +1,11 @@
 //! How likely each part is, whether its fault was counted or not.
 //!
-//! A fault that was counted is told by Bayes' rule. Of one that nobody has counted the rule is too sure, as the fault acts like
-//! one of another part. So the logarithm of a part's posterior then counts with a weight below 1 and to a limit only, beside
-//! what points at a part whatever its faults do: who makes the signals that deviate first, whom signs and failed checks name,
-//! and which parts are in a row with the likeliest. It is a log-linear pool (Genest and Zidek 1986), whose weights are those
-//! of a conditional logit (McFadden 1974) over runs of modes that were left out. Both are mixed by how well the run fits what
-//! was counted.
+//! A fault that was counted is found by Bayes' rule. About a fault that nobody has counted the rule is too sure, as such a fault
+//! may act like one of another part. So the logarithm of a part's posterior then counts with a weight below 1 and to a limit
+//! only, beside what points at a part whatever its faults do: who makes the signals that deviate first, whom signs and failed
+//! checks name, and which parts are in a row with the likeliest. It is a log-linear pool (Genest and Zidek 1986), whose weights
+//! are those of a conditional logit (McFadden 1974) over runs of modes that were left out. Both are mixed by how well the run
+//! fits what was counted.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,12 +19,12 @@ use super::logarithms::normalised;
 use super::model::{FIRST_EFFECT, Model};
 use super::observation::Observation;
 
-/// A part is about as likely as the likeliest at this share of its probability.
+/// A part with this share of the likeliest part's probability counts as equally likely.
 const AS_LIKELY: f64 = 0.5;
 
 /// All evidence for each part.
 pub struct Pooled {
-    /// The probability of each part in the model's order, together 1: that it is the one, if one has failed.
+    /// Probability that each part is the one that failed, given that one has, in the model's order; together 1.
     pub shares: Vec<f64>,
     /// Probability that the fault is one that was counted.
     pub counted: f64,
@@ -109,7 +109,7 @@ fn causes(belief: &Belief<'_, '_>, seen: &Observation) -> BTreeSet<LruId> {
     causes.map(|shared| shared.part.clone()).collect()
 }
 
-/// The posterior of each part, if one has failed.
+/// The posterior of each part, given that one has failed; the posteriors add up to 1.
 fn of_parts(model: &Model<'_>, ln: &[f64]) -> Vec<f64> {
     let faulty = normalised(&ln[FIRST_EFFECT..]);
     let mut parts = vec![0.0; model.parts().len()];
@@ -121,7 +121,7 @@ fn of_parts(model: &Model<'_>, ln: &[f64]) -> Vec<f64> {
     parts
 }
 
-/// How often each is named, over all that name one.
+/// How often each is named, as a share of all namings.
 fn shares<'a, T: Ord>(named: impl Iterator<Item = Option<&'a T>>) -> BTreeMap<&'a T, f64> {
     let mut counts: BTreeMap<&T, f64> = BTreeMap::new();
     for one in named.flatten() {

@@ -1,8 +1,7 @@
 //! Whether runs that passed prove a repair: how probable they are while the fault is still there.
 //!
-//! An intermittent fault hides in a part of all runs. What is known of its rate are the runs in which it was there, held
-//! against the fault dictionary: the faults that explain them, each with its spells, say how often a run like the last passes
-//! all the same.
+//! An intermittent fault hides in a share of all runs. How large that share is, is learnt from the runs in which the fault was
+//! there: the faults of the dictionary that explain those runs say how often a run like the last passes all the same.
 
 use super::belief::Belief;
 use super::logarithms::ln_sum;
@@ -12,14 +11,14 @@ use super::observation::Observation;
 /// More runs than these are not asked for: the fault does not show in such runs.
 const MOST_RUNS: u32 = 20;
 
-/// What runs that passed after a repair say of it.
+/// What runs that passed after a repair say of the repair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proof {
     /// Probability that a unit which still has the fault passes all of them.
     pub hidden: f64,
-    /// The same of the last run, after those before it.
+    /// Probability that the unit with the fault passes the last run, given that it passed those before.
     pub hidden_in_last: f64,
-    /// How many more runs like the last have to pass until `hidden` is at most the limit; `None`: more than anybody makes.
+    /// How many more runs like the last have to pass until `hidden` is at most the limit; `None` for more than 20.
     pub more: Option<u32>,
 }
 
@@ -28,8 +27,8 @@ impl Proof {
         self.more == Some(0)
     }
 
-    /// Of the runs in which the fault was there and those that passed after the repair, each in order; `limit` is
-    /// the greatest probability of a hidden fault at which the repair counts as proven. `None` without a run that passed.
+    /// Weighs the runs in which the fault was `there` and those that `passed` after the repair, each in order; `limit` is the
+    /// greatest probability of a hidden fault at which the repair counts as proven. `None` without a run that passed.
     pub fn of(
         model: &Model<'_>,
         there: &[Observation],

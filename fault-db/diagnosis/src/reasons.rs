@@ -14,8 +14,8 @@ use super::signs::SignsSeen;
 const MOST: usize = 6;
 /// A step is a reason if its likelihood ratio is at least e.
 const SPEAKS_AT: f64 = 1.0;
-/// Competing modes that a mode is compared with.
-const CONFLICTING_EVENTS: usize = 5;
+/// So many of the likeliest modes of other parts a mode is compared with.
+const MOST_RIVALS: usize = 5;
 
 /// What speaks for a fault, or against it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -38,11 +38,11 @@ pub enum Reason {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepReason {
     pub check: CheckName,
-    /// How it ended.
+    /// Verdict of the step.
     pub result: Verdict,
-    /// Shares of runs in which it ends so.
+    /// Shares of runs in which the step ends with this verdict.
     pub shares: [f64; 2],
-    /// Signs that showed in it.
+    /// Signs that showed in the step.
     pub signs: Vec<Sign>,
     /// Values that tell the two apart, or were not measured.
     pub values: Vec<ValueReason>,
@@ -62,24 +62,24 @@ pub struct ValueReason {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Known {
-    /// Faults of earlier runs named it.
+    /// Faults of earlier runs named the part.
     Recurred {
         runs: u32,
         /// Since this repair, if there was one.
         since: Option<Repaired>,
     },
-    /// It was repaired, and the fault came back.
+    /// The part was repaired, and the fault came back.
     CameBack(Repaired),
     /// Who brought the unit said so.
     BroughtWith { symptom: String },
-    /// Diagnoses named it before confirmed repairs.
+    /// Diagnoses named the part before confirmed repairs.
     WasRight {
-        /// Repairs in which it was the part.
+        /// Repairs that confirmed the part.
         right: u32,
         named: u32,
     },
     OftenRepaired {
-        /// Confirmed repairs of it.
+        /// Confirmed repairs of the part.
         of_part: u32,
         /// Confirmed repairs of any part.
         all: u32,
@@ -96,7 +96,7 @@ pub struct Repaired {
 }
 
 impl Reason {
-    /// The step that showed it.
+    /// The step that is the reason, if one is.
     pub fn step(&self) -> Option<&CheckName> {
         match self {
             Self::Step(step) => Some(&step.check),
@@ -105,12 +105,12 @@ impl Reason {
     }
 }
 
-/// The reasons for and against a mode, the strongest first; those of one procedure after the first of each other.
+/// The reasons for and against a mode: first the strongest of each procedure, then the others, each list the strongest first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reasons {
-    /// For it: steps likelier than on a healthy unit.
+    /// Steps likelier than on a healthy unit.
     pub for_it: Vec<Reason>,
-    /// Against it: steps likelier on a healthy unit, or under another part's fault.
+    /// Steps likelier on a healthy unit, or under another part's fault.
     pub against: Vec<Reason>,
 }
 
@@ -137,8 +137,8 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observati
                 step,
             ))
         };
-        // What a healthy unit hardly ever shows is likelier under any fault: what another part's explains better speaks
-        // against this one.
+        // A step that a healthy unit hardly ever shows is likelier under any fault; where another part's fault explains the
+        // step better, it speaks against this one.
         if best_rival - ln_own > SPEAKS_AT {
             against.push((best_rival - ln_own, reason()));
         } else if ln_own - healthy > SPEAKS_AT {
@@ -182,9 +182,7 @@ impl Reasons {
             }
         }
     }
-}
 
-impl Reasons {
     /// Signals that deviated first which speak for a hypothesis, or against it.
     fn add_deviations(&mut self, belief: &Belief<'_, '_>, hypothesis: Hypothesis) {
         let model = belief.model;
@@ -215,7 +213,7 @@ fn rivals(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> Vec<usize> {
     rivals.sort_by(|a, b| {
         probabilities[FIRST_EFFECT + b].total_cmp(&probabilities[FIRST_EFFECT + a])
     });
-    rivals.truncate(CONFLICTING_EVENTS);
+    rivals.truncate(MOST_RIVALS);
     rivals
 }
 
@@ -253,7 +251,7 @@ fn held_against(
     }
 }
 
-/// To four significant figures.
+/// The value to four significant figures.
 fn rounded(value: f64) -> f64 {
     if value == 0.0 {
         return 0.0;

@@ -1,9 +1,9 @@
 //! First deviations of the traces of a run from those of a sound unit that was given the same stimuli.
 //!
 //! The parts that make a signal out of others (`structure.toml`) are one residual: where that signal is the first to
-//! deviate, what it is made of did not (de Kleer and Williams, 1987; Pulido and Alonso, 2004). How often each signal is the
-//! first under each fault is counted in campaigns; a fault that is not in the dictionary shows at the signals of its part,
-//! at those where known faults of the part show, or where any fault does.
+//! deviate, the signals it is made of did not (de Kleer and Williams, 1987; Pulido and Alonso, 2004). How often each signal
+//! is the first under each fault is counted in campaigns. A fault that is not in the dictionary shows at the signals of its
+//! part, at those where known faults of the part show, or where any fault does.
 
 use std::collections::BTreeMap;
 
@@ -115,7 +115,7 @@ impl Residuals {
         self.of_effects[effect][signal]
     }
 
-    /// The same under a fault of a part that is not in the dictionary.
+    /// Share of the traces in which a signal is the first to deviate under a fault of a part that is not in the dictionary.
     pub fn of_part(&self, part: usize, signal: usize) -> f64 {
         self.of_parts[part][signal]
     }
@@ -135,12 +135,13 @@ impl Residuals {
         })
     }
 
-    /// The same under a fault of a part that is not in the dictionary.
+    /// Logarithm of the likelihood of what deviated first under a fault of a part that is not in the dictionary.
     pub fn ln_unseen(&self, part: usize, seen: &[String]) -> f64 {
         self.ln(seen, |signal| self.of_parts[part][signal])
     }
 
-    /// The same under no fault: a unit that is not simulated deviates as any does.
+    /// Logarithm of the likelihood of what deviated first under no fault: a real unit deviates from the simulated one as under
+    /// any fault.
     pub fn ln_healthy(&self, seen: &[String]) -> f64 {
         self.ln(seen, |signal| self.of_any[signal])
     }
@@ -217,7 +218,7 @@ mod tests {
         }
         let ln = |part, signal: &str| table.ln_unseen(part, &[signal.to_owned()]);
         assert!(ln(1, "eb") > ln(0, "eb") && ln(0, "doors") > ln(1, "doors"));
-        // Of no signal that is known nothing follows.
+        // Nothing follows from a signal that is not known.
         assert_eq!(ln(0, "temperature"), 0.0);
     }
 }

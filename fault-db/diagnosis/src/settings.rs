@@ -20,9 +20,10 @@ pub struct Settings {
     pub doubt_runs: f64,
     /// Share of checks that a mode acts on otherwise than counted: like another mode of the same part, or anyhow.
     pub otherwise: f64,
-    /// The same of an intermittent mode, and of one that is not in the dictionary, beside the effect that it acts like.
+    /// Share of checks on which an intermittent mode acts otherwise than counted; or a mode that is not in the dictionary,
+    /// otherwise than the effect that it acts like.
     pub otherwise_unseen: f64,
-    /// Share of those that may show anything.
+    /// Share of these checks that may show anything.
     pub anything: f64,
     /// Share of a part's faults that act in a way which is not in the dictionary.
     pub unseen_mode: f64,
@@ -79,17 +80,17 @@ pub struct CountedSettings {
     pub as_counted: f64,
     /// Weight of the number of steps that end as they seldom did: of the logarithm of one more.
     pub results: f64,
-    /// The same of values far from those counted.
+    /// Weight of the number of values far from those counted: of the logarithm of one more.
     pub values: f64,
     /// Weight of the share of traces that deviate first at a signal which seldom was the first.
     pub first: f64,
     /// Weight of the number of signs that never showed: of the logarithm of one more.
     pub signs: f64,
-    /// A step seldom ends so: in a lesser share of the runs.
+    /// A step seldom ends with a verdict that a lesser share of the runs had.
     pub seldom: f64,
-    /// A signal seldom is the first to deviate: in a lesser share of the traces.
+    /// A signal is seldom the first to deviate if it is so in a lesser share of the traces.
     pub seldom_first: f64,
-    /// A value is far from those counted, standard deviations.
+    /// A value is far from those counted if it is more than so many standard deviations away.
     pub far: f64,
 }
 
@@ -97,17 +98,17 @@ pub struct CountedSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PoolSettings {
-    /// Of the logarithm of its posterior.
+    /// Weight of the logarithm of the part's posterior.
     pub posterior: f64,
-    /// The logarithm counts no further below certainty than this.
+    /// The logarithm of the posterior counts no further below certainty than this.
     pub limit: f64,
-    /// Of the share of traces that deviate first at a signal which the part makes.
+    /// Weight of the share of traces that deviate first at a signal which the part makes.
     pub deviates: f64,
-    /// Of the share of signs that name it.
+    /// Weight of the share of signs that name the part.
     pub signs: f64,
-    /// Of the share of failed checks that suspect it.
+    /// Weight of the share of failed checks that suspect the part.
     pub suspects: f64,
-    /// Of being the likeliest by Bayes' rule, or of a group with that.
+    /// Weight of being the likeliest part by Bayes' rule, or in one group with the likeliest.
     pub near: f64,
     /// What two parts share may be the cause where both explain a run so much better than one: logarithm of the likelihoods' ratio.
     pub common: f64,
@@ -122,9 +123,9 @@ pub struct LikelihoodSettings {
     /// Probability that a check passes if nothing is known. With the next two it makes 1, as a check that was
     /// skipped or aborted is no evidence.
     pub passed: f64,
-    /// Probability that it fails if nothing is known.
+    /// Probability that a check fails if nothing is known.
     pub failed: f64,
-    /// Probability that it ends in an error if nothing is known.
+    /// Probability that a check ends in an error if nothing is known.
     pub error: f64,
     /// Probability of a sign if nothing is known.
     pub sign: f64,

@@ -10,9 +10,9 @@ use super::observation::Sign;
 /// Signs that are evidence.
 #[derive(Clone, Debug, Default)]
 pub struct SignsSeen {
-    /// Those that showed in steps.
+    /// Signs that showed in steps.
     pub in_steps: BTreeSet<Sign>,
-    /// Those of the unit's own log.
+    /// Signs in the unit's own log.
     pub in_log: BTreeSet<Sign>,
     /// Checks that were made, by index.
     pub made: BTreeSet<usize>,
@@ -24,7 +24,8 @@ impl SignsSeen {
         self.in_steps.union(&self.in_log)
     }
 
-    /// Logarithm of their likelihood under a hypothesis. Steps of no fault have theirs, but for what the tester measures.
+    /// Logarithm of the signs' likelihood under a hypothesis. Under no fault the likelihood of a step has its signs already, but
+    /// for those that the tester measures.
     pub fn ln(&self, model: &Model<'_>, hypothesis: Hypothesis) -> f64 {
         match hypothesis {
             Hypothesis::NoFault => {
@@ -54,8 +55,9 @@ impl SignsSeen {
         }
     }
 
-    /// The same under modes at once, each of which shows its own: as often as counted. One that did not show speaks against them if a check was made that should
-    /// have shown it; how the unit was used before is not known, so in its log that is weaker.
+    /// Logarithm of the signs' likelihood under modes that act at once: each mode shows its signs as often as counted. A sign
+    /// that did not show speaks against the modes if a check was made that should have shown it. A sign that is missing in the
+    /// unit's log speaks less against them, as it is not known how the unit was used before.
     pub fn ln_under(&self, model: &Model<'_>, modes: &[Hypothesis]) -> f64 {
         let (settings, log) = (&model.settings.signs, &model.settings.log);
         // A sign that several of them show is shown as often as by the one that shows it most.

@@ -15,8 +15,8 @@ use super::observation::{CheckName, Observation, ObservedStep};
 
 /// Isolates a fault, check by check.
 ///
-/// A unit is not called healthy before each mode that can leave the train less protected had the checks that show it. All of
-/// it together takes no longer than the checks that may be made, each once.
+/// A unit is not called healthy before the checks were made that show each mode which can leave the train less protected. The
+/// whole run takes no longer than all allowed checks made once.
 #[derive(Debug)]
 pub struct Strategy<'m, 'd> {
     belief: Belief<'m, 'd>,
@@ -25,9 +25,9 @@ pub struct Strategy<'m, 'd> {
     allowed: Option<BTreeSet<String>>,
     target: Option<CheckName>,
     seen: Observation,
-    /// Time that it may take, s.
+    /// Time that the run may take, s.
     most_s: f64,
-    /// Time that it took, s.
+    /// Time that the run took so far, s.
     time_s: f64,
 }
 
@@ -110,7 +110,8 @@ impl<'m, 'd> Strategy<'m, 'd> {
         };
     }
 
-    /// The check that is worth most for what no check so far would have shown, while nothing has shown that a fault is there.
+    /// The check that tells most per second about unsafe modes that no check so far would have shown; `None` once a fault has
+    /// shown.
     fn hidden_check(&self, under_way: Option<&str>) -> Option<CheckName> {
         if self.seen.shows_a_fault() {
             return None;

@@ -1,6 +1,6 @@
 //! Whom the scripts suspect: each check names the part that it judges, and so the failed checks of a run point at parts.
-//! How often the modes of a part point where is counted; a mode that was not seen yet points at its own part, or where
-//! the others do.
+//! Which parts the modes of a part point at is counted; a mode that was not seen yet points at its own part, or where the
+//! counted modes of that part point.
 
 use std::collections::BTreeMap;
 
@@ -32,7 +32,7 @@ impl Suspicion {
         }
     }
 
-    /// Of a mode at one level.
+    /// The failed checks of a mode at one level, on average over its runs.
     fn of(dictionary: &Dictionary, column: &Column) -> Self {
         let mut suspicion = Self::default();
         for (place, cell) in &column.cells {
@@ -94,8 +94,8 @@ impl Suspects {
         }
     }
 
-    /// For each part, logarithm of the likelihood of what failed under an unseen mode of it, beside the mean over the
-    /// parts. What failed in a run depends on each other: all of it counts as one check.
+    /// Logarithm of the likelihood of what failed under an unseen mode of each part, relative to the mean over the parts. The
+    /// failed checks of a run depend on each other: all of them count as one check.
     pub fn ln(&self, seen: &Suspicion) -> Vec<f64> {
         let of_part = |table: &BTreeMap<Suspect, f64>| {
             let of_each = seen.shares().map(|(suspect, share)| {

@@ -1,8 +1,8 @@
 //! What a fault mode that nobody has seen yet may act like.
 //!
-//! The modes of a part act on the checks that its signals pass. A new mode of it acts like one of them, or like a mode
-//! of a part on the same way: that is the likelier, the more alike the checks are which the modes of both act on. Much
-//! of what a suite does passes many parts: likeness counts squared.
+//! The modes of a part act on the checks that its signals pass. A new mode acts like another mode of the part, or like a mode
+//! of another part on the same way. The latter is the likelier, the more alike the checks are on which the modes of both
+//! parts act. The likeness counts squared, as most checks pass through many parts.
 
 use protocol::LruId;
 
@@ -11,8 +11,8 @@ use super::dictionary::{Dictionary, Mode};
 /// How often the modes of a part act on each check, divided by the root of the sum of squares; 0 of a part without modes.
 type Profile = Vec<f64>;
 
-/// For each of the parts, logarithms of the probability that an unseen mode of it acts like each effect of the
-/// dictionary, a level of a mode, in order. `other_part` is the least likeness of two parts, 0 to 1.
+/// Logarithms of the probability that an unseen mode of each part acts like each effect (a level of a mode) of the dictionary,
+/// by part and effect. `other_part` is the least likeness of two parts, 0 to 1.
 pub fn resemblance(dictionary: &Dictionary, parts: &[&LruId], other_part: f64) -> Vec<Vec<f64>> {
     let modes = &dictionary.modes;
     let part_of = |mode: &Mode| parts.iter().position(|part| **part == mode.name.lru);

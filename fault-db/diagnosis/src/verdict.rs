@@ -73,7 +73,8 @@ pub struct Diagnosis {
     /// The check to make next; none when the question is settled or nothing would tell.
     pub next_check: Option<NextCheck>,
     pub conclusion: Conclusion,
-    /// Parts, the likeliest first; together 1 with no fault. The probabilities of its faults add up to a part's.
+    /// Parts, the likeliest first; their probabilities and `no_fault` add up to 1. A part's probability is the sum over its
+    /// faults.
     pub parts: Vec<PartProbability>,
     /// Probability that nothing is wrong.
     pub no_fault: f64,
@@ -128,7 +129,7 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
 }
 
 impl Diagnosis {
-    /// What `seen` comes to.
+    /// The diagnosis of what was `seen`.
     pub fn of(model: &Model<'_>, seen: &Observation) -> Self {
         Assessment::of(model, seen).diagnosis()
     }
@@ -149,7 +150,7 @@ fn candidate(belief: &Belief<'_, '_>, seen: &Observation, fault: &Fault) -> Opti
 }
 
 impl Weights {
-    /// In the order of the parts.
+    /// Candidates in the order of their parts, within a part the likeliest first.
     fn candidates(&self, belief: &Belief<'_, '_>, seen: &Observation) -> Vec<Candidate> {
         let model = belief.model;
         let ConclusionSettings {
@@ -212,7 +213,7 @@ impl Weights {
             return Conclusion::NoFault { probability };
         }
         if !seen.shows_a_fault() {
-            // However often each was made.
+            // A check that was made twice counts once.
             let places = seen
                 .steps
                 .iter()

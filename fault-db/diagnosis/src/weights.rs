@@ -68,7 +68,7 @@ pub fn name(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> (String, FaultTe
 }
 
 impl Fault {
-    /// Takes in another level of the same fault.
+    /// Adds the probability of another level of the same fault.
     fn take(&mut self, other: Self) {
         self.probability += other.probability;
         if other.of_level > self.of_level {
@@ -77,7 +77,7 @@ impl Fault {
     }
 }
 
-/// Levels of one mode, or the same.
+/// Whether two hypotheses are levels of one mode, or the same.
 fn is_same_fault(one: Hypothesis, other: Hypothesis) -> bool {
     match (one, other) {
         (Hypothesis::Mode { mode, .. }, Hypothesis::Mode { mode: of_other, .. }) => {
@@ -87,21 +87,21 @@ fn is_same_fault(one: Hypothesis, other: Hypothesis) -> bool {
     }
 }
 
-/// The probabilities.
+/// The probabilities of all parts and faults.
 pub struct Weights {
-    /// The likeliest first; together 1 with that of no fault.
+    /// All parts, the likeliest first; their probabilities and that of no fault add up to 1.
     pub parts: Vec<PartProbability>,
     pub faults: Vec<Fault>,
     pub no_fault: f64,
     /// Probability that the fault is one that was counted.
     pub counted: f64,
-    /// The parts one of which has failed for certain, the likeliest first; empty where those are more than a person can be
-    /// told, or none may have failed.
+    /// The set of parts one of which has failed for certain, the likeliest first. Empty where the set is larger than
+    /// `most_of_set`, or where no part may have failed.
     pub set: Vec<PartProbability>,
 }
 
 impl Weights {
-    /// Of all evidence; where nothing wrong was seen, by Bayes' rule alone.
+    /// Weighs all evidence; where nothing wrong was seen, by Bayes' rule alone.
     pub fn after(belief: &Belief<'_, '_>, seen: &Observation) -> Self {
         let model = belief.model;
         let ln = belief.ln();
@@ -155,7 +155,7 @@ impl Weights {
     }
 }
 
-/// How many times one probability is another; 0 of what was impossible.
+/// How many times `other` the probability `one` is; 0 where `other` is impossible.
 pub fn ratio(one: f64, other: f64) -> f64 {
     match other > 0.0 {
         true => one / other,
@@ -163,7 +163,7 @@ pub fn ratio(one: f64, other: f64) -> f64 {
     }
 }
 
-/// The parts one of which has failed for certain, with the parts of the bench that would act alike.
+/// The set of parts one of which has failed for certain, with the parts of the bench that would act alike.
 fn set(
     belief: &Belief<'_, '_>,
     parts: &[PartProbability],

@@ -36,7 +36,7 @@ pub struct Effort {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AdaptiveFigures {
     pub suite_steps: usize,
-    /// Its bench time on a good unit, s.
+    /// Bench time of the suite on a good unit, s.
     pub suite_s: f64,
     /// Steps made, those made again included.
     pub steps: Effort,
@@ -44,13 +44,13 @@ pub struct AdaptiveFigures {
     pub time_s: Effort,
     /// Runs that did not pass.
     pub detected: Share,
-    /// The same of those with an unsafe mode.
+    /// Runs with an unsafe mode that did not pass.
     pub unsafe_detected: Share,
     /// Runs that end with the right part, alone or among few.
     pub named: Share,
     /// Runs that end with a wrong one for certain.
     pub wrong: Share,
-    /// Unsafe modes that passed.
+    /// Unsafe modes whose runs passed.
     pub missed: Vec<String>,
 }
 

@@ -21,7 +21,7 @@ pub struct Assessment {
     pub lru: LruId,
     /// `permanent`, `intermittent` or `degraded`.
     pub kind: &'static str,
-    /// It can leave the train less protected.
+    /// The mode can leave the train less protected.
     pub unsafe_: bool,
     /// A laptop alone should find it.
     pub reachable: bool,
@@ -37,7 +37,7 @@ pub struct Assessment {
 }
 
 impl Assessment {
-    /// Whether it is isolated to at most `parts` parts, the right one among them.
+    /// Whether the fault is isolated to at most `parts` parts, the right one among them.
     pub fn isolated(&self, parts: usize) -> bool {
         self.detected && self.parts.len() <= parts && self.is_named()
     }
@@ -105,7 +105,7 @@ pub fn not_passed(good: &[(&Sample, &SuiteRun)]) -> Vec<Vec<String>> {
     good.collect()
 }
 
-/// Diagnoses a run with a fault; none of a good unit.
+/// Diagnoses a run with a fault; `None` for a good unit.
 pub(super) fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> Option<Assessment> {
     let mode = sample.faults.first()?;
     let diagnosis = Diagnosis::of(model, &run.seen);
@@ -149,7 +149,7 @@ impl Share {
         self.all += 1;
     }
 
-    /// As a number; there is none of none.
+    /// The share, 0 to 1; `None` without a run.
     pub fn value(self) -> Option<f64> {
         (self.all > 0).then(|| self.of as f64 / self.all as f64)
     }
@@ -161,7 +161,7 @@ pub struct Shortfall {
     pub fault: String,
     /// Runs that were good in this respect, of how many.
     pub share: Share,
-    /// Parts it was taken for, or what diagnosis said, the most frequent first.
+    /// Parts that the mode was taken for, or what the diagnosis said, the most frequent first.
     pub taken_for: Vec<String>,
 }
 
@@ -169,9 +169,9 @@ pub struct Shortfall {
 pub struct Figures {
     /// Fault modes.
     pub modes: usize,
-    /// Those detected in every held-out run.
+    /// Fault modes detected in every held-out run.
     pub detected_modes: usize,
-    /// Those isolated to at most 1, 2, 3 parts in every held-out run.
+    /// Fault modes isolated to at most 1, 2, 3 parts in every held-out run.
     pub isolated_modes: [usize; MOST_PARTS],
     /// Runs detected, by kind.
     pub detected: BTreeMap<&'static str, Share>,

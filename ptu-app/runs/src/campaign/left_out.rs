@@ -32,17 +32,17 @@ pub struct LeftOut {
 pub struct UnseenFigures {
     /// The right part is the likeliest.
     pub first: Share,
-    /// It is among the first two.
+    /// The right part is among the first two.
     pub first_two: Share,
-    /// It is the likeliest, or named for certain.
+    /// The right part is the likeliest, or named for certain.
     pub first_or_named: Share,
     /// Interval of that share, 95 %, by fault mode.
     pub first_or_named_within: Option<[f64; 2]>,
-    /// It is named for certain, and nothing else.
+    /// The right part is named for certain, and nothing else.
     pub found: Share,
-    /// It is named for certain, alone or among few.
+    /// The right part is named for certain, alone or among few.
     pub named_for_certain: Share,
-    /// Others are named for certain, and it is not among them.
+    /// Other parts are named for certain, and the right part is not among them.
     pub wrong: Share,
     /// Interval of that share, 95 %, by fault mode.
     pub wrong_within: Option<[f64; 2]>,
@@ -110,7 +110,7 @@ impl LeftOut {
 
 struct Numbered<'a> {
     id: &'a str,
-    /// Its place among the modes of its part.
+    /// Place of the mode among the modes of its part.
     number: usize,
     /// Other modes of the part.
     others: usize,

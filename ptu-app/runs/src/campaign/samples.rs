@@ -21,7 +21,7 @@ const INTERMITTENT_SEEDS: u32 = 4;
 const LATEST_ONSET_S: f64 = 20.0;
 /// Seeds of one purpose are this far from those of the next, so that none is ever used twice.
 const APART: u64 = 100_000_000;
-/// And those of one level this far from those of the next.
+/// Seeds of one level are this far from those of the next.
 const LEVEL: u64 = 10_000;
 /// Seeds of good units begin here, those of units with two faults there, beyond those of all levels.
 const GOOD: u64 = APART / 2;
@@ -36,9 +36,9 @@ const MOST_TRIES: u32 = 1000;
 pub enum Purpose {
     /// Counted in the dictionary.
     Dictionary,
-    /// Kept out of it, to see what it is worth.
+    /// Kept out of the dictionary, to see what it is worth.
     Assessment,
-    /// The same for one cause at several parts.
+    /// Kept out of the dictionary, to see what it is worth for one cause at several parts.
     CommonCause,
 }
 
@@ -72,7 +72,7 @@ impl Sample {
         sha256(&json!({ "faults": faults, "sets_in_s": sets_in_s, "seed": seed }).to_string())
     }
 
-    /// Its fault, if there is one alone.
+    /// The fault of a run with one fault alone.
     pub fn fault(&self) -> Option<&FaultMode> {
         match &self.faults[..] {
             [fault] => Some(fault),
@@ -86,7 +86,7 @@ impl Sample {
         names.join(" and ")
     }
 
-    /// Name of that fault's mode.
+    /// Name of the mode of the one fault.
     pub fn mode(&self) -> Option<&str> {
         self.fault().map(|fault| fault.id.as_str())
     }

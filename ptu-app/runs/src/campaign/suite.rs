@@ -78,7 +78,7 @@ impl Suite {
         })
     }
 
-    /// How it reaches the units.
+    /// How the suite reaches the units.
     pub fn connection(&self) -> Connection {
         self.connection
     }
@@ -119,7 +119,7 @@ impl Suite {
         (stop.presses() == 0).then_some(unit.run)
     }
 
-    /// The same in an adaptive run by this model, with the bench time that it took, s.
+    /// Tests a unit in an adaptive run by this model; also the bench time that the run took, s.
     pub fn run_adaptively(
         &self,
         sample: &Sample,

@@ -102,34 +102,15 @@ pub fn diagnose(
         with,
         why_not,
     } = *asked;
-    let asked = StoredRun::read(store, id)?;
-    let mut runs = Vec::new();
-    for other in with {
-        let other = StoredRun::read(store, *other)?;
-        asked.same_unit(&other)?;
-        runs.push(other);
-    }
-    runs.insert(0, asked);
+    let mut runs = StoredRun::read_all(store, id, with)?;
     let settings = settings(directory)?;
-    let stop = Stop::default();
-    let repeat = |run: &StoredRun| residuals(&run.traces, directory, &stop);
-    let repeat_all = || runs.iter().map(repeat).collect::<Vec<_>>();
-    // Repeating what was recorded takes as long as reading the dictionary.
-    let (chosen, repeated) = std::thread::scope(|scope| {
-        let repeating = scope.spawn(repeat_all);
-        let chosen = choose(Some(store), directory, connection_of(&runs[0].run));
-        if chosen.is_err() {
-            stop.press();
-        }
-        (chosen, repeating.join())
-    });
+    let (chosen, residuals) = dictionary_and_residuals(store, directory, &runs)?;
     let Chosen {
         mut dictionary,
         from,
         mut warnings,
         current,
-    } = chosen?;
-    let residuals = repeated.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    } = chosen;
     let mut seen = Observation::default();
     for (run, residuals) in runs.iter().zip(residuals) {
         let shown = Observation {
@@ -197,6 +178,28 @@ pub fn diagnose(
         names,
         dictionary_from: from,
         dictionary_current: current,
+    })
+}
+
+/// The dictionary for the first of `runs`, and of each run the signals that deviate first in its traces: repeating what was
+/// recorded takes as long as reading the dictionary, so both are done at once.
+fn dictionary_and_residuals(
+    store: &Store,
+    directory: &ScriptsDirectory,
+    runs: &[StoredRun],
+) -> Result<(Chosen, Vec<Vec<String>>), Failure> {
+    let stop = Stop::default();
+    let repeat = |run: &StoredRun| residuals(&run.traces, directory, &stop);
+    let repeat_all = || runs.iter().map(repeat).collect();
+    std::thread::scope(|scope| {
+        let repeating = scope.spawn(repeat_all);
+        let chosen = choose(Some(store), directory, connection_of(&runs[0].run));
+        if chosen.is_err() {
+            stop.press();
+        }
+        let repeated = repeating.join();
+        let repeated = repeated.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        Ok((chosen?, repeated))
     })
 }
 

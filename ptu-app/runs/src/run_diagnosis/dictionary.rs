@@ -21,7 +21,7 @@ const LONGEST_PACKED: u64 = 64 << 20;
 /// Where a dictionary is from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// It came with the scripts.
+    /// The dictionary came with the scripts.
     Scripts,
     /// A campaign on this machine.
     Campaign,
@@ -31,9 +31,9 @@ pub enum Origin {
 pub struct Chosen {
     pub dictionary: Dictionary,
     pub from: Origin,
-    /// It was made of what the scripts directory holds now.
+    /// The dictionary was made of what the scripts directory holds now.
     pub current: bool,
-    /// What it was made of is not what there is now, or it does not know all.
+    /// Why the dictionary may mislead: it was made of other files than there are now, or does not know all checks.
     pub warnings: Vec<Warning>,
 }
 

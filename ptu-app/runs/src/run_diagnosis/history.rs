@@ -52,7 +52,7 @@ impl OwnHistory {
         Ok(Self::of(&parts, &BTreeSet::new(), settings))
     }
 
-    /// Of the parts' histories and the faults `seen` now, by number and the part they name.
+    /// Weighs the parts' histories and the faults `seen` now, by number and the part that each names.
     fn of(
         parts: &BTreeMap<String, PartHistory>,
         seen: &BTreeSet<(i64, String)>,

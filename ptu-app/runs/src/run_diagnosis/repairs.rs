@@ -9,7 +9,7 @@ use protocol::LruId;
 use super::history::OwnHistory;
 
 impl OwnHistory {
-    /// Takes in the confirmed repairs, counted by part. The dictionary's weights count as `repairs_like_prior` repairs
+    /// Weighs the confirmed repairs, counted by part. The dictionary's weights count as `repairs_like_prior` repairs
     /// beside them, so that a few repairs change little and many decide: the mean of a Dirichlet distribution.
     pub(super) fn take_repairs(
         &mut self,

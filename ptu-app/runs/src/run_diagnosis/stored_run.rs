@@ -13,7 +13,21 @@ pub(super) struct StoredRun {
 }
 
 impl StoredRun {
-    pub fn read(store: &Store, id: Id) -> Result<Self, Failure> {
+    /// The run that is asked about, then those of the same unit that are evidence, too.
+    ///
+    /// # Errors
+    /// There is no such run, or one is no evidence about the same unit.
+    pub fn read_all(store: &Store, asked: Id, with: &[Id]) -> Result<Vec<Self>, Failure> {
+        let mut runs = vec![Self::read(store, asked)?];
+        for id in with {
+            let other = Self::read(store, *id)?;
+            runs[0].same_unit(&other)?;
+            runs.push(other);
+        }
+        Ok(runs)
+    }
+
+    fn read(store: &Store, id: Id) -> Result<Self, Failure> {
         let run = store.run(id)?;
         let occurrences = store.run_occurrences(id)?;
         Ok(Self {
@@ -27,7 +41,7 @@ impl StoredRun {
     ///
     /// # Errors
     /// It is of another unit, or this very run.
-    pub fn same_unit(&self, other: &Self) -> Result<(), Failure> {
+    fn same_unit(&self, other: &Self) -> Result<(), Failure> {
         let (this, that) = (&self.run.run, &other.run.run);
         if this.id == that.id {
             return Err(Failure::usage(DiagnosisTrouble::RunTwice(that.id)));
