@@ -5,26 +5,25 @@ use std::collections::BTreeMap;
 use btu_rig::procedure::Finding;
 use btu_rig::procedure::plan::Connection;
 use diagnosis::{
-    Assessment, Candidate, Cause, Conclusion, Diagnosis, Dictionary, Model, Observation, Relations,
+    Assessment, Candidate, Cause, Conclusion, Diagnosis, Model, Observation, Relations,
 };
 use fault_db::{Id, RepairsOf, RunDetail, StepRecord, Store, Verdict};
 use protocol::LruId;
 use protocol::injection::Lru;
 
-use super::attribution::with_faults;
 use super::cars::name_cars;
 use super::confirmed::take_confirmed;
 use super::dictionary::{Chosen, Origin, choose};
 use super::history::OwnHistory;
-use super::stored_run::StoredRun;
+use super::stored_run::{StoredRun, connection_of};
 use super::{UNIT_CONFIG, settings};
 use crate::clock::now_us;
 use crate::data::ScriptsDirectory;
 use crate::failure::{DiagnosisTrouble, Failure, Trouble, Unknown, did_you_mean};
-use crate::replay::{Original, residuals};
-use crate::run::{Adaptive, of_run};
+use crate::replay::residuals;
+use crate::run::Adaptive;
 use crate::stop::Stop;
-use crate::stored::{DEPARTURE, findings};
+use crate::stored::findings;
 use crate::structure::Structure;
 use crate::symptoms::{self, Symptom};
 use crate::words::Warning;
@@ -113,11 +112,7 @@ pub fn diagnose(
     } = chosen;
     let mut seen = Observation::default();
     for (run, residuals) in runs.iter().zip(residuals) {
-        let shown = Observation {
-            residuals,
-            ..of_run(&run.run, &run.occurrences)
-        };
-        let shown = comparable((&run.run, &run.traces), shown, &dictionary, &mut warnings);
+        let shown = run.evidence(residuals, &dictionary, &mut warnings);
         seen.steps.extend(shown.steps);
         seen.signs.extend(shown.signs);
         seen.residuals.extend(shown.residuals);
@@ -169,7 +164,10 @@ pub fn diagnose(
         of_part.extend(occurrence.trace_id.filter(|id| !of_part.contains(id)));
     }
     Ok(Answer {
-        cause: cause.map(|cause| with_faults(cause, run, occurrences)),
+        cause: cause.map(|cause| {
+            let faults = runs[0].faults_of(&cause);
+            (cause, faults)
+        }),
         run: runs.swap_remove(0).run,
         diagnosis,
         why_not,
@@ -203,33 +201,12 @@ fn dictionary_and_residuals(
     })
 }
 
-/// A stored run and what was seen in it, as far as it can be compared with this dictionary.
-pub(super) fn observed(
-    store: &Store,
-    run: Id,
-    dictionary: &Dictionary,
-) -> Result<(RunDetail, Observation), Failure> {
-    let run = store.run(run)?;
-    let seen = of_run(&run, &store.run_occurrences(run.run.id)?);
-    let seen = comparable((&run, &[]), seen, dictionary, &mut Vec::new());
-    Ok((run, seen))
-}
-
 fn no_such_part(part: &LruId, model: &Model<'_>) -> Failure {
     let known = model.parts().iter().map(|part| part.as_str());
     Failure::usage(Unknown::Part(
         part.to_string(),
         did_you_mean(part.as_str(), known),
     ))
-}
-
-/// How the unit of a run was reached; where no tester led it, it counts as on a bench.
-pub(super) fn connection_of(run: &RunDetail) -> Connection {
-    let said = run.run.connection.as_deref();
-    match said == Some(Connection::Ptu.word()) {
-        true => Connection::Ptu,
-        false => Connection::Btu,
-    }
 }
 
 /// A run that did not pass is not called healthy because its failed steps could not be weighed.
@@ -325,54 +302,4 @@ pub fn adaptive(
         lru_factors: history.factors,
         warnings: chosen.warnings,
     })
-}
-
-/// Leaves out what cannot be compared with this dictionary, and warns of it: steps of scripts that were
-/// others then, steps it does not know. The train is known where there is a trace.
-fn comparable(
-    (run, traces): (&RunDetail, &[Original]),
-    mut seen: Observation,
-    dictionary: &Dictionary,
-    warnings: &mut Vec<Warning>,
-) -> Observation {
-    let basis = &dictionary.basis;
-    if run.run.unit_config_sha256 != basis.unit_config_sha256 {
-        let name = run.run.unit_config_name.clone();
-        warnings.push(Warning::OtherConfiguration(name));
-    }
-    if !run.steps.is_empty() && run.run.line != basis.line {
-        warnings.push(Warning::OtherLine(run.run.line.clone(), basis.line.clone()));
-    }
-    let train = traces.first().map(|trace| &trace.made.train.name);
-    if let Some(train) = train.filter(|train| **train != basis.train) {
-        warnings.push(Warning::OtherTrain(train.clone(), basis.train.clone()));
-    }
-    let others = run.scripts.iter().filter(|script| {
-        let name = script.path.trim_end_matches(".star");
-        let sum = basis.procedures.get(name);
-        sum.is_some_and(|sum| *sum != script.sha256)
-    });
-    let others: Vec<_> = others
-        .map(|script| script.path.trim_end_matches(".star").to_owned())
-        .collect();
-    if !others.is_empty() {
-        let scripts = others.join(", ");
-        warnings.push(Warning::OtherScripts(scripts));
-        seen.steps
-            .retain(|step| !others.contains(&step.check.procedure));
-    }
-    let (departure, others): (Vec<_>, Vec<_>) = (std::mem::take(&mut seen.steps).into_iter())
-        .partition(|step| step.check.procedure.starts_with(DEPARTURE));
-    seen.steps = others;
-    if !departure.is_empty() {
-        warnings.push(Warning::Departure);
-    }
-    let before = seen.steps.len();
-    seen.steps
-        .retain(|step| dictionary.place(&step.check).is_some());
-    let steps = before - seen.steps.len();
-    if steps > 0 {
-        warnings.push(Warning::UnknownSteps(steps));
-    }
-    seen
 }

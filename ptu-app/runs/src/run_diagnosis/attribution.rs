@@ -1,15 +1,10 @@
 //! Attributes the faults of a run that failed to the part that its diagnosis found.
 
-use std::collections::BTreeMap;
-
-use diagnosis::{Cause, CheckName, Sign};
-use fault_db::{CauseRecord, Id, RunDetail, RunOccurrence, Store, Verdict};
-use protocol::lru::from_stored;
+use fault_db::{CauseRecord, Store, Verdict};
 
 use super::Answer;
 use crate::clock::now_us;
 use crate::failure::Failure;
-use crate::run::CHECK_FAILED;
 
 impl Answer {
     /// Stores what each fault of the run comes from. Nothing is stored of a run that did not fail, nor where the
@@ -32,45 +27,4 @@ impl Answer {
         }
         Ok(())
     }
-}
-
-/// The cause with the faults of a run that come from it: those that name its part, and those of which it explains all that
-/// the run saw.
-pub(super) fn with_faults(
-    cause: Cause,
-    run: &RunDetail,
-    occurrences: &[RunOccurrence],
-) -> (Cause, Vec<Id>) {
-    let mut seen: BTreeMap<Id, Vec<&RunOccurrence>> = BTreeMap::new();
-    for occurrence in occurrences {
-        seen.entry(occurrence.fault).or_default().push(occurrence);
-    }
-    let is_of = |seen: &[&RunOccurrence]| {
-        let lru = seen.first().and_then(|one| from_stored(&one.lru));
-        lru.as_ref() == Some(&cause.lru) || seen.iter().all(|one| explains(&cause, run, one))
-    };
-    let faults = seen.iter().filter(|(_, seen)| is_of(seen));
-    let faults = faults.map(|(fault, _)| *fault).collect();
-    (cause, faults)
-}
-
-/// Whether the cause shows this: a check that failed by its step, anything else by the sign that it is.
-fn explains(cause: &Cause, run: &RunDetail, seen: &RunOccurrence) -> bool {
-    if seen.code != i64::from(CHECK_FAILED) {
-        let sign = Sign {
-            fault: seen.code_name.clone(),
-            lru: from_stored(&seen.lru),
-        };
-        return cause.signs.contains(&sign);
-    }
-    let step = run
-        .steps
-        .iter()
-        .find(|step| Some(step.index) == seen.step_index);
-    step.is_some_and(|step| {
-        cause.checks.contains(&CheckName {
-            procedure: step.procedure.clone(),
-            step: step.name.clone(),
-        })
-    })
 }

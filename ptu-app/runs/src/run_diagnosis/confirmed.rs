@@ -8,8 +8,8 @@ use fault_db::{RepairsOf, Store};
 use protocol::LruId;
 use protocol::lru::from_stored;
 
-use super::answer::observed;
 use super::history::OwnHistory;
+use super::stored_run::observed;
 use crate::failure::Failure;
 
 /// A diagnosis holds a run against so many confirmed cases at most, the last ones: each has to be read.

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use diagnosis::{Model, Proof};
 use fault_db::{Id, Store};
 
-use super::answer::{connection_of, observed};
 use super::dictionary::choose;
 use super::settings;
+use super::stored_run::{connection_of, observed};
 use crate::data::ScriptsDirectory;
 use crate::failure::Failure;
 
