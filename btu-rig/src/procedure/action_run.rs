@@ -130,13 +130,7 @@ impl ActionRun {
 
     /// An answer of the operator is waited for.
     pub(super) fn asks(&self, actions: &[Action]) -> bool {
-        let asks = |action: &Action| match action {
-            Action::OnBench(action) | Action::OnTrain(action) => {
-                matches!(**action, Action::Prompt { .. })
-            }
-            action => matches!(action, Action::Prompt { .. }),
-        };
-        self.since.is_some() && actions.get(self.at).is_some_and(asks)
+        self.since.is_some() && actions.get(self.at).is_some_and(Action::asks)
     }
 
     /// Says what is waited for: prompts at once, the rest if it takes longer than a moment.

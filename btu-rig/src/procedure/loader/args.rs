@@ -6,7 +6,6 @@ use protocol::signal::Signal;
 
 use super::context::Context;
 use super::item::Item;
-use super::quantity::Quantity;
 use super::suggest::hint;
 use super::verb::Verb;
 use crate::procedure::origin::Origin;
@@ -79,9 +78,10 @@ impl Args<'_> {
         self.get(name).map(|_| self.number(name)).transpose()
     }
 
-    pub(super) fn int(&self, name: &str) -> Result<i64, String> {
+    /// A whole number, which the parameter keeps within the range of `T`.
+    pub(super) fn int<T: TryFrom<i64>>(&self, name: &str) -> Result<T, String> {
         match self.must(name)? {
-            Item::Int(n) => Ok(*n),
+            Item::Int(n) => T::try_from(*n).map_err(|_| format!("`{name}` cannot be {n}")),
             other => Err(format!("`{name}` cannot be {}", other.found())),
         }
     }
@@ -178,14 +178,6 @@ impl Args<'_> {
             _ => return None,
         };
         u16::try_from(number).ok()
-    }
-
-    /// A quantity, number or measured value as given.
-    pub(super) fn quantity(&self, name: &str) -> Option<Quantity> {
-        match self.get(name) {
-            Some(Item::Quantity(q)) => Some(q.clone()),
-            _ => None,
-        }
     }
 }
 

@@ -241,11 +241,7 @@ pub(super) fn speed(args: &Args<'_>, name: &str) -> Result<Speed, String> {
 }
 
 pub(super) fn marker(args: &Args<'_>) -> Result<u8, String> {
-    byte(args, "marker")
-}
-
-fn byte(args: &Args<'_>, name: &str) -> Result<u8, String> {
-    u8::try_from(args.int(name)?).map_err(|e| e.to_string())
+    args.int("marker")
 }
 
 fn accel(args: &Args<'_>, name: &str) -> Result<f64, String> {
@@ -295,7 +291,7 @@ fn channel(args: &Args<'_>) -> Result<Item, String> {
         _ => TachoCondition::Good,
     };
     at_once(Stimulus::Tacho {
-        channel: byte(args, "channel")?,
+        channel: args.int("channel")?,
         condition,
     })
 }

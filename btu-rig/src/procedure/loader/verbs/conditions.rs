@@ -122,7 +122,7 @@ pub(super) static VERBS: &[Verb] = &[
         |args| {
             let limit = |name, none| match args.get(name) {
                 None => Ok(none),
-                Some(_) => i32::try_from(args.int(name)?).map_err(|e| e.to_string()),
+                Some(_) => args.int(name),
             };
             expected(
                 args,

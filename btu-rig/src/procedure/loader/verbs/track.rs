@@ -80,7 +80,7 @@ pub(super) fn station(args: &Args<'_>, place: StandsAt) -> Result<StationData, S
     let mut data = defaults(section, place, line);
     let number = |name: &str, field: &mut u16| -> Result<(), String> {
         if args.get(name).is_some() {
-            *field = u16::try_from(args.int(name)?).map_err(|e| e.to_string())?;
+            *field = args.int(name)?;
         }
         Ok(())
     };
@@ -89,11 +89,12 @@ pub(super) fn station(args: &Args<'_>, place: StandsAt) -> Result<StationData, S
     number("loop", &mut data.loop_id)?;
     number("train_number", &mut data.train_number)?;
     number("route", &mut data.route)?;
-    if let Some(speed) = args.quantity("fixed_speed") {
-        if !(0.0..=254.0).contains(&speed.value) {
+    if args.get("fixed_speed").is_some() {
+        let kmh = args.amount("fixed_speed")?;
+        if !(0.0..=254.0).contains(&kmh) {
             return Err("`fixed_speed` must be from 0 to 254 km/h".into());
         }
-        data.fixed_speed_kmh = Some(speed.value.round() as u8);
+        data.fixed_speed_kmh = Some(kmh.round() as u8);
     }
     if let Some(mode) = args.text("running_mode").and_then(RunningMode::from_label) {
         data.running_mode = mode;
@@ -108,7 +109,7 @@ pub(super) fn station(args: &Args<'_>, place: StandsAt) -> Result<StationData, S
 /// Orders of the wayside: the length is that of the section, unless another is given.
 fn orders(args: &Args<'_>) -> Result<OrderData, String> {
     let number = |name: &str| match args.get(name) {
-        Some(_) => u16::try_from(args.int(name)?).map_err(|e| e.to_string()),
+        Some(_) => args.int(name),
         None => Ok(0),
     };
     let section = args
