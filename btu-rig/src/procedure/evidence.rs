@@ -64,8 +64,8 @@ pub struct UnitTime {
     pub answered_ms: Option<u32>,
 }
 
-/// Evidence by which a driver can trust the data that it receives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Evidence by which a driver can trust the data that it receives; by default everything is received and read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Evidence {
     /// The unit's log.
     pub log: LogState,
@@ -79,20 +79,6 @@ pub struct Evidence {
     pub self_test: SelfTest,
     /// Clock by which the unit's reactions are timed; `None` = the bench's clock.
     pub unit_time: Option<UnitTime>,
-}
-
-impl Default for Evidence {
-    /// Everything is received and read.
-    fn default() -> Self {
-        Self {
-            log: LogState::Read,
-            not_kept: 0,
-            line: LineState::default(),
-            clock_wrong_by_permille: None,
-            self_test: SelfTest::empty(),
-            unit_time: None,
-        }
-    }
 }
 
 impl Evidence {

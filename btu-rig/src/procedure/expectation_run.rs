@@ -102,11 +102,11 @@ impl ExpectationRun {
     }
 
     /// Adds what is behind the signals that did not come.
-    pub(super) fn explain(&mut self, expectation: &Expectation, driver: &dyn Driver) {
-        let Expectation::Becomes { condition, .. } = expectation else {
-            return;
-        };
-        if let Some(Problem::Failed(Finding::NeverBecame { said, .. })) = &mut self.problem {
+    pub(super) fn explain(&mut self, driver: &dyn Driver) {
+        if let Some(Problem::Failed(Finding::NeverBecame {
+            condition, said, ..
+        })) = &mut self.problem
+        {
             *said = condition.said(driver).map(str::to_owned);
         }
     }

@@ -42,7 +42,7 @@ impl Rig {
             self.rest_quiescent();
         }
         self.quiescent = false;
-        self.tester.exchange.forget_failure();
+        self.tester.exchange.failure = None;
         match *stimulus {
             Stimulus::Code {
                 carrier_hz,

@@ -326,7 +326,7 @@ impl Rig {
 
     /// What the unit logged before it was first heard is not read.
     pub fn leave_log_before_contact(&mut self) {
-        self.tester.leave_log_before_contact();
+        self.tester.leaves_old = true;
     }
 
     /// Tells the unit the time, now and after each restart.

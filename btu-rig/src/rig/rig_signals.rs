@@ -8,7 +8,7 @@ use crate::stimulus::{TachoCondition, WaysideCondition};
 impl Rig {
     /// Sets them in the latest sample, as they are sent in this scan. Without a harness nothing is.
     pub(super) fn record(&mut self) {
-        let refusal = f64::from(self.tester.arm_refusal().code());
+        let refusal = f64::from(self.tester.exchange.refusal.code());
         self.latest.sample.set(Signal::ArmRefusal, refusal);
         self.identity.record(&mut self.latest.sample);
         if !self.harness.is_there() {

@@ -30,7 +30,7 @@ const ARM_PATIENCE: Duration = Duration::from_ms(4000);
 const SELF_TEST_TIME: Duration = Duration::from_ms(3000);
 
 /// Requests and their outcome.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Exchange {
     session: u32,
     queue: VecDeque<Request>,
@@ -42,7 +42,7 @@ pub struct Exchange {
     pub refusal: ArmRefusal,
     pub failure: Option<Refusal>,
     /// Why the unit ended the session without being asked to.
-    ended: Option<ArmRefusal>,
+    pub ended: Option<ArmRefusal>,
     /// Results of the last self-test asked for, as far as they came.
     pub self_test: Vec<SelfTestItem>,
     /// The outcome is not awaited: the bench is being made safe.
@@ -54,15 +54,7 @@ impl Exchange {
     pub fn new(session: u32) -> Self {
         Self {
             session,
-            queue: VecDeque::with_capacity(MAX_QUEUE),
-            current: None,
-            may_send: Instant::ZERO,
-            armed_at: None,
-            refusal: ArmRefusal::None,
-            failure: None,
-            ended: None,
-            self_test: Vec::new(),
-            quiet: false,
+            ..Self::default()
         }
     }
 
@@ -94,11 +86,6 @@ impl Exchange {
         self.quiet = true;
     }
 
-    /// Why the unit ended the session by itself, once.
-    pub fn take_ended(&mut self) -> Option<ArmRefusal> {
-        self.ended.take()
-    }
-
     pub fn idle(&self) -> bool {
         self.current.is_none() && self.queue.is_empty()
     }
@@ -122,11 +109,6 @@ impl Exchange {
         let current = self.current.as_ref().map(|current| &current.request);
         let next = current.or(self.queue.front());
         matches!(next, Some(Request::Disarm))
-    }
-
-    /// The bench goes on to something else.
-    pub fn forget_failure(&mut self) {
-        self.failure = None;
     }
 
     /// Sends what is due.

@@ -44,7 +44,7 @@ impl LogSession {
     /// Reads the log; with `rows`, the stored run record, too.
     pub fn new(rows: bool) -> Self {
         let mut tester = Tester::new(SESSION);
-        tester.hold_log(true);
+        tester.holds_log = true;
         Self {
             link: Link::new(End::Bench),
             tester,
@@ -80,7 +80,7 @@ impl LogSession {
         }
         self.events.step(now, &mut self.link, out);
         match &self.events.state {
-            StoreState::Missing => self.tester.hold_log(false),
+            StoreState::Missing => self.tester.holds_log = false,
             // The time is stored before the events are read to their end.
             StoreState::Read => {
                 if let Some(rows) = &mut self.rows {
