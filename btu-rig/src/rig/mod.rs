@@ -39,7 +39,7 @@ use crate::conditions::Conditions;
 use crate::procedure::UnitEvent;
 use crate::stimulus::WaysideCondition;
 use crate::tcms::Tcms;
-use crate::train::{EquipmentFaults, Train, TrainData, TrainInputs, TrainState};
+use crate::train::{CarSet, EquipmentFaults, Train, TrainData, TrainInputs, TrainState};
 use crate::waveform::ChannelConfig;
 
 pub use crate::procedure::link_trouble::{InstrumentFault, LinkFailure, LinkTrouble, PortFailure};
@@ -50,9 +50,7 @@ pub use tcms::PAIR_DEMANDS;
 pub use train_side::{Misplaced, TrueMotion, check_places};
 
 use link::{HarnessWatch, LatestSample, LineWatch, LinkWatch};
-use rolling::weight_shares;
 use session::{IdentityCheck, Subscription, Tester};
-use tcms::{PairCars, pair_cars};
 use train_side::{
     CabDesk, Coils, DoorGear, InCoils, Injected, SpeedHistory, Tacho, TcmsPort, TrainFaults,
     TrainSeen, Wheel, Wires,
@@ -98,7 +96,8 @@ pub struct Rig {
     /// What TCMS last sent to the train.
     train_orders: TrainInputs,
     tcms_port: TcmsPort,
-    pair_cars: PairCars,
+    /// Motor cars and trailers whose demands make up each signal of [`PAIR_DEMANDS`].
+    pair_cars: [(CarSet, CarSet); 4],
     /// Events of TCMS that were not taken yet, and how many there were.
     tcms_events: Vec<UnitEvent>,
     tcms_logged: u32,
@@ -160,12 +159,12 @@ impl Rig {
             wheel: Wheel::default(),
             tachos,
             train: Train::new(&train_data, &conditions),
-            cars: weight_shares(&train_data, 0.0),
+            cars: train_data.weight_shares(0.0),
             cars_load_kg: 0.0,
             tcms: Tcms::new(&train_data),
             train_orders: TrainInputs::default(),
             tcms_port: TcmsPort::default(),
-            pair_cars: pair_cars(&train_data),
+            pair_cars: train_data.first_pairs(),
             tcms_events: Vec::new(),
             tcms_logged: 0,
             tcms_dropped: 0,

@@ -3,7 +3,7 @@
 use protocol::signal::Signal;
 
 use super::Rig;
-use crate::stimulus::{TachoCondition, WaysideCondition};
+use crate::stimulus::TachoCondition;
 
 impl Rig {
     /// Sets them in the latest sample, as they are sent in this scan. Without a harness nothing is.
@@ -32,7 +32,7 @@ impl Rig {
             (Signal::Tacho1, condition_index(self.tachos[0].condition())),
             (Signal::Tacho2, condition_index(self.tachos[1].condition())),
             (Signal::MarkerCoil, f64::from(self.markers.last)),
-            (Signal::Wayside, wayside_index(self.wayside.condition)),
+            (Signal::Wayside, f64::from(self.wayside.condition as u8)),
             (Signal::WaysideStation, f64::from(data.station)),
             (Signal::WaysideLoop, f64::from(data.loop_id)),
             (Signal::WaysideDoorSide, f64::from(data.door_side.code())),
@@ -70,14 +70,5 @@ fn condition_index(condition: TachoCondition) -> f64 {
         TachoCondition::Noisy { .. } => 2.0,
         TachoCondition::Scaled { .. } => 3.0,
         TachoCondition::Reversed => 4.0,
-    }
-}
-
-/// Place of a wayside condition among the catalogue's labels.
-fn wayside_index(condition: WaysideCondition) -> f64 {
-    match condition {
-        WaysideCondition::Silent => 0.0,
-        WaysideCondition::Good => 1.0,
-        WaysideCondition::Corrupt => 2.0,
     }
 }

@@ -8,8 +8,6 @@ use std::path::Path;
 use btu_rig::procedure::loader::{Loaded, Scripts, load};
 use btu_rig::train::TrainData;
 use proptest::prelude::*;
-use protocol::config::UnitConfig;
-use protocol::line::Line;
 use protocol::lru::shown;
 
 fn root() -> &'static Path {
@@ -17,9 +15,7 @@ fn root() -> &'static Path {
 }
 
 fn load_all(scripts: &Scripts) -> Loaded {
-    let read = |path: &str| std::fs::read_to_string(root().join("..").join(path)).unwrap();
-    let unit = UnitConfig::from_toml(&read("scripts/units/sg100.toml")).unwrap();
-    let line = Line::from_toml(&read("scripts/lines/line8.toml")).unwrap();
+    let (unit, line) = crate::shipped();
     load(scripts, &unit, &line, &TrainData::line6())
 }
 

@@ -97,11 +97,8 @@ impl Exchange {
 
     /// Arming is under way or done: there is something to disarm.
     pub fn may_be_armed(&self) -> bool {
-        self.armed()
-            || self
-                .current
-                .as_ref()
-                .is_some_and(|c| matches!(c.request, Request::Arm { .. }))
+        let current = self.current.as_ref().map(|current| &current.request);
+        self.armed() || matches!(current, Some(Request::Arm { .. }))
     }
 
     /// The end of the session is asked for, and nothing that may fail comes before it.

@@ -11,6 +11,7 @@ use crate::procedure::link_trouble::{Changed, LinkTrouble, Property};
 use crate::procedure::{LogState, Refusal};
 
 use super::exchange::Exchange;
+use super::identity::bytes_of;
 use super::log_reader::LogReader;
 use super::request::Request;
 use super::test_signals;
@@ -273,10 +274,7 @@ impl Tester {
 
 /// First property in which a unit that answers now differs from the one that answered first.
 fn difference(first: &Identity, now: &Identity) -> Option<LinkTrouble> {
-    let name = |field: &[u8; 16]| {
-        let end = field.iter().position(|byte| *byte == 0).unwrap_or(16);
-        format!("\"{}\"", field[..end].escape_ascii())
-    };
+    let name = |field: &[u8; 16]| format!("\"{}\"", bytes_of(field).escape_ascii());
     type Read<'a> = &'a dyn Fn(&Identity) -> String;
     let properties: [(Property, Read<'_>); 4] = [
         (Property::Serial, &|of| name(&of.serial)),

@@ -127,8 +127,7 @@ proptest! {
             check_sample(&bench)?;
             let _ = bench.rig.settled();
         }
-        let now = bench.now();
-        bench.rig.make_safe(now);
+        bench.make_safe();
         // 200 km/h at 3 m/s² is 18.5 s.
         bench.run_ms(20_000);
         prop_assert!(bench.rig.safe());
@@ -171,8 +170,7 @@ fn a_disarm_behind_a_self_test_that_hangs_is_not_lost() {
         bench.rig.apply(now, &stimulus).unwrap();
         bench.run_ms(300);
     }
-    let now = bench.now();
-    bench.rig.make_safe(now);
+    bench.make_safe();
     bench.run_ms(10_000);
     assert!(bench.rig.safe());
 }

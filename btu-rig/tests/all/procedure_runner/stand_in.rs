@@ -1,7 +1,6 @@
 //! A stand-in for bench and unit whose signals the test sets by hand, and the run of one script on it.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use btu_rig::procedure::link_trouble::LinkTrouble;
@@ -12,9 +11,7 @@ use btu_rig::procedure::{
 };
 use btu_rig::stimulus::Stimulus;
 use btu_rig::train::TrainData;
-use protocol::config::UnitConfig;
 use protocol::event::Event;
-use protocol::line::Line;
 use protocol::message::{SelfTest, SelfTestItem};
 use protocol::signal::{Sample, Signal};
 use protocol::{Instant, SCAN};
@@ -27,10 +24,7 @@ const LOOK: &str =
     "def look(name, **more):\n    step(name, measure = value('looked', speed), **more)\n";
 
 fn procedure(script: &str) -> Arc<Procedure> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
-    let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
-    let unit = UnitConfig::from_toml(&read("units/sg100.toml")).unwrap();
-    let line = Line::from_toml(&read("lines/line8.toml")).unwrap();
+    let (unit, line) = crate::shipped();
     let scripts = BTreeMap::from([("test.star".to_owned(), format!("{LOOK}{script}"))]);
     let loaded = load(&scripts, &unit, &line, &TrainData::line6());
     assert!(loaded.errors.is_empty(), "{:?}", loaded.errors);

@@ -2,7 +2,7 @@
 //! for the unit's answer.
 
 use super::bench::{LEVEL, MARKER, RAW_SIGNAL, code_signal, marker, raw_signal, speed};
-use super::track::{STATION, StandsAt, station};
+use super::track::{STATION, arrival, departure};
 use super::with_wait;
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
@@ -45,16 +45,14 @@ pub(super) static VERBS: &[Verb] = &[
     request!("ptu.marker", &[MARKER], |args| Stimulus::PtuMarker {
         psm: marker(args)?
     }),
-    request!("ptu.twc", STATION, |args| Stimulus::PtuTwc(station(
-        args,
-        StandsAt::Departure
+    request!("ptu.twc", STATION, |args| Stimulus::PtuTwc(departure(
+        args
     )?)),
     request!("ptu.at_departure", STATION, |args| Stimulus::PtuTwc(
-        station(args, StandsAt::Departure)?
+        departure(args)?
     )),
-    request!("ptu.at_arrival", STATION, |args| Stimulus::PtuTwc(station(
-        args,
-        StandsAt::Arrival
+    request!("ptu.at_arrival", STATION, |args| Stimulus::PtuTwc(arrival(
+        args
     )?)),
 ];
 
