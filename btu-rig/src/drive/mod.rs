@@ -2,8 +2,8 @@
 //! the rig. Sans-IO: stepped once a scan after [`crate::rig::Bench::tick`], it gives the unit what
 //! a wayside and a cab would, watches the train, and ends with an [`Outcome`].
 //!
-//! It knows of the unit what frames say. The train's true motion (position, speed, acceleration) is known to
-//! the rig alone.
+//! A drive knows of the unit only what its frames say. The train's true motion (position, speed, acceleration) is
+//! known to the rig alone.
 //!
 //! * `plan`: what is run; `watch`: what is looked at each scan;
 //! * `row`, `recording`: what is recorded each cycle;
@@ -49,11 +49,11 @@ const DEPARTURE_HEARD: Duration = Duration::from_ms(500);
 const RUN_WITHIN: Duration = Duration::from_ms(2_000);
 /// Time from Automatic Run until the train moves.
 const LEAVE_WITHIN: Duration = Duration::from_ms(20_000);
-/// Standing for so long with no powering asked for, the run is over.
+/// Time of standing without any powering asked for, after which a run is over.
 const STANDS: Duration = Duration::from_ms(1_000);
-/// Standing for so long it is over, whatever is asked for.
+/// Time of standing after which a run is over, whatever is asked for.
 const STANDS_AT_MOST: Duration = Duration::from_ms(10_000);
-/// A run takes no longer than this and the section at the speed below.
+/// Longest time of a run, beside the time that the section takes at [`SLOWEST_MPS`].
 const RUN_BASE: Duration = Duration::from_ms(60_000);
 /// Slowest believable mean speed of a run, m/s.
 const SLOWEST_MPS: f64 = 4.0;

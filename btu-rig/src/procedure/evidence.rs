@@ -38,11 +38,11 @@ pub struct LineState {
     pub lost_or_damaged_lately: u64,
     /// Nothing comes now: the line is lost, or the unit starts again.
     pub silent: bool,
-    /// Time by which the last frames came later than others: what they show was so before.
+    /// Time by which the last frames came later than others: they show a state of the unit that is as old.
     pub late: Duration,
 }
 
-/// After which stamps of the unit that which is new in a scan happened, ms of its clock.
+/// Stamps of the unit, ms of its clock, after which a change that a scan shows for the first time has happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnitTimeBounds {
     /// A change that the unit tells in its scan.
@@ -82,7 +82,7 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Whether frames that did not get through may be why the unit or TCMS logged this.
+    /// Whether frames that did not get through may be why the unit or TCMS logged this event.
     pub fn explains(&self, event: Option<Event>, parameter: i32) -> bool {
         self.line.lost_or_damaged_lately > 0 && of_lost_frames(event, parameter)
     }
@@ -93,7 +93,7 @@ impl Evidence {
     }
 }
 
-/// Whether this is logged when frames do not come.
+/// Whether the unit or TCMS logs this event when frames do not come.
 fn of_lost_frames(event: Option<Event>, parameter: i32) -> bool {
     event.is_some_and(|event| match event {
         Event::InputsLost

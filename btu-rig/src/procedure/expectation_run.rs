@@ -101,7 +101,7 @@ impl ExpectationRun {
         }
     }
 
-    /// Adds what is behind the signals that did not come.
+    /// Adds to a condition that did not come true the reason that one of its signals gives.
     pub(super) fn explain(&mut self, driver: &dyn Driver) {
         if let Some(Problem::Failed(Finding::NeverBecame {
             condition, said, ..
@@ -111,7 +111,7 @@ impl ExpectationRun {
         }
     }
 
-    /// Whether the step must go on for it.
+    /// Whether the step must go on for this expectation.
     pub(super) fn is_open(&self, expectation: &Expectation) -> bool {
         !self.decided
             && !matches!(

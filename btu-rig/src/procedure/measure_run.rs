@@ -45,7 +45,7 @@ impl Edge {
     }
 }
 
-/// When a measured time began, by the bench and by the unit.
+/// When a measured time began, by the bench's clock and by the unit's.
 #[derive(Clone, Copy, Debug)]
 struct Start {
     at: Instant,
@@ -58,7 +58,7 @@ pub(super) struct MeasurementRun {
     to: Edge,
     /// When the time measured began.
     start: Option<Start>,
-    /// First and latest value of a change, and what its counter has lost by beginning again at 0.
+    /// First and latest value of the signal whose change is measured, and what its counter lost by starting again at 0.
     first: Option<f64>,
     latest: Option<f64>,
     wrapped: f64,
@@ -69,7 +69,7 @@ pub(super) struct MeasurementRun {
     left_out: bool,
     missing_data: Option<MissingData>,
     done: bool,
-    /// The step need not wait for it any longer.
+    /// The step need not wait for this measurement any longer.
     late: bool,
 }
 
@@ -114,7 +114,7 @@ impl MeasurementRun {
         self.late = actions_end.is_some_and(|end| scan.now.since(end) >= measure.within);
     }
 
-    /// Whether the step must go on for it.
+    /// Whether the step must go on for this measurement.
     pub(super) fn is_open(&self, measure: &Measure) -> bool {
         measure.is_awaited() && !self.done && !self.late
     }

@@ -80,11 +80,11 @@ pub struct Step {
     pub on_fail: OnFail,
     /// The step begins in the state that the step before left, and cannot be run without that step.
     pub continues: bool,
-    /// When it is ended as an error.
+    /// Time after which the step is ended as an error.
     pub time_limit: Duration,
     /// Longest time one repetition can take.
     pub worst_case: Duration,
-    /// Part to suspect when it fails: its own, else the procedure's.
+    /// Part to suspect when the step fails: the step's own, else the procedure's.
     pub suspect: Option<LruId>,
     /// A remark for the technician.
     pub note: Option<String>,

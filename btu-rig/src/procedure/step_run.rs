@@ -19,9 +19,9 @@ use super::{Driver, UnitEvent, Verdict};
 
 /// Further behind than this, a bench fails what a unit does in time: limits are tens of milliseconds.
 const TOO_LATE: Duration = CYCLE;
-/// After a request that was refused, what the unit says about it may still be on its way for so long.
+/// Time after a refused request for which the frame with the unit's reason may still be on its way.
 const SAYS_WHY_WITHIN: Duration = Duration::from_ms(150);
-/// And its log, for so long.
+/// Time after a refused request for which the log entry with the unit's reason may still be on its way.
 const LOGS_WHY_WITHIN: Duration = Duration::from_ms(2_000);
 /// A step whose unit is silent at its end waits no longer for the unit; a link is lost before.
 const SPEAKS_WITHIN: Duration = Duration::from_ms(10_000);

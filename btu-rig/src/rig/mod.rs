@@ -71,7 +71,7 @@ pub struct Rig {
     antenna: Antenna,
     /// The antenna signal follows the codes of the section laid along the way.
     codes_along: bool,
-    /// Place in the code table of the one that was put in last that way.
+    /// Place in the code table of the code that was put into the antenna last that way.
     code_put_in: Option<usize>,
     wheel: Wheel,
     tachos: [Tacho; 2],
@@ -101,22 +101,22 @@ pub struct Rig {
     /// Events of TCMS that were not taken yet, and how many there were.
     tcms_events: Vec<UnitEvent>,
     tcms_logged: u32,
-    /// Number of them that were not taken in time.
+    /// Number of TCMS's events that were not taken in time.
     tcms_dropped: u64,
     injected: Injected,
     faults: TrainFaults,
-    /// What a procedure makes wrong with the train's equipment.
+    /// Faults of the train's equipment that a procedure makes.
     made: EquipmentFaults,
     /// Outputs of the bench on their way to the unit.
     wires: Wires,
     desk: CabDesk,
     door_gear: DoorGear,
     tester: Tester,
-    /// Slowing down to a standstill, after which the rest is made quiescent.
+    /// The rig slows the wheels down to a standstill, and then makes everything else quiescent.
     making_safe: bool,
-    /// Made safe, and nothing was asked of the bench since.
+    /// The rig was made safe, and nothing was asked of the bench since.
     quiescent: bool,
-    /// What was begun last and takes its time is a motion.
+    /// The last thing begun that takes its time is a motion.
     awaits_motion: bool,
     braking: bool,
     link: Link,

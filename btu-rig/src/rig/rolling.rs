@@ -83,8 +83,8 @@ impl Rig {
         let inputs = self.on_track(orders);
         if self.train_driven {
             let dt = TRAIN_STEP.as_secs();
-            // Written out: each state is then made where it stays, which is worth a twentieth of a
-            // whole run.
+            // Two calls instead of a loop: the compiler then builds each state in its place, which takes a twentieth off the time
+            // of a whole run.
             let states = [self.train.step(dt, &inputs), self.train.step(dt, &inputs)];
             self.wheel.follow(&states);
             self.train_state = states[1];

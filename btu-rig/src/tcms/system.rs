@@ -189,8 +189,8 @@ impl Tcms {
         self.tell(&scan, share, load_kg)
     }
 
-    /// Takes the load; what it is does not go beyond the train's. No number is a full train, which
-    /// brakes most.
+    /// Takes the load, limited to what the train can carry. Not-a-number counts as a full train, which
+    /// brakes hardest.
     fn weigh(&mut self, load_kg: f64) -> f64 {
         let load_kg = if load_kg.is_nan() {
             self.full_load_kg

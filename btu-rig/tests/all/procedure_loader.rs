@@ -1,6 +1,6 @@
 //! Loading check procedures: the good ones give the plan on file, the bad ones say where and why.
 //!
-//! `UPDATE_GOLDEN=1 cargo test -p btu-rig --test procedure_loader` rewrites what is on file.
+//! `UPDATE_GOLDEN=1 cargo test -p btu-rig --test all procedure_loader` rewrites what is on file.
 
 use std::collections::BTreeMap;
 use std::path::Path;

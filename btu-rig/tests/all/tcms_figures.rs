@@ -1,5 +1,5 @@
 //! Figures of S3 as tests: its table derived again from masses, and effort as the train gives it.
-//! `cargo test -p btu-rig --test tcms_figures -- --nocapture` prints them beside the printed ones.
+//! `cargo test -p btu-rig --test all tcms_figures -- --nocapture` prints them beside the printed ones.
 
 #![allow(
     clippy::print_stdout,

@@ -4,8 +4,8 @@ use super::item::Item;
 use super::quantity::{Dimension, Quantity, UNITS};
 use crate::procedure::origin::Origin;
 
-/// The quantities of the keys that end in a unit, under their names without it; of two that have the same name then
-/// each has what it is an amount of behind it, as `standstill_speed`. `source` stands before the keys.
+/// Quantities of the keys that end in a unit, each under its key without the unit. Where two keys would share a name,
+/// the kind of quantity follows the name: `standstill_speed`. In origins `source` stands before the key.
 pub(super) fn of(fields: &[(String, Item)], source: &str) -> Vec<(String, Item)> {
     let found = fields
         .iter()

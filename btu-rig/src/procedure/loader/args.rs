@@ -135,14 +135,14 @@ impl Args<'_> {
         texts.collect()
     }
 
-    /// Where its numbers come from: each quantity as it knows, and what the call states.
+    /// Origin of the numbers in the call: that of each quantity, and the sources that the call states.
     pub(super) fn origin(&self) -> Origin {
         let mut origin = Origin::default();
         (self.values.iter().flatten()).for_each(|item| origin.join(&item.origin()));
         self.stated(origin)
     }
 
-    /// The origin with what the call states.
+    /// The origin together with the sources that the call states.
     pub(super) fn stated(&self, mut origin: Origin) -> Origin {
         let sources = self.sources();
         if !sources.is_empty() {

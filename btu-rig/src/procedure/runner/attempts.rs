@@ -24,7 +24,7 @@ use crate::procedure::report::{ResultKind, RunEvent, StepResult};
 pub const ATTEMPTS: u32 = 3;
 /// After set-up the unit says within this time how much it has logged.
 const LOG_SETTLES: Duration = Duration::from_ms(600);
-/// And its log is read within this time, or the steps begin all the same.
+/// Time after set-up within which the unit's log is read; then the steps begin all the same.
 const LOG_WITHIN: Duration = Duration::from_ms(10_000);
 /// Time in which the effects of frames lost in a pause show: unit and TCMS miss each other, brake and log it.
 const AFTERMATH: Duration = Duration::from_ms(1_000);

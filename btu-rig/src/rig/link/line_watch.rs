@@ -41,17 +41,17 @@ const SILENT: Duration = Duration::from_ms(150);
 #[derive(Clone, Copy, Debug, Default)]
 struct Counts {
     taken: u64,
-    /// Lost or damaged on the way from the unit.
+    /// Frames lost or damaged on the way from the unit.
     from_unit: u64,
-    /// Refused by the unit.
+    /// Frames that the unit refused.
     to_unit: u64,
-    /// Either way, shortly after this bench's computer stood still: no fault of the line, but a reason for what the
-    /// unit and TCMS log.
+    /// Frames lost in either direction shortly after this bench's computer stood still: no fault of the line, but a
+    /// reason for what the unit and TCMS log.
     after_stall: u64,
 }
 
 impl Counts {
-    /// Counted against the line.
+    /// Frames that count against the line.
     fn lost_or_damaged(self) -> u64 {
         self.from_unit + self.to_unit
     }
@@ -68,9 +68,9 @@ pub struct LineWatch {
     settles_until: Option<Instant>,
     /// When this bench's own computer did not keep up last, since the unit was first heard or started again.
     stalled_at: Option<Instant>,
-    /// What the rig's own counters said when the line had settled.
+    /// The rig's own counters when the line had settled.
     before: Counters,
-    /// What had been counted by then.
+    /// Counts of this watch when the line had settled.
     base: Counts,
     counts: Counts,
     /// When the last frame came, and how many had come then.
@@ -85,7 +85,7 @@ pub struct LineWatch {
     clock_is_wrong: bool,
     pub rate: ClockRate,
     lateness: Lateness,
-    /// When a frame came last, and how late it was.
+    /// When the last frame came, and how late that frame was.
     late: (Instant, Duration),
     /// Time until which the unit refuses what is damaged on purpose.
     on_purpose_until: Instant,

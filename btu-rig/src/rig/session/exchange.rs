@@ -230,7 +230,7 @@ impl Exchange {
         }
     }
 
-    /// The results of the self-test that was asked for with this sequence number are awaited.
+    /// Whether the self-test that was asked for with this sequence number has not yet given all its results.
     fn awaits_self_test(&self, seq: u16) -> bool {
         let current = self.current.as_ref();
         current.is_some_and(|current| current.tests_itself && current.asked(seq))
@@ -259,7 +259,7 @@ impl Exchange {
             self.armed_at = None;
         }
         if self.quiet {
-            // Making safe goes on: what one request did not reach the next may.
+            // Making safe goes on with the next request, whatever became of this one.
             return;
         }
         self.queue.clear();

@@ -62,7 +62,7 @@ impl IdentityCheck {
         self.compared = self.expected.compare(identity).into();
     }
 
-    /// Sets what the comparisons came to; nothing before the unit has said who it is.
+    /// Sets the signals of the comparisons; none before the unit has told its identity.
     pub fn record(&self, sample: &mut Sample) {
         for compared in &self.compared {
             let outcome = compared.same.map_or(2, u8::from);

@@ -16,8 +16,8 @@ use crate::rig::link::LinkWatch;
 /// Session number, for arming only: never said.
 const SESSION: u32 = 1;
 
-/// Silence before the first question: a unit refuses who speaks while it may still hear a predecessor,
-/// and would log that.
+/// Silence before the first question: while a unit may still hear the tester before this one, it refuses any other
+/// tester, and would log the refusal.
 const HOLD_BACK: Duration = Duration::from_ms(1_100);
 
 /// Stored entries asked for in a cycle: with all else that a unit says without a harness, 35 % of 115 200 baud.
