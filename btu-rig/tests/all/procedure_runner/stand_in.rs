@@ -83,16 +83,16 @@ impl Driver for Fake {
 }
 
 /// State that a test may change before each scan.
-pub struct World<'a> {
+pub struct World {
     pub scan: u32,
     pub sample: Sample,
     pub events: Vec<UnitEvent>,
     pub link_error: Option<LinkTrouble>,
     pub fake: Fake,
-    pub runner: &'a mut Runner,
+    pub runner: Runner,
 }
 
-impl World<'_> {
+impl World {
     pub fn ms(&self) -> u32 {
         self.scan * 10
     }
@@ -132,14 +132,15 @@ impl Outcome {
             .collect()
     }
 
-    /// Something that no step provoked was told of the unit.
-    pub fn blames_the_unit(&self) -> bool {
-        self.events.iter().any(|event| {
+    /// Number of brakes and events of the unit that no step provoked.
+    pub fn unsolicited(&self) -> usize {
+        let told = self.events.iter().filter(|event| {
             matches!(
                 event,
                 RunEvent::UnsolicitedBrake { .. } | RunEvent::UnsolicitedEvent(_)
             )
-        })
+        });
+        told.count()
     }
 
     pub fn finished(&self) -> (Verdict, &str) {
@@ -159,11 +160,7 @@ pub fn options(change: impl FnOnce(&mut RunOptions)) -> RunOptions {
     options
 }
 
-pub fn run_with(
-    script: &str,
-    options: RunOptions,
-    each_scan: impl FnMut(&mut World<'_>),
-) -> Outcome {
+pub fn run_with(script: &str, options: RunOptions, each_scan: impl FnMut(&mut World)) -> Outcome {
     run_round(script, options, 0, each_scan)
 }
 
@@ -171,45 +168,50 @@ pub fn run_round(
     script: &str,
     options: RunOptions,
     round: u32,
-    mut each_scan: impl FnMut(&mut World<'_>),
+    mut each_scan: impl FnMut(&mut World),
 ) -> Outcome {
     let procedure = procedure(script);
-    let mut runner = Runner::new(procedure.clone(), options.clone(), round);
     let mut sample = Sample::default();
     sample.set(Signal::Eb, 0.0);
     sample.set(Signal::Speed, 0.0);
-    let (mut fake, mut events) = (Fake::default(), Vec::new());
+    let mut world = World {
+        scan: 0,
+        sample,
+        events: Vec::new(),
+        link_error: None,
+        fake: Fake::default(),
+        runner: Runner::new(procedure.clone(), options.clone(), round),
+    };
+    let mut events = Vec::new();
     for scan in 0..MOST_SCANS {
-        let mut world = World {
-            scan,
-            sample: std::mem::take(&mut sample),
-            events: Vec::new(),
-            link_error: None,
-            fake: std::mem::take(&mut fake),
-            runner: &mut runner,
-        };
+        world.scan = scan;
+        (world.events, world.link_error) = (Vec::new(), None);
         each_scan(&mut world);
-        let (logged, link_error) = (world.events, world.link_error);
-        (sample, fake) = (world.sample, world.fake);
+        let (runner, link_error) = (&mut world.runner, world.link_error.as_ref());
         let now = Instant::from_us(u64::from(scan) * SCAN.as_us());
-        let poll = runner.advance(now, &sample, &logged, link_error.as_ref(), &mut fake);
+        let poll = runner.advance(
+            now,
+            &world.sample,
+            &world.events,
+            link_error,
+            &mut world.fake,
+        );
         events.extend(runner.take_events());
-        if let (Poll::Done, Some(rest)) = (poll, runner.to_be_resumed().cloned()) {
-            runner = Runner::resumed(procedure.clone(), options.clone(), round, rest);
-            continue;
-        }
         if poll == Poll::Done {
-            return Outcome {
-                events,
-                fake,
-                scans: scan,
+            let Some(rest) = runner.to_be_resumed().cloned() else {
+                return Outcome {
+                    events,
+                    fake: world.fake,
+                    scans: scan,
+                };
             };
+            *runner = Runner::resumed(procedure.clone(), options.clone(), round, rest);
         }
     }
     panic!("the run does not end: {:?}", events.last());
 }
 
-pub fn run(script: &str, each_scan: impl FnMut(&mut World<'_>)) -> Outcome {
+pub fn run(script: &str, each_scan: impl FnMut(&mut World)) -> Outcome {
     run_with(script, RunOptions::default(), each_scan)
 }
 
