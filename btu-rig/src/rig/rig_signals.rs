@@ -6,7 +6,8 @@ use super::Rig;
 use crate::stimulus::TachoCondition;
 
 impl Rig {
-    /// Sets them in the latest sample, as they are sent in this scan. Without a harness nothing is.
+    /// Sets the signals that the rig makes in the latest sample, as it sends them in this scan. Without a harness it sends
+    /// none.
     pub(super) fn record(&mut self) {
         let refusal = f64::from(self.tester.exchange.refusal.code());
         self.latest.sample.set(Signal::ArmRefusal, refusal);
@@ -41,7 +42,7 @@ impl Rig {
                 Signal::WaysideOrder,
                 f64::from(self.wayside.orders.order().code()),
             ),
-            (Signal::Departure, f64::from(u8::from(data.departure))),
+            (Signal::Departure, f64::from(data.departure)),
             (Signal::ModeSwitch, f64::from(self.desk.mode_switch.code())),
             (Signal::Controller, f64::from(self.desk.lever.wire())),
             (Signal::TwcAnswers, f64::from(self.wayside.answers())),

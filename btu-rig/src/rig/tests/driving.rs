@@ -5,7 +5,7 @@ use protocol::message::{AtcToTcmsBits, ModeSwitch, Outputs};
 use protocol::signal::Signal;
 
 use super::{FakeUnit, bench, order};
-use crate::stimulus::{CutOut, Stimulus, TachoCondition};
+use crate::stimulus::{CodeSignal, CutOut, Stimulus, TachoCondition};
 
 #[test]
 fn the_train_obeys_ato_passes_its_markers_and_stops_for_the_relay() {
@@ -50,12 +50,7 @@ fn generators_wait_while_the_train_drives() {
 #[test]
 fn making_safe_keeps_what_a_turning_wheel_needs() {
     let mut bench = bench(FakeUnit::default());
-    let (carrier_hz, rate_hz, level_mv) = (3000.0, 15.0, 500.0);
-    bench.apply(Stimulus::Code {
-        carrier_hz,
-        rate_hz,
-        level_mv,
-    });
+    bench.apply(Stimulus::Code(CodeSignal::new(3000.0, 15.0, 500.0)));
     bench.apply(Stimulus::Reverser { position: -1 });
     bench.apply(Stimulus::Direction { backward: true });
     bench.apply(Stimulus::Tacho {

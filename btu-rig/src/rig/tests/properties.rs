@@ -8,11 +8,17 @@ use protocol::signal::Signal;
 use super::{FakeUnit, config, rig};
 use crate::lever::Lever;
 use crate::rig::Bench;
-use crate::stimulus::{Stimulus, TachoCondition, TcmsCondition, WaysideCondition};
+use crate::stimulus::{CodeSignal, Stimulus, TachoCondition, TcmsCondition, WaysideCondition};
 
 /// A number that may be anything, often something sensible.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![4 => 0.0..50.0, 1 => any::<f64>(), 1 => Just(0.0), 1 => Just(f64::NAN)]
+}
+
+fn signal() -> impl Strategy<Value = CodeSignal> {
+    let values = (number(), number(), number());
+    values
+        .prop_map(|(carrier_hz, rate_hz, level_mv)| CodeSignal::new(carrier_hz, rate_hz, level_mv))
 }
 
 fn condition() -> impl Strategy<Value = TachoCondition> {
@@ -43,20 +49,8 @@ fn motion() -> impl Strategy<Value = Stimulus> {
 
 fn other() -> impl Strategy<Value = Stimulus> {
     prop_oneof![
-        (number(), number(), number()).prop_map(|(carrier_hz, rate_hz, level_mv)| {
-            Stimulus::Code {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            }
-        }),
-        (number(), number(), number()).prop_map(|(carrier_hz, rate_hz, level_mv)| {
-            Stimulus::Crosstalk {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            }
-        }),
+        signal().prop_map(Stimulus::Code),
+        signal().prop_map(Stimulus::Crosstalk),
         (number(), number()).prop_map(|(rate_hz_per_s, level_mv_per_s)| Stimulus::CodeDrift {
             rate_hz_per_s,
             level_mv_per_s

@@ -8,7 +8,7 @@ use protocol::{Duration, Instant, Speed};
 use super::{FakeUnit, bench, order};
 use crate::rig::train_side::TrainFaults;
 use crate::rig::{Bench, Misplaced, check_places};
-use crate::stimulus::{Stimulus, TrainSwitch, WaysideCondition};
+use crate::stimulus::{CodeSignal, Stimulus, TrainSwitch, WaysideCondition};
 use crate::tcms::EbSources;
 use crate::train::{CarSet, Equipment, TrainData};
 
@@ -281,11 +281,7 @@ fn played(fault: Option<FaultMode>) -> (Vec<u8>, Vec<Option<f64>>, Vec<Option<f6
     let mut bench = bench(FakeUnit::default());
     bench.apply(Stimulus::Wayside(WaysideCondition::Good));
     bench.apply(Stimulus::Hcr { on: true });
-    bench.apply(Stimulus::Code {
-        carrier_hz: 3_000.0,
-        rate_hz: 15.0,
-        level_mv: 500.0,
-    });
+    bench.apply(Stimulus::Code(CodeSignal::new(3_000.0, 15.0, 500.0)));
     bench.apply(Stimulus::Speed {
         to: Speed::from_kmh(30.0),
         accel_mps2: 2.0,

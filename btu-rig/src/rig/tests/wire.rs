@@ -5,7 +5,9 @@ use protocol::{Instant, SCAN};
 
 use super::{FakeUnit, bench, link_error, rig};
 use crate::rig::{Bench, LinkTrouble, UnitLink};
-use crate::stimulus::{StationData, Stimulus, TachoCondition, TcmsCondition, WaysideCondition};
+use crate::stimulus::{
+    CodeSignal, StationData, Stimulus, TachoCondition, TcmsCondition, WaysideCondition,
+};
 use protocol::Speed;
 
 /// Bytes each way in a cycle of 50 ms (576 fit at 115 200 baud).
@@ -30,12 +32,8 @@ fn no_cycle_exceeds_the_budget() {
     let mut unit = FakeUnit::default();
     (0..200).for_each(|_| unit.log_event(1));
     let mut bench = bench(unit);
-    let (carrier_hz, rate_hz, level_mv) = (32_382.0, 323.82, 32_382.0);
-    bench.apply(Stimulus::Code {
-        carrier_hz,
-        rate_hz,
-        level_mv,
-    });
+    let signal = CodeSignal::new(32_382.0, 323.82, 32_382.0);
+    bench.apply(Stimulus::Code(signal));
     bench.apply(Stimulus::Station(STATION));
     bench.apply(Stimulus::Speed {
         to: Speed::from_kmh(110.0),

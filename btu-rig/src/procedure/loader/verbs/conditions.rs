@@ -261,7 +261,7 @@ pub(super) fn operand(signal: Signal, item: &Item) -> Result<Operand, String> {
             Some(index) => Ok(Operand::Literal(index as f64)),
             None => wrong(near(text, labels.iter().copied())),
         },
-        (Kind::Bit, Item::Bool(on)) => Ok(Operand::Literal(f64::from(u8::from(*on)))),
+        (Kind::Bit, Item::Bool(on)) => Ok(Operand::Literal(f64::from(*on))),
         (Kind::Enum(_) | Kind::Bit, Item::Measured(name, None)) => Ok(measured(name, 0.0)),
         (Kind::Number { .. }, item) => {
             amount(definition.unit, item).or_else(|()| wrong(String::new()))
