@@ -94,34 +94,21 @@ impl BenchScatter {
         let scatter: Self =
             toml::from_str(text).map_err(|error| ConfigError::Syntax(error.to_string()))?;
         scatter.train.check()?;
-        let SensorScatter {
-            level_factor,
-            level_noise,
-            carrier_offset_hz,
-            rate_offset_hz,
-            rate_jitter_hz,
-            tooth_pitch,
-            spurious_pulses_per_s,
-        } = scatter.sensors;
-        let TimingScatter {
-            power_up_ms,
-            to_unit_ms,
-            from_unit_ms,
-            late_share,
-        } = scatter.timing;
-        check_spreads(&[
-            ("level_factor", level_factor, 0.1, 10.0),
-            ("level_noise", level_noise, 0.0, 0.2),
-            ("carrier_offset_hz", carrier_offset_hz, -500.0, 500.0),
-            ("rate_offset_hz", rate_offset_hz, -5.0, 5.0),
-            ("rate_jitter_hz", rate_jitter_hz, 0.0, 5.0),
-            ("tooth_pitch", tooth_pitch, 0.0, 0.1),
-            ("spurious_pulses_per_s", spurious_pulses_per_s, 0.0, 100.0),
-            ("power_up_ms", power_up_ms, 0.0, 1000.0),
-            ("to_unit_ms", to_unit_ms, 0.0, 100.0),
-            ("from_unit_ms", from_unit_ms, 0.0, 100.0),
-            ("late_share", late_share, 0.0, 0.5),
-        ])?;
+        check_spreads! { scatter.sensors;
+            level_factor: 0.1, 10.0;
+            level_noise: 0.0, 0.2;
+            carrier_offset_hz: -500.0, 500.0;
+            rate_offset_hz: -5.0, 5.0;
+            rate_jitter_hz: 0.0, 5.0;
+            tooth_pitch: 0.0, 0.1;
+            spurious_pulses_per_s: 0.0, 100.0;
+        }
+        check_spreads! { scatter.timing;
+            power_up_ms: 0.0, 1000.0;
+            to_unit_ms: 0.0, 100.0;
+            from_unit_ms: 0.0, 100.0;
+            late_share: 0.0, 0.5;
+        }
         Ok(scatter)
     }
 

@@ -113,7 +113,7 @@ impl Driver for RecordingDriver<'_> {
     }
 
     fn has_harness(&self) -> bool {
-        Driver::has_harness(self.rig)
+        self.rig.has_harness()
     }
 
     fn evidence(&self) -> Evidence {

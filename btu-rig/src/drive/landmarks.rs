@@ -3,12 +3,12 @@
 use std::fmt::{self, Display, Formatter};
 
 use protocol::Instant;
+use protocol::event::Event;
 use protocol::signal::Signal;
 
-use super::log_text::described;
 use super::{DrivePlan, Row};
 use crate::procedure::finding::LoggedEvent;
-use crate::procedure::{EventSource, UnitEvent};
+use crate::procedure::{EventSource, UnitEvent, event_text};
 
 /// Share of the highest target that counts as reached.
 const REACHED: f64 = 0.99;
@@ -174,6 +174,19 @@ pub(super) fn of_log(log: &[(Instant, UnitEvent)], zero_s: f64, rows: &[Row]) ->
         .collect()
 }
 
+/// An entry of the unit's log: its name, and what its parameter says.
+fn described(event: u16, number: i32) -> String {
+    let Some(known) = Event::from_code(event) else {
+        return format!("event {event}, parameter {number}");
+    };
+    let said = event_text::parameter(known, number);
+    match known {
+        Event::ModeChanged => format!("mode {said}"),
+        _ if said.is_empty() => known.definition().name.into(),
+        _ => format!("{}: {said}", known.definition().name),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::metrics::tests::triangle;
@@ -213,5 +226,17 @@ mod tests {
         }
         let begins = stop_curve(&rows, 5.0).unwrap();
         assert!((begins.t_s - 13.0).abs() < 0.11, "{begins:?}");
+    }
+
+    #[test]
+    fn an_entry_is_its_name_and_what_its_parameter_says() {
+        for (event, parameter, words) in [
+            (Event::AtoFailed, 7, "ato_failed: not following"),
+            (Event::ModeChanged, 4, "mode automatic_run"),
+            (Event::PowerUp, 0, "power_up"),
+        ] {
+            assert_eq!(described(event.definition().code, parameter), words);
+        }
+        assert_eq!(described(9999, 3), "event 9999, parameter 3");
     }
 }

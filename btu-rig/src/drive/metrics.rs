@@ -7,10 +7,56 @@ use protocol::CYCLE;
 use protocol::signal::Signal;
 
 use super::Row;
-use super::figure::figures;
 
 /// Jerk that passengers notice [S1: 0.8 m/s³].
 pub const COMFORT_JERK_MPS3: f64 = 0.8;
+
+/// A figure of a run: its value, and its key, name, unit and decimals in every report.
+#[derive(Debug)]
+pub struct Figure {
+    /// Key in JSON and CSV, ending in its unit.
+    pub key: &'static str,
+    /// Name for people.
+    pub name: &'static str,
+    /// Unit for people: `%` of a share.
+    pub unit: &'static str,
+    decimals: usize,
+    /// Reads the figure's value, in the key's unit, from a run's figures.
+    pub of: fn(&Metrics) -> f64,
+}
+
+impl Figure {
+    /// A value of it for people, without unit.
+    pub fn shown(&self, value: f64) -> String {
+        let scale = if self.unit == "%" { 100.0 } else { 1.0 };
+        format!("{:.*}", self.decimals, value * scale)
+    }
+}
+
+/// Declares a struct of figures and its table, in the order in which reports have them.
+macro_rules! figures {
+    (
+        $(#[$doc:meta])*
+        pub struct $figures:ident {
+            $( $(#[$of:meta])+ $key:ident: $kind:ty = $name:literal, $unit:literal, $decimals:literal; )+
+        }
+    ) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct $figures { $( $(#[$of])+ pub $key: $kind, )+ }
+
+        impl $figures {
+            /// Every figure, in the order in which reports have them.
+            pub const ALL: &'static [Figure] = &[$( Figure {
+                key: stringify!($key),
+                name: $name,
+                unit: $unit,
+                decimals: $decimals,
+                of: |figures| figures.$key,
+            } ),+];
+        }
+    };
+}
 
 figures! {
     /// Figures of one run.
@@ -76,8 +122,30 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::row::tests::row_at;
+    use protocol::Instant;
+    use protocol::signal::Sample;
+
     use super::*;
+    use crate::recorder;
+
+    /// A row of a train that rolls, with these signals.
+    fn row_at(t_s: f64, speed_kmh: f64, signals: &[(Signal, f64)]) -> Row {
+        let mut sample = Sample::default();
+        for (signal, value) in signals {
+            sample.set(*signal, *value);
+        }
+        Row {
+            signals: recorder::Row {
+                at: Instant::ZERO,
+                sample,
+            },
+            t_s,
+            x_m: 0.0,
+            speed_kmh,
+            power_w: 0.0,
+            sliding: false,
+        }
+    }
 
     /// A train that speeds up at 1 m/s² for 10 s under a target of 36 km/h, stands after 10 s more
     /// and whose traction gives 72 kW while it speeds up.

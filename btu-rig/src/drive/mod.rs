@@ -2,19 +2,16 @@
 //! the rig. Sans-IO: stepped once a scan after [`crate::rig::Bench::tick`], it gives the unit what
 //! a wayside and a cab would, watches the train, and ends with an [`Outcome`].
 //!
-//! It knows of the unit what frames say. The train's true motion (position, speed, acceleration) is known to
-//! the rig alone.
+//! A drive knows of the unit only what its frames say. The train's true motion (position, speed, acceleration) is
+//! known to the rig alone.
 //!
 //! * `plan`: what is run; `watch`: what is looked at each scan;
 //! * `row`, `recording`: what is recorded each cycle;
-//! * `figure`: figures with the names and units that reports use;
-//! * `metrics`: figures of a run, from its rows;
+//! * `metrics`: figures of a run, from its rows, with the names and units that reports use;
 //! * `landmarks`: what happened where, from its rows and the unit's log;
 //! * `scatter`: how trains and days differ, drawn for many runs.
 
-mod figure;
 pub mod landmarks;
-mod log_text;
 pub mod metrics;
 mod plan;
 mod recording;
@@ -22,19 +19,21 @@ mod row;
 pub mod scatter;
 mod watch;
 
-use protocol::message::{EbCause, Mode, ModeSwitch};
+use std::fmt::Display;
+
+use protocol::message::{EbCause, Mode, ModeSwitch, Refusals};
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::procedure::Refusal;
+use crate::procedure::describe::meanings;
 use crate::rig::{LinkTrouble, Rig, TrueMotion};
 use crate::stimulus::Stimulus;
 
-pub use figure::Figure;
 pub use landmarks::{Landmark, Mark};
-pub use metrics::Metrics;
+pub use metrics::{Figure, Metrics};
 pub use plan::{Codes, DrivePlan, Load, PlanError, code_in_antenna};
 pub use row::Row;
 pub use scatter::{Scatter, ScatterDraw};
@@ -50,11 +49,11 @@ const DEPARTURE_HEARD: Duration = Duration::from_ms(500);
 const RUN_WITHIN: Duration = Duration::from_ms(2_000);
 /// Time from Automatic Run until the train moves.
 const LEAVE_WITHIN: Duration = Duration::from_ms(20_000);
-/// Standing for so long with no powering asked for, the run is over.
+/// Time of standing without any powering asked for, after which a run is over.
 const STANDS: Duration = Duration::from_ms(1_000);
-/// Standing for so long it is over, whatever is asked for.
+/// Time of standing after which a run is over, whatever is asked for.
 const STANDS_AT_MOST: Duration = Duration::from_ms(10_000);
-/// A run takes no longer than this and the section at the speed below.
+/// Longest time of a run, beside the time that the section takes at [`SLOWEST_MPS`].
 const RUN_BASE: Duration = Duration::from_ms(60_000);
 /// Slowest believable mean speed of a run, m/s.
 const SLOWEST_MPS: f64 = 4.0;
@@ -74,13 +73,13 @@ pub enum Ending {
     #[error("the bench refused: {0}")]
     Refused(String),
     /// ATP did not set Automatic.
-    #[error("never ready: ATP did not set Automatic{}", lacking(*.refusals))]
+    #[error("never ready: ATP did not set Automatic{}", after_colon(.refusals.map(lacking)))]
     NeverReady {
         /// Preconditions that do not hold, if the unit said.
         refusals: Option<u16>,
     },
     /// ATP did not set Automatic Run after the start button.
-    #[error("never started: ATP did not set Automatic Run{}", lacking(*.refusals))]
+    #[error("never started: ATP did not set Automatic Run{}", after_colon(.refusals.map(lacking)))]
     NeverStarted {
         /// Preconditions that do not hold, if the unit said.
         refusals: Option<u16>,
@@ -88,13 +87,13 @@ pub enum Ending {
     #[error("never left: no motion in Automatic Run")]
     NeverLeft,
     /// The unit applied the emergency brake; the train stands.
-    #[error("emergency brake{}", because(*.cause))]
+    #[error("emergency brake{}", after_colon(.cause.map(EbCause::label)))]
     EmergencyBrake {
         /// Cause of the brake, if the unit said it.
         cause: Option<EbCause>,
     },
     /// ATP took the train out of Automatic Run while it moved; it stands, or rolls on.
-    #[error("left Automatic Run while moving{}", into(*.mode))]
+    #[error("left Automatic Run while moving{}", after_colon(.mode.map(named)))]
     LeftAutomatic {
         /// Mode it went to, if the unit said.
         mode: Option<Mode>,
@@ -107,18 +106,17 @@ pub enum Ending {
     LinkLost(LinkTrouble),
 }
 
-fn lacking(refusals: Option<u16>) -> String {
-    refusals.map_or_else(String::new, |bits| {
-        format!(": {}", log_text::refusals(bits))
-    })
+/// A detail that may be unknown, behind a colon.
+fn after_colon(detail: Option<impl Display>) -> String {
+    detail.map_or_else(String::new, |detail| format!(": {detail}"))
 }
 
-fn because(cause: Option<EbCause>) -> String {
-    cause.map_or_else(String::new, |cause| format!(": {}", cause.label()))
+fn lacking(refusals: u16) -> String {
+    meanings(&Refusals::SPEC, refusals)
 }
 
-fn into(mode: Option<Mode>) -> String {
-    mode.map_or_else(String::new, |mode| format!(": mode {}", mode.label()))
+fn named(mode: Mode) -> String {
+    format!("mode {}", mode.label())
 }
 
 #[derive(Clone, Debug)]
@@ -151,10 +149,7 @@ enum Phase {
         since: Instant,
     },
     /// The train moves, or stands after having moved.
-    Running {
-        since: Instant,
-        stands: Option<Instant>,
-    },
+    Running,
     Over,
 }
 
@@ -286,30 +281,18 @@ impl Drive {
             }
             Phase::Leaving { .. } if moving => {
                 self.moves_since = Some(now);
-                self.phase = Phase::Running {
-                    since: now,
-                    stands: None,
-                };
+                self.phase = Phase::Running;
             }
             Phase::Leaving { since } if late(since, LEAVE_WITHIN) => {
                 return Some(Ending::NeverLeft);
             }
-            Phase::Running { since, stands } => {
-                return self.run(now, rig, (since, stands), mode, moving);
-            }
+            Phase::Running => return self.run(now, rig, mode, moving),
             _ => {}
         }
         None
     }
 
-    fn run(
-        &mut self,
-        now: Instant,
-        rig: &Rig,
-        (since, stands): (Instant, Option<Instant>),
-        mode: Option<Mode>,
-        moving: bool,
-    ) -> Option<Ending> {
+    fn run(&mut self, now: Instant, rig: &Rig, mode: Option<Mode>, moving: bool) -> Option<Ending> {
         let sample = rig.sample();
         if sample.get(Signal::Eb) == Some(1.0) && self.braked.is_none_or(|cause| cause.is_none()) {
             self.braked = Some(watch::eb_cause(sample));
@@ -321,23 +304,17 @@ impl Drive {
         }
         if moving {
             self.stands_since = None;
-            self.phase = Phase::Running {
-                since,
-                stands: None,
-            };
             return match self.left {
                 Some((at, mode)) => {
                     (now.since(at) >= COASTS).then_some(Ending::LeftAutomatic { mode })
                 }
-                None => (now.since(since) >= self.longest()).then_some(Ending::TimeLimit),
+                None => {
+                    let began = self.moves_since?;
+                    (now.since(began) >= self.longest()).then_some(Ending::TimeLimit)
+                }
             };
         }
-        let stands = stands.unwrap_or(now);
-        self.stands_since = Some(stands);
-        self.phase = Phase::Running {
-            since,
-            stands: Some(stands),
-        };
+        let stands = *self.stands_since.get_or_insert(now);
         let powers = sample.get(Signal::Power) == Some(1.0)
             && sample
                 .get(Signal::Effort)

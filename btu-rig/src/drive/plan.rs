@@ -7,7 +7,7 @@ use protocol::line::{Line, Section};
 use thiserror::Error;
 
 use crate::conditions::Conditions;
-use crate::stimulus::{StationData, Stimulus};
+use crate::stimulus::{CodeSignal, StationData, Stimulus};
 use crate::train::TrainData;
 
 /// Why a run cannot be planned.
@@ -162,11 +162,9 @@ pub(super) fn fixed_code(
 /// The code of this name as a stimulus of the antenna; `None` = the table has no such code.
 pub fn code_in_antenna(config: &UnitConfig, name: &str) -> Option<Stimulus> {
     let code = &config.codes[find_code(&config.codes, name)?];
-    Some(Stimulus::Code {
-        carrier_hz: code.carrier_hz,
-        rate_hz: code.rate_hz,
-        level_mv: config.receiver.level_nominal_mv,
-    })
+    let level_mv = config.receiver.level_nominal_mv;
+    let signal = CodeSignal::new(code.carrier_hz, code.rate_hz, level_mv);
+    Some(Stimulus::Code(signal))
 }
 
 /// Code of a section that names none: with 5 km/h below its limit the target is S0's 60 km/h.

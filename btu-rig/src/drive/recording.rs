@@ -7,7 +7,7 @@ use crate::procedure::UnitEvent;
 use crate::recorder;
 use crate::rig::{Rig, TrueMotion};
 
-/// Rows of a usual run, so that they need not move as they come.
+/// Rows of a usual run: room for as many is reserved, so that rows need not be moved as the run grows.
 const USUAL_ROWS: usize = 2_500;
 
 #[derive(Debug, Default)]

@@ -26,30 +26,3 @@ impl Row {
         self.signals.value(signal)
     }
 }
-
-#[cfg(test)]
-pub(super) mod tests {
-    use protocol::Instant;
-    use protocol::signal::Sample;
-
-    use super::*;
-
-    /// A row of a train that rolls, with these signals.
-    pub fn row_at(t_s: f64, speed_kmh: f64, signals: &[(Signal, f64)]) -> Row {
-        let mut sample = Sample::default();
-        for (signal, value) in signals {
-            sample.set(*signal, *value);
-        }
-        Row {
-            signals: recorder::Row {
-                at: Instant::ZERO,
-                sample,
-            },
-            t_s,
-            x_m: 0.0,
-            speed_kmh,
-            power_w: 0.0,
-            sliding: false,
-        }
-    }
-}

@@ -55,6 +55,17 @@ impl Spread {
         }
     }
 
+    pub(crate) fn check(self, key: &str, low: f64, high: f64) -> Result<(), ConfigError> {
+        let (least, most) = self.range();
+        // A negated comparison so that not-a-number is refused, too.
+        if !(low <= least && least <= most && most <= high) {
+            return Err(ConfigError::Conflict(format!(
+                "{key}: values from {least} to {most} are not all within {low} to {high}"
+            )));
+        }
+        Ok(())
+    }
+
     /// Least and greatest believable value; of a normal distribution all but one in 15 000.
     fn range(self) -> (f64, f64) {
         match self {
@@ -64,19 +75,13 @@ impl Spread {
     }
 }
 
-/// Refuses spreads that leave their range: each with its key, least and greatest value.
-pub(crate) fn check_spreads(spreads: &[(&str, Spread, f64, f64)]) -> Result<(), ConfigError> {
-    for &(key, spread, low, high) in spreads {
-        let (least, most) = spread.range();
-        // A negated comparison so that not-a-number is refused, too.
-        if !(low <= least && least <= most && most <= high) {
-            return Err(ConfigError::Conflict(format!(
-                "{key}: values from {least} to {most} are not all within {low} to {high}"
-            )));
-        }
-    }
-    Ok(())
+/// Refuses spreads that leave their range, each in a line: its key, the least and the greatest value permitted.
+macro_rules! check_spreads {
+    ($of:expr; $($key:ident: $low:expr, $high:expr;)+) => {
+        $($of.$key.check(stringify!($key), $low, $high)?;)+
+    };
 }
+pub(crate) use check_spreads;
 
 /// All that differs; see `scripts/scatter.toml`.
 #[derive(
@@ -122,20 +127,16 @@ impl Scatter {
     }
 
     pub(crate) fn check(&self) -> Result<(), ConfigError> {
-        check_spreads(&[
-            ("load_kg", self.load_kg, 0.0, 1e6),
-            (
-                "gradient_offset_permille",
-                self.gradient_offset_permille,
-                -50.0,
-                50.0,
-            ),
-            ("adhesion", self.adhesion, 0.02, 0.6),
-            ("delay_factor", self.delay_factor, 0.0, MAX_DELAY_FACTOR),
-            ("brake_factor", self.brake_factor, 0.2, 2.0),
-            ("wheel_factor", self.wheel_factor, 0.8, 1.2),
-            ("marker_offset_m", self.marker_offset_m, -5.0, 5.0),
-        ])
+        check_spreads! { self;
+            load_kg: 0.0, 1e6;
+            gradient_offset_permille: -50.0, 50.0;
+            adhesion: 0.02, 0.6;
+            delay_factor: 0.0, MAX_DELAY_FACTOR;
+            brake_factor: 0.2, 2.0;
+            wheel_factor: 0.8, 1.2;
+            marker_offset_m: -5.0, 5.0;
+        }
+        Ok(())
     }
 
     /// Draws a run's train and day; the same for the same `seed`.

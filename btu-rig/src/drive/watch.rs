@@ -6,8 +6,8 @@ use protocol::{CYCLE, Instant};
 
 use crate::rig::{LinkTrouble, Rig};
 
-/// Why the unit cannot be reached any more. Silence lasts for many cycles before it is one, so it need not be
-/// looked for each scan.
+/// Why the unit cannot be reached any more. Silence counts as trouble only after many cycles, so that one look a cycle
+/// is enough.
 pub(super) fn link_error(now: Instant, rig: &Rig) -> Option<LinkTrouble> {
     let cycle = now.as_us().is_multiple_of(CYCLE.as_us());
     cycle.then(|| rig.link_error())?

@@ -37,7 +37,7 @@ pub(super) struct ActionRun {
 }
 
 impl ActionRun {
-    /// Whether the sample of this scan is older than the last stimulus: it proves nothing then.
+    /// Whether the sample of this scan is older than the last stimulus: such a sample proves nothing.
     pub(super) fn sample_is_stale(&self, now: Instant) -> bool {
         self.stimulated == Some(now)
     }
@@ -116,7 +116,7 @@ impl ActionRun {
                         Err(problem) => return Progress::Stuck(problem),
                     }
                 }
-                // Where it is done was looked at, and scripts do not nest it.
+                // `where_done` has taken this wrapper off, and scripts cannot put one into another.
                 Action::OnBench(_) | Action::OnTrain(_) => true,
             };
             if !done {
@@ -130,13 +130,7 @@ impl ActionRun {
 
     /// An answer of the operator is waited for.
     pub(super) fn asks(&self, actions: &[Action]) -> bool {
-        let asks = |action: &Action| match action {
-            Action::OnBench(action) | Action::OnTrain(action) => {
-                matches!(**action, Action::Prompt { .. })
-            }
-            action => matches!(action, Action::Prompt { .. }),
-        };
-        self.since.is_some() && actions.get(self.at).is_some_and(asks)
+        self.since.is_some() && actions.get(self.at).is_some_and(Action::asks)
     }
 
     /// Says what is waited for: prompts at once, the rest if it takes longer than a moment.

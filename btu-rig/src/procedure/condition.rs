@@ -17,7 +17,7 @@ pub enum Operand {
         slot: usize,
         /// Name of the measurement, for people.
         name: String,
-        /// Added to it, in its own unit.
+        /// Amount added to the measured value, in the unit of the measurement.
         offset: f64,
     },
 }
@@ -65,9 +65,9 @@ pub enum Condition {
         /// Right-hand side, in the signal's unit.
         operand: Operand,
     },
-    /// Every one of them.
+    /// Every part holds.
     All(Vec<Condition>),
-    /// At least one of them.
+    /// At least one part holds.
     Any(Vec<Condition>),
 }
 
@@ -140,7 +140,7 @@ impl Condition {
         said
     }
 
-    /// Calls `f` with each signal it looks at.
+    /// Calls `f` with each signal that the condition looks at.
     pub fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
         match self {
             Self::Compare { signal, .. } => f(*signal),
@@ -150,7 +150,7 @@ impl Condition {
         }
     }
 
-    /// Calls `f` with each operand and the signal it is compared with.
+    /// Calls `f` with each operand and the signal that is compared with the operand.
     pub(super) fn try_for_each_operand<E>(
         &mut self,
         f: &mut impl FnMut(Signal, &mut Operand) -> Result<(), E>,

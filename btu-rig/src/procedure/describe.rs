@@ -12,7 +12,7 @@ use super::plan::{
     TimeFrom, What,
 };
 use crate::stimulus::text::number;
-use crate::tcms::{EbSources, Lamps, PowerCuts};
+use crate::tcms::{EbSources, Lamps, PowerCuts, names_of};
 
 /// Behaviour of a clock of the unit that is faster than the bench's by this number of thousandths.
 pub fn clock_wrong(by_permille: i32) -> String {
@@ -146,14 +146,10 @@ fn group(f: &mut Formatter<'_>, parts: &[Condition], word: &str) -> fmt::Result 
 /// Bits of a signal by their names: causes, lamps, cars. `None` for a signal that is no set, or
 /// bits without a name.
 pub fn bit_names(signal: Signal, bits: u16) -> Option<String> {
-    fn of<T: Copy>(bits: u16, all: &[(T, &str)], bit: impl Fn(T) -> u16) -> Vec<String> {
-        let named = all.iter().filter(|(one, _)| bits & bit(*one) != 0);
-        named.map(|(_, name)| (*name).to_owned()).collect()
-    }
     let names = match signal {
-        Signal::PowerCutCauses => of(bits, PowerCuts::ALL, PowerCuts::bits),
-        Signal::EbSources => of(bits, EbSources::ALL, EbSources::bits),
-        Signal::Lamps => of(bits, Lamps::ALL, Lamps::bits),
+        Signal::PowerCutCauses => names_of::<PowerCuts>(bits),
+        Signal::EbSources => names_of::<EbSources>(bits),
+        Signal::Lamps => names_of::<Lamps>(bits),
         Signal::NotReleased => {
             let cars = (1..).zip(0..u16::BITS);
             let named = cars.filter(|(_, bit)| bits & 1 << bit != 0);
@@ -248,13 +244,11 @@ impl Display for Action {
 /// An event's name, and the limits of its parameter where it has any.
 pub(super) fn logged_text(event: Event, [low, high]: [i32; 2], said: bool) -> String {
     let mut text = Part(Name(event.definition().name), said).to_string();
-    if (low, high) != (i32::MIN, i32::MAX) {
+    let least = (low != i32::MIN).then(|| low.to_string());
+    let most = (high != i32::MAX).then(|| high.to_string());
+    if least.is_some() || most.is_some() {
         let what = event.definition().parameter;
-        text.push_str(&match (low, high) {
-            (low, i32::MAX) => format!(" ({what}: at least {low})"),
-            (i32::MIN, high) => format!(" ({what}: at most {high})"),
-            (low, high) => format!(" ({what}: {low} to {high})"),
-        });
+        text.push_str(&format!(" ({what}: {})", limits(least, most)));
     }
     text
 }
@@ -316,25 +310,24 @@ impl Display for Measure {
             Operand::Literal(newtons) if unit == "N" => force(*newtons),
             other => with_unit(other, unit),
         };
-        match (&self.low, &self.high) {
+        let low = self.low.as_ref().map(|low| match self.high {
+            Some(_) if unit != "N" => low.to_string(),
+            _ => limit(low),
+        });
+        match (low, self.high.as_ref().map(limit)) {
             (None, None) => Ok(()),
-            (Some(low), None) => write!(f, ", at least {}", limit(low)),
-            (None, Some(high)) => write!(f, ", at most {}", limit(high)),
-            (Some(low), Some(high)) if unit == "N" => {
-                write!(f, ", {} to {}", limit(low), limit(high))
-            }
-            (Some(low), Some(high)) => write!(f, ", {low} to {}", limit(high)),
+            (low, high) => write!(f, ", {}", limits(low, high)),
         }
     }
 }
 
 /// Limits in words.
-pub(super) fn limits(low: Option<f64>, high: Option<f64>) -> String {
+pub(super) fn limits(low: Option<String>, high: Option<String>) -> String {
     match (low, high) {
         (None, None) => "anything".into(),
-        (Some(low), None) => format!("at least {}", number(low)),
-        (None, Some(high)) => format!("at most {}", number(high)),
-        (Some(low), Some(high)) => format!("{} to {}", number(low), number(high)),
+        (Some(low), None) => format!("at least {low}"),
+        (None, Some(high)) => format!("at most {high}"),
+        (Some(low), Some(high)) => format!("{low} to {high}"),
     }
 }
 

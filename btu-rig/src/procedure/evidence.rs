@@ -38,11 +38,11 @@ pub struct LineState {
     pub lost_or_damaged_lately: u64,
     /// Nothing comes now: the line is lost, or the unit starts again.
     pub silent: bool,
-    /// Time by which the last frames came later than others: what they show was so before.
+    /// Time by which the last frames came later than others: they show a state of the unit that is as old.
     pub late: Duration,
 }
 
-/// After which stamps of the unit that which is new in a scan happened, ms of its clock.
+/// Stamps of the unit, ms of its clock, after which a change that a scan shows for the first time has happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnitTimeBounds {
     /// A change that the unit tells in its scan.
@@ -64,8 +64,8 @@ pub struct UnitTime {
     pub answered_ms: Option<u32>,
 }
 
-/// Evidence by which a driver can trust the data that it receives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Evidence by which a driver can trust the data that it receives; by default everything is received and read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Evidence {
     /// The unit's log.
     pub log: LogState,
@@ -81,22 +81,8 @@ pub struct Evidence {
     pub unit_time: Option<UnitTime>,
 }
 
-impl Default for Evidence {
-    /// Everything is received and read.
-    fn default() -> Self {
-        Self {
-            log: LogState::Read,
-            not_kept: 0,
-            line: LineState::default(),
-            clock_wrong_by_permille: None,
-            self_test: SelfTest::empty(),
-            unit_time: None,
-        }
-    }
-}
-
 impl Evidence {
-    /// Whether frames that did not get through may be why the unit or TCMS logged this.
+    /// Whether frames that did not get through may be why the unit or TCMS logged this event.
     pub fn explains(&self, event: Option<Event>, parameter: i32) -> bool {
         self.line.lost_or_damaged_lately > 0 && of_lost_frames(event, parameter)
     }
@@ -107,7 +93,7 @@ impl Evidence {
     }
 }
 
-/// Whether this is logged when frames do not come.
+/// Whether the unit or TCMS logs this event when frames do not come.
 fn of_lost_frames(event: Option<Event>, parameter: i32) -> bool {
     event.is_some_and(|event| match event {
         Event::InputsLost

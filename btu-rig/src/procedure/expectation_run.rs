@@ -101,17 +101,17 @@ impl ExpectationRun {
         }
     }
 
-    /// Adds what is behind the signals that did not come.
-    pub(super) fn explain(&mut self, expectation: &Expectation, driver: &dyn Driver) {
-        let Expectation::Becomes { condition, .. } = expectation else {
-            return;
-        };
-        if let Some(Problem::Failed(Finding::NeverBecame { said, .. })) = &mut self.problem {
+    /// Adds to a condition that did not come true the reason that one of its signals gives.
+    pub(super) fn explain(&mut self, driver: &dyn Driver) {
+        if let Some(Problem::Failed(Finding::NeverBecame {
+            condition, said, ..
+        })) = &mut self.problem
+        {
             *said = condition.said(driver).map(str::to_owned);
         }
     }
 
-    /// Whether the step must go on for it.
+    /// Whether the step must go on for this expectation.
     pub(super) fn is_open(&self, expectation: &Expectation) -> bool {
         !self.decided
             && !matches!(

@@ -51,7 +51,7 @@ pub enum Finding {
     NeverBecame {
         condition: Condition,
         within: Duration,
-        /// The bits of its signal at the end, where it is a set of these.
+        /// Bits of the condition's signal at the end, where that signal is a set of bits.
         seen: Option<u16>,
         /// The data that were missing then.
         missing: Option<MissingData>,
@@ -192,7 +192,7 @@ pub enum Finding {
     NotTestedBefore {
         step: String,
     },
-    /// Only a bench with its harness can do it.
+    /// Only a bench with its harness can run the step, procedure or unit.
     NeedsHarness,
     /// The condition under which a step is run does not hold.
     ConditionFalse {
@@ -218,7 +218,7 @@ pub enum Finding {
         /// The instrument of the bench that failed; none = the link to the unit.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         instrument: Option<String>,
-        /// The bench that it is of, where that is known.
+        /// The bench that the instrument belongs to, where that is known.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         bench: Option<String>,
     },
@@ -237,7 +237,7 @@ pub enum Finding {
     TooManyEvents {
         more: u64,
     },
-    /// The unit's clock goes wrong by the bench's.
+    /// The unit's clock runs faster or slower than the bench's.
     ClockWrong {
         /// Excess of the unit's clock, thousandths.
         by_permille: i32,
@@ -319,15 +319,15 @@ pub enum WaitedFor {
 }
 
 impl Connection {
-    /// Why what needs this connection cannot be done on another, if so: the harness can do all that the
-    /// maintenance port can.
+    /// Why a procedure for this connection cannot be run on the connection `on`; `None` if it can. The harness can do all
+    /// that the maintenance port can.
     pub fn lacks(self, on: Self) -> Option<Finding> {
         (self == Self::Btu && on == Self::Ptu).then_some(Finding::NeedsHarness)
     }
 }
 
 impl Finding {
-    /// The step, procedure or unit it is about was not run for this reason.
+    /// The finding that a step, procedure or unit was not run, with this finding as the reason.
     pub fn not_run(self) -> Self {
         Self::NotRun(Box::new(self))
     }
@@ -341,7 +341,7 @@ impl Finding {
         }
     }
 
-    /// An instrument of the bench failed, or the tester stood still: it tells nothing of the unit.
+    /// An instrument of the bench failed, or the tester stood still: such a finding tells nothing of the unit.
     pub fn is_of_the_bench(&self) -> bool {
         match self {
             Self::LinkLost { why } => why.is_of_the_bench(),

@@ -1,34 +1,15 @@
 //! Judging a measured value against its limits.
 
 use super::Verdict;
-use super::condition::{Captured, Operand};
+use super::condition::{Captured, MissingData, Operand};
 
-/// A limit as it stands when the value is judged.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Bound {
-    Open,
-    /// This number.
-    At(f64),
-    /// Given, but it refers to a measurement without a value.
-    Unknown,
-}
+/// A limit as it stands when the value is judged: a number, none, or unknown, because it refers to a measurement without a
+/// value.
+pub(super) type Limit = Result<Option<f64>, MissingData>;
 
-impl Bound {
-    /// The bound that `limit` stands for now.
-    pub(super) fn resolve(limit: Option<&Operand>, captured: &Captured) -> Self {
-        match limit.map(|limit| limit.value(captured)) {
-            None => Self::Open,
-            Some(Ok(value)) => Self::At(value),
-            Some(Err(_)) => Self::Unknown,
-        }
-    }
-
-    pub(super) fn number(self) -> Option<f64> {
-        match self {
-            Self::At(value) => Some(value),
-            Self::Open | Self::Unknown => None,
-        }
-    }
+/// The limit that `operand` stands for now.
+pub(super) fn resolve(operand: Option<&Operand>, captured: &Captured) -> Limit {
+    operand.map(|operand| operand.value(captured)).transpose()
 }
 
 /// Passed if `low <= value <= high`, and while the value is outside by no more than its uncertainty: only what is
@@ -37,24 +18,17 @@ impl Bound {
 pub(super) fn judge(
     value: Option<f64>,
     uncertainty: Option<f64>,
-    low: Bound,
-    high: Bound,
+    low: Limit,
+    high: Limit,
 ) -> Verdict {
-    let Some(value) = value.filter(|v| v.is_finite()) else {
+    let usable = |limit: Limit| limit.ok().filter(|limit| limit.is_none_or(f64::is_finite));
+    let value = value.filter(|value| value.is_finite());
+    let (Some(value), Some(low), Some(high)) = (value, usable(low), usable(high)) else {
         return Verdict::Error;
     };
-    let unusable = |bound| match bound {
-        Bound::Open => false,
-        Bound::At(limit) => !f64::is_finite(limit),
-        Bound::Unknown => true,
-    };
-    if unusable(low) || unusable(high) {
-        return Verdict::Error;
-    }
     let off = uncertainty.unwrap_or(0.0);
-    let low_holds = low.number().is_none_or(|low| value + off >= low);
-    let high_holds = high.number().is_none_or(|high| value - off <= high);
-    if low_holds && high_holds {
+    let low_holds = low.is_none_or(|low| value + off >= low);
+    if low_holds && high.is_none_or(|high| value - off <= high) {
         Verdict::Passed
     } else {
         Verdict::Failed
@@ -68,7 +42,8 @@ mod tests {
 
     #[test]
     fn each_kind_of_limit_against_each_kind_of_value() {
-        use Bound::{At, Open, Unknown};
+        let at = |limit| Ok(Some(limit));
+        let (open, unknown) = (Ok(None), Err(MissingData::Measurement));
         let values = [
             Some(9.0),
             Some(10.0),
@@ -81,15 +56,15 @@ mod tests {
         ];
         let (p, f, e) = (Passed, Failed, Error);
         let table = [
-            ("none", Open, Open, [p, p, p, p, p, e, e, e]),
-            ("low", At(10.0), Open, [f, p, p, p, p, e, e, e]),
-            ("high", Open, At(20.0), [p, p, p, p, f, e, e, e]),
-            ("both", At(10.0), At(20.0), [f, p, p, p, f, e, e, e]),
-            ("crossed", At(20.0), At(10.0), [f, f, f, f, f, e, e, e]),
-            ("low NaN", At(f64::NAN), Open, [e; 8]),
-            ("high NaN", Open, At(f64::NAN), [e; 8]),
-            ("low missing", Unknown, At(20.0), [e; 8]),
-            ("high missing", At(10.0), Unknown, [e; 8]),
+            ("none", open, open, [p, p, p, p, p, e, e, e]),
+            ("low", at(10.0), open, [f, p, p, p, p, e, e, e]),
+            ("high", open, at(20.0), [p, p, p, p, f, e, e, e]),
+            ("both", at(10.0), at(20.0), [f, p, p, p, f, e, e, e]),
+            ("crossed", at(20.0), at(10.0), [f, f, f, f, f, e, e, e]),
+            ("low NaN", at(f64::NAN), open, [e; 8]),
+            ("high NaN", open, at(f64::NAN), [e; 8]),
+            ("low missing", unknown, at(20.0), [e; 8]),
+            ("high missing", at(10.0), unknown, [e; 8]),
         ];
         for (name, low, high, expected) in table {
             for (value, expected) in values.into_iter().zip(expected) {
@@ -100,7 +75,7 @@ mod tests {
 
     #[test]
     fn a_value_fails_only_outside_its_uncertainty() {
-        let (low, high) = (Bound::At(10.0), Bound::At(20.0));
+        let (low, high) = (Ok(Some(10.0)), Ok(Some(20.0)));
         for (value, expected) in [
             (7.9, Failed),
             (8.0, Passed),
@@ -124,9 +99,10 @@ mod tests {
             name: "v".into(),
             offset: -2.0,
         };
-        let resolved = Bound::resolve(Some(&limit), &[None, Some(12.0)]);
-        assert_eq!(resolved, Bound::At(10.0));
-        assert_eq!(Bound::resolve(Some(&limit), &[None, None]), Bound::Unknown);
-        assert_eq!(Bound::resolve(None, &[]), Bound::Open);
+        let captured = [None, Some(12.0)];
+        assert_eq!(resolve(Some(&limit), &captured), Ok(Some(10.0)));
+        let missing = Err(MissingData::Measurement);
+        assert_eq!(resolve(Some(&limit), &[None, None]), missing);
+        assert_eq!(resolve(None, &[]), Ok(None));
     }
 }

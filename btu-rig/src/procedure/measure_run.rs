@@ -11,7 +11,7 @@ use super::UnitTime;
 use super::Verdict;
 use super::condition::{Answer, Captured, MissingData};
 use super::finding::{Finding, LimitMissed, WhyNoValue};
-use super::limit::{Bound, judge};
+use super::limit::{judge, resolve};
 use super::plan::{Condition, Measure, TimeFrom, What};
 use super::report::Measurement;
 use super::scan::Scan;
@@ -45,7 +45,7 @@ impl Edge {
     }
 }
 
-/// When a measured time began, by the bench and by the unit.
+/// When a measured time began, by the bench's clock and by the unit's.
 #[derive(Clone, Copy, Debug)]
 struct Start {
     at: Instant,
@@ -58,7 +58,7 @@ pub(super) struct MeasurementRun {
     to: Edge,
     /// When the time measured began.
     start: Option<Start>,
-    /// First and latest value of a change, and what its counter has lost by beginning again at 0.
+    /// First and latest value of the signal whose change is measured, and what its counter lost by starting again at 0.
     first: Option<f64>,
     latest: Option<f64>,
     wrapped: f64,
@@ -69,7 +69,7 @@ pub(super) struct MeasurementRun {
     left_out: bool,
     missing_data: Option<MissingData>,
     done: bool,
-    /// The step need not wait for it any longer.
+    /// The step need not wait for this measurement any longer.
     late: bool,
 }
 
@@ -114,7 +114,7 @@ impl MeasurementRun {
         self.late = actions_end.is_some_and(|end| scan.now.since(end) >= measure.within);
     }
 
-    /// Whether the step must go on for it.
+    /// Whether the step must go on for this measurement.
     pub(super) fn is_open(&self, measure: &Measure) -> bool {
         measure.is_awaited() && !self.done && !self.late
     }
@@ -129,24 +129,32 @@ impl MeasurementRun {
         self.left_out = true;
     }
 
-    /// Ends the measurement with the step's last scan and judges it.
+    /// Ends the measurement with the step's last scan and judges it; a step that was broken off has no value.
     pub(super) fn finish(
         mut self,
         measure: &Measure,
         scan: Scan<'_>,
+        broken_off: bool,
     ) -> (Measurement, Option<Finding>) {
-        if self.left_out {
-            let measurement = Measurement {
+        let without_value = || measured(measure, None, None, scan.captured);
+        let measurement = match self.item {
+            _ if broken_off => without_value(),
+            _ if self.left_out => Measurement {
                 verdict: Verdict::Skipped,
-                ..measured(measure, None, None, scan.captured)
-            };
-            return (measurement, None);
-        }
-        if let Some(item) = self.item {
-            let measurement = of_item(measure, &item);
-            let found = self.found(measure, &measurement);
-            return (measurement, found);
-        }
+                ..without_value()
+            },
+            Some(item) => of_item(measure, &item),
+            None => {
+                self.take_last(measure, scan);
+                measured(measure, self.value, self.uncertainty, scan.captured)
+            }
+        };
+        let found = self.found(measure, &measurement);
+        (measurement, found)
+    }
+
+    /// Takes the value of a measurement that ends with the step's last scan.
+    fn take_last(&mut self, measure: &Measure, scan: Scan<'_>) {
         match measure.what {
             What::Value(signal) => self.value = self.known(signal, scan),
             What::Change(signal) => {
@@ -158,20 +166,6 @@ impl MeasurementRun {
             What::Maximum(_) | What::Minimum(_) if self.missing_data.is_some() => self.value = None,
             _ => {}
         }
-        let measurement = measured(measure, self.value, self.uncertainty, scan.captured);
-        let found = self.found(measure, &measurement);
-        (measurement, found)
-    }
-
-    /// Ends the measurement without a value.
-    pub(super) fn without_value(
-        self,
-        measure: &Measure,
-        scan: Scan<'_>,
-    ) -> (Measurement, Option<Finding>) {
-        let measurement = measured(measure, None, None, scan.captured);
-        let found = self.found(measure, &measurement);
-        (measurement, found)
     }
 
     fn time(
@@ -259,7 +253,7 @@ impl MeasurementRun {
     fn found(&self, measure: &Measure, measured: &Measurement) -> Option<Finding> {
         let measurement = measure.name.clone();
         Some(match (measured.verdict, measured.value) {
-            (Verdict::Passed, _) => return None,
+            (Verdict::Passed | Verdict::Skipped, _) => return None,
             (Verdict::Failed, Some(value)) => Finding::LimitMissed(LimitMissed {
                 measurement,
                 value,
@@ -287,7 +281,7 @@ impl MeasurementRun {
 /// An item of the self-test, judged by the unit and by its limits.
 fn of_item(measure: &Measure, item: &SelfTestItem) -> Measurement {
     let [value, low, high] = [item.value, item.low, item.high].map(f64::from);
-    let verdict = match judge(Some(value), None, Bound::At(low), Bound::At(high)) {
+    let verdict = match judge(Some(value), None, Ok(Some(low)), Ok(Some(high))) {
         Verdict::Passed if item.passed != 1 => Verdict::Failed,
         verdict => verdict,
     };
@@ -310,14 +304,14 @@ fn measured(
     uncertainty: Option<f64>,
     captured: &Captured,
 ) -> Measurement {
-    let low = Bound::resolve(measure.low.as_ref(), captured);
-    let high = Bound::resolve(measure.high.as_ref(), captured);
+    let low = resolve(measure.low.as_ref(), captured);
+    let high = resolve(measure.high.as_ref(), captured);
     Measurement {
         name: measure.name.clone(),
         value,
         unit: measure.unit(),
-        low: low.number(),
-        high: high.number(),
+        low: low.ok().flatten(),
+        high: high.ok().flatten(),
         uncertainty: uncertainty.filter(|_| value.is_some()),
         limit_source: measure.origin.text(),
         verdict: judge(value, uncertainty, low, high),

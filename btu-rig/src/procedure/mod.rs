@@ -11,7 +11,6 @@
 mod action_run;
 mod condition;
 pub mod describe;
-mod event_set;
 pub mod event_text;
 mod evidence;
 mod expectation_run;

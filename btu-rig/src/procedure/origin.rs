@@ -32,20 +32,20 @@ impl Origin {
         }
     }
 
-    /// Adds the origin of another number, of which this one is made, too.
+    /// Adds the origin of another number from which this number was computed, too.
     pub(super) fn join(&mut self, other: &Self) {
         self.sources.extend(other.sources.iter().cloned());
         self.lacks |= other.lacks;
     }
 
-    /// Takes `sources` for what has none so far.
+    /// Gives `sources` to the numbers that have no source so far.
     pub(super) fn fill(&mut self, sources: &[String]) {
         if self.lacks && !sources.is_empty() {
             self.give(sources);
         }
     }
 
-    /// Takes `sources`, whatever it has.
+    /// Adds `sources`; no number is without a source then.
     pub(super) fn give(&mut self, sources: &[String]) {
         self.sources.extend(sources.iter().cloned());
         self.lacks = false;
@@ -63,7 +63,7 @@ impl Origin {
     }
 }
 
-/// Between the sources of one limit, which have none of it.
+/// Text between the sources of one limit; no source contains this text.
 pub const SEPARATOR: &str = "; ";
 
 /// Kind of a source, by its first word.

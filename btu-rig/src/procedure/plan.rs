@@ -80,11 +80,11 @@ pub struct Step {
     pub on_fail: OnFail,
     /// The step begins in the state that the step before left, and cannot be run without that step.
     pub continues: bool,
-    /// When it is ended as an error.
+    /// Time after which the step is ended as an error.
     pub time_limit: Duration,
     /// Longest time one repetition can take.
     pub worst_case: Duration,
-    /// Part to suspect when it fails: its own, else the procedure's.
+    /// Part to suspect when the step fails: the step's own, else the procedure's.
     pub suspect: Option<LruId>,
     /// A remark for the technician.
     pub note: Option<String>,
@@ -231,6 +231,7 @@ pub struct Measure {
 impl What {
     /// Calls `f` with each signal that is read.
     pub fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
+        self.signal().into_iter().for_each(&mut *f);
         match self {
             Self::Time { from, to } => {
                 if let TimeFrom::Condition(condition) = from {
@@ -238,15 +239,20 @@ impl What {
                 }
                 to.for_each_signal(f);
             }
-            Self::At { signal, when } => {
-                f(*signal);
-                when.for_each_signal(f);
-            }
+            Self::At { when, .. } => when.for_each_signal(f),
+            _ => {}
+        }
+    }
+
+    /// The signal whose value is measured; `None` for a time and for an item of the self-test.
+    pub fn signal(&self) -> Option<Signal> {
+        match self {
             Self::Value(signal)
+            | Self::At { signal, .. }
             | Self::Maximum(signal)
             | Self::Minimum(signal)
-            | Self::Change(signal) => f(*signal),
-            Self::SelfTest { .. } => {}
+            | Self::Change(signal) => Some(*signal),
+            Self::Time { .. } | Self::SelfTest { .. } => None,
         }
     }
 }
@@ -266,13 +272,8 @@ impl Measure {
     /// Unit of its value; that of a self-test's item comes with the result.
     pub fn unit(&self) -> &'static str {
         match &self.what {
-            What::SelfTest { .. } => "",
             What::Time { .. } => "ms",
-            What::Value(signal)
-            | What::At { signal, .. }
-            | What::Maximum(signal)
-            | What::Minimum(signal)
-            | What::Change(signal) => signal.definition().unit,
+            what => what.signal().map_or("", |signal| signal.definition().unit),
         }
     }
 
@@ -302,6 +303,11 @@ impl Action {
             Self::OnTrain(action) => (action, !with_harness),
             action => (action, true),
         }
+    }
+
+    /// The action asks the operator something, wherever the action is done.
+    pub(super) fn asks(&self) -> bool {
+        matches!(self.where_done(true).0, Self::Prompt { .. })
     }
 
     /// Calls `f` with each signal it looks at.
@@ -375,12 +381,7 @@ impl Procedure {
     pub fn asks(&self) -> bool {
         let steps = self.steps.iter().flat_map(|step| &step.actions);
         let mut actions = self.setup.iter().chain(&self.cleanup).chain(steps);
-        actions.any(|action| match action {
-            Action::OnBench(action) | Action::OnTrain(action) => {
-                matches!(**action, Action::Prompt { .. })
-            }
-            action => matches!(action, Action::Prompt { .. }),
-        })
+        actions.any(Action::asks)
     }
 
     /// Calls `f` with each signal that set-up or a step looks at.

@@ -3,8 +3,8 @@
 use protocol::Instant;
 use protocol::signal::Sample;
 
-use super::UnitTime;
 use super::condition::Captured;
+use super::{Evidence, UnitTime};
 
 /// What one scan gives to everything that watches.
 #[derive(Clone, Copy)]
@@ -14,4 +14,20 @@ pub(super) struct Scan<'a> {
     pub captured: &'a Captured,
     /// Clock by which reactions of the unit are timed; `None` = `now`.
     pub unit_time: Option<UnitTime>,
+}
+
+impl<'a> Scan<'a> {
+    pub(super) fn new(
+        now: Instant,
+        sample: &'a Sample,
+        captured: &'a Captured,
+        evidence: &Evidence,
+    ) -> Self {
+        Self {
+            now,
+            sample,
+            captured,
+            unit_time: evidence.unit_time,
+        }
+    }
 }

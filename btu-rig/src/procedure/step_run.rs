@@ -19,16 +19,16 @@ use super::{Driver, UnitEvent, Verdict};
 
 /// Further behind than this, a bench fails what a unit does in time: limits are tens of milliseconds.
 const TOO_LATE: Duration = CYCLE;
-/// After a request that was refused, what the unit says about it may still be on its way for so long.
+/// Time after a refused request for which the frame with the unit's reason may still be on its way.
 const SAYS_WHY_WITHIN: Duration = Duration::from_ms(150);
-/// And its log, for so long.
+/// Time after a refused request for which the log entry with the unit's reason may still be on its way.
 const LOGS_WHY_WITHIN: Duration = Duration::from_ms(2_000);
 /// A step whose unit is silent at its end waits no longer for the unit; a link is lost before.
 const SPEAKS_WITHIN: Duration = Duration::from_ms(10_000);
 /// A step waits no longer for the unit's log; the reader of the log gives up before.
 const LOG_WITHIN: Duration = Duration::from_ms(60_000);
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct StepRun {
     pub(super) started: Instant,
     actions: ActionRun,
@@ -78,23 +78,9 @@ impl StepRun {
     pub(super) fn new(step: &Step, now: Instant) -> Self {
         Self {
             started: now,
-            actions: ActionRun::default(),
-            actions_done: None,
             expectations: vec![ExpectationRun::default(); step.expectations.len()],
             measurements: vec![MeasurementRun::default(); step.measures.len()],
-            problems: Vec::new(),
-            logged: Vec::new(),
-            named_part: None,
-            given_up: false,
-            refused_at: None,
-            restarted: false,
-            broken_off: false,
-            behind: Duration::ZERO,
-            log: LogState::Read,
-            awaits_log: None,
-            silent_at: None,
-            awaits_unit: None,
-            lost_or_damaged: None,
+            ..Self::default()
         }
     }
 
@@ -266,8 +252,8 @@ impl StepRun {
             return self.is_told_why(scan.now);
         }
         if self.is_complete(step, scan.now) {
-            for (run, expectation) in self.expectations.iter_mut().zip(&step.expectations) {
-                run.explain(expectation, driver);
+            for run in &mut self.expectations {
+                run.explain(driver);
             }
             return !self.waits_for_log(scan.now) && !self.waits_for_unit(scan.now);
         }
@@ -318,10 +304,7 @@ impl StepRun {
             .into_iter()
             .zip(&step.measures)
         {
-            let (measurement, found) = match self.broken_off {
-                true => run.without_value(measure, scan),
-                false => run.finish(measure, scan),
-            };
+            let (measurement, found) = run.finish(measure, scan, self.broken_off);
             match measurement.verdict {
                 Verdict::Failed => {
                     if let What::SelfTest { bit } = measure.what {

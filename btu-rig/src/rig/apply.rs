@@ -2,13 +2,13 @@
 
 use protocol::Instant;
 
-use crate::procedure::{Evidence, Refusal};
+use crate::procedure::Refusal;
 use crate::stimulus::{CarFailure, CutOut, MAX_GRADIENT_PERMILLE, Stimulus, TachoCondition};
 use crate::train::TrainData;
 
 use super::Rig;
 use super::session::{Request, test_signals};
-use super::wayside::{Track, antenna_signal};
+use super::wayside::Track;
 use crate::stimulus::ranges::{U16_MAX, in_range, positive};
 
 /// Fastest wheel, km/h: the catalogue's range.
@@ -42,25 +42,14 @@ impl Rig {
             self.rest_quiescent();
         }
         self.quiescent = false;
-        self.tester.exchange.forget_failure();
+        self.tester.exchange.failure = None;
         match *stimulus {
-            Stimulus::Code {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            } => {
-                self.set_code(carrier_hz, rate_hz, level_mv)?;
+            Stimulus::Code(signal) => {
+                self.antenna.set(signal.in_antenna()?);
                 self.codes_along = false;
             }
-            Stimulus::Crosstalk {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            } => {
-                let (carrier_hz, rate_hz, level_mv) =
-                    antenna_signal(carrier_hz, rate_hz, level_mv)?;
-                self.antenna
-                    .set_second(self.now, carrier_hz, rate_hz, level_mv);
+            Stimulus::Crosstalk(signal) => {
+                self.antenna.set_second(self.now, signal.in_antenna()?);
             }
             Stimulus::CodeDrift {
                 rate_hz_per_s,
@@ -202,11 +191,7 @@ impl Rig {
                 self.tester.set_silent(now, on);
                 return Ok(());
             }
-            Stimulus::PtuCode {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            } => test_signals::code(session, carrier_hz, rate_hz, level_mv)?,
+            Stimulus::PtuCode(signal) => test_signals::code(session, signal)?,
             Stimulus::PtuSpeed {
                 channels,
                 backward,
@@ -231,12 +216,6 @@ impl Rig {
     /// What the unit refused or did not answer, until the next stimulus.
     pub fn settled(&self) -> Result<bool, Refusal> {
         Ok(self.tester.settled()? && (!self.awaits_motion || self.motion_settled()))
-    }
-
-    fn set_code(&mut self, carrier: f64, rate: f64, level: f64) -> Result<(), Refusal> {
-        let (carrier_hz, rate_hz, level_mv) = antenna_signal(carrier, rate, level)?;
-        self.antenna.set(carrier_hz, rate_hz, level_mv);
-        Ok(())
     }
 
     fn set_tacho(&mut self, channel: u8, condition: TachoCondition) -> Result<(), Refusal> {
@@ -352,27 +331,5 @@ impl Rig {
         self.markers.lay(section, position_m);
         self.track = Some(Track::new(section.clone(), position_m));
         Ok(())
-    }
-}
-
-/// The trait the procedure runner drives; the inherent methods above are its whole content.
-impl crate::procedure::Driver for Rig {
-    fn apply(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
-        Self::apply(self, now, stimulus)
-    }
-    fn settled(&mut self) -> Result<bool, Refusal> {
-        Self::settled(self)
-    }
-    fn make_safe(&mut self, now: Instant) {
-        Self::make_safe(self, now);
-    }
-    fn safe(&self) -> bool {
-        Self::safe(self)
-    }
-    fn has_harness(&self) -> bool {
-        self.harness.is_there()
-    }
-    fn evidence(&self) -> Evidence {
-        Self::evidence(self)
     }
 }

@@ -14,6 +14,11 @@ impl Rig {
         self.record();
     }
 
+    /// Whether the bench harness is there, as far as that is known.
+    pub(crate) fn has_harness(&self) -> bool {
+        self.harness.is_there()
+    }
+
     /// How the unit is reached, once that is known.
     pub fn connection(&self) -> Option<Connection> {
         self.harness.found.map(|harness| match harness {

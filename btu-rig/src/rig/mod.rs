@@ -39,7 +39,7 @@ use crate::conditions::Conditions;
 use crate::procedure::UnitEvent;
 use crate::stimulus::WaysideCondition;
 use crate::tcms::Tcms;
-use crate::train::{EquipmentFaults, Train, TrainData, TrainInputs, TrainState};
+use crate::train::{CarSet, EquipmentFaults, Train, TrainData, TrainInputs, TrainState};
 use crate::waveform::ChannelConfig;
 
 pub use crate::procedure::link_trouble::{InstrumentFault, LinkFailure, LinkTrouble, PortFailure};
@@ -50,9 +50,7 @@ pub use tcms::PAIR_DEMANDS;
 pub use train_side::{Misplaced, TrueMotion, check_places};
 
 use link::{HarnessWatch, LatestSample, LineWatch, LinkWatch};
-use rolling::weight_shares;
 use session::{IdentityCheck, Subscription, Tester};
-use tcms::{PairCars, pair_cars};
 use train_side::{
     CabDesk, Coils, DoorGear, InCoils, Injected, SpeedHistory, Tacho, TcmsPort, TrainFaults,
     TrainSeen, Wheel, Wires,
@@ -73,7 +71,7 @@ pub struct Rig {
     antenna: Antenna,
     /// The antenna signal follows the codes of the section laid along the way.
     codes_along: bool,
-    /// Place in the code table of the one that was put in last that way.
+    /// Place in the code table of the code that was put into the antenna last that way.
     code_put_in: Option<usize>,
     wheel: Wheel,
     tachos: [Tacho; 2],
@@ -98,26 +96,27 @@ pub struct Rig {
     /// What TCMS last sent to the train.
     train_orders: TrainInputs,
     tcms_port: TcmsPort,
-    pair_cars: PairCars,
+    /// Motor cars and trailers whose demands make up each signal of [`PAIR_DEMANDS`].
+    pair_cars: [(CarSet, CarSet); 4],
     /// Events of TCMS that were not taken yet, and how many there were.
     tcms_events: Vec<UnitEvent>,
     tcms_logged: u32,
-    /// Number of them that were not taken in time.
+    /// Number of TCMS's events that were not taken in time.
     tcms_dropped: u64,
     injected: Injected,
     faults: TrainFaults,
-    /// What a procedure makes wrong with the train's equipment.
+    /// Faults of the train's equipment that a procedure makes.
     made: EquipmentFaults,
     /// Outputs of the bench on their way to the unit.
     wires: Wires,
     desk: CabDesk,
     door_gear: DoorGear,
     tester: Tester,
-    /// Slowing down to a standstill, after which the rest is made quiescent.
+    /// The rig slows the wheels down to a standstill, and then makes everything else quiescent.
     making_safe: bool,
-    /// Made safe, and nothing was asked of the bench since.
+    /// The rig was made safe, and nothing was asked of the bench since.
     quiescent: bool,
-    /// What was begun last and takes its time is a motion.
+    /// The last thing begun that takes its time is a motion.
     awaits_motion: bool,
     braking: bool,
     link: Link,
@@ -160,12 +159,12 @@ impl Rig {
             wheel: Wheel::default(),
             tachos,
             train: Train::new(&train_data, &conditions),
-            cars: weight_shares(&train_data, 0.0),
+            cars: train_data.weight_shares(0.0),
             cars_load_kg: 0.0,
             tcms: Tcms::new(&train_data),
             train_orders: TrainInputs::default(),
             tcms_port: TcmsPort::default(),
-            pair_cars: pair_cars(&train_data),
+            pair_cars: train_data.first_pairs(),
             tcms_events: Vec::new(),
             tcms_logged: 0,
             tcms_dropped: 0,
@@ -326,7 +325,7 @@ impl Rig {
 
     /// What the unit logged before it was first heard is not read.
     pub fn leave_log_before_contact(&mut self) {
-        self.tester.leave_log_before_contact();
+        self.tester.leaves_old = true;
     }
 
     /// Tells the unit the time, now and after each restart.

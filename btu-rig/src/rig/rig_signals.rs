@@ -3,12 +3,13 @@
 use protocol::signal::Signal;
 
 use super::Rig;
-use crate::stimulus::{TachoCondition, WaysideCondition};
+use crate::stimulus::TachoCondition;
 
 impl Rig {
-    /// Sets them in the latest sample, as they are sent in this scan. Without a harness nothing is.
+    /// Sets the signals that the rig makes in the latest sample, as it sends them in this scan. Without a harness it sends
+    /// none.
     pub(super) fn record(&mut self) {
-        let refusal = f64::from(self.tester.arm_refusal().code());
+        let refusal = f64::from(self.tester.exchange.refusal.code());
         self.latest.sample.set(Signal::ArmRefusal, refusal);
         self.identity.record(&mut self.latest.sample);
         if !self.harness.is_there() {
@@ -32,7 +33,7 @@ impl Rig {
             (Signal::Tacho1, condition_index(self.tachos[0].condition())),
             (Signal::Tacho2, condition_index(self.tachos[1].condition())),
             (Signal::MarkerCoil, f64::from(self.markers.last)),
-            (Signal::Wayside, wayside_index(self.wayside.condition)),
+            (Signal::Wayside, f64::from(self.wayside.condition as u8)),
             (Signal::WaysideStation, f64::from(data.station)),
             (Signal::WaysideLoop, f64::from(data.loop_id)),
             (Signal::WaysideDoorSide, f64::from(data.door_side.code())),
@@ -41,7 +42,7 @@ impl Rig {
                 Signal::WaysideOrder,
                 f64::from(self.wayside.orders.order().code()),
             ),
-            (Signal::Departure, f64::from(u8::from(data.departure))),
+            (Signal::Departure, f64::from(data.departure)),
             (Signal::ModeSwitch, f64::from(self.desk.mode_switch.code())),
             (Signal::Controller, f64::from(self.desk.lever.wire())),
             (Signal::TwcAnswers, f64::from(self.wayside.answers())),
@@ -70,14 +71,5 @@ fn condition_index(condition: TachoCondition) -> f64 {
         TachoCondition::Noisy { .. } => 2.0,
         TachoCondition::Scaled { .. } => 3.0,
         TachoCondition::Reversed => 4.0,
-    }
-}
-
-/// Place of a wayside condition among the catalogue's labels.
-fn wayside_index(condition: WaysideCondition) -> f64 {
-    match condition {
-        WaysideCondition::Silent => 0.0,
-        WaysideCondition::Good => 1.0,
-        WaysideCondition::Corrupt => 2.0,
     }
 }

@@ -7,7 +7,6 @@ use crate::tcms::Tcms;
 use crate::train::{Train, TrainData, TrainInputs, TrainState};
 
 use super::Rig;
-use super::tcms::pair_cars;
 use super::train_side::TrueMotion;
 use crate::stimulus::DoorState;
 
@@ -21,10 +20,10 @@ impl Rig {
         train.place(self.train.velocity_mps());
         train.set_faults(self.faults.equipment);
         self.train = train;
-        self.cars = weight_shares(&data, self.cars_load_kg);
+        self.cars = data.weight_shares(self.cars_load_kg);
         self.tcms = Tcms::new(&data);
         self.train_orders = TrainInputs::default();
-        self.pair_cars = pair_cars(&data);
+        self.pair_cars = data.first_pairs();
         self.train_data = data;
     }
 
@@ -84,8 +83,8 @@ impl Rig {
         let inputs = self.on_track(orders);
         if self.train_driven {
             let dt = TRAIN_STEP.as_secs();
-            // Written out: each state is then made where it stays, which is worth a twentieth of a
-            // whole run.
+            // Two calls instead of a loop: the compiler then builds each state in its place, which takes a twentieth off the time
+            // of a whole run.
             let states = [self.train.step(dt, &inputs), self.train.step(dt, &inputs)];
             self.wheel.follow(&states);
             self.train_state = states[1];
@@ -102,7 +101,7 @@ impl Rig {
     fn on_track(&mut self, mut inputs: TrainInputs) -> TrainInputs {
         if inputs.load_kg != self.cars_load_kg {
             self.cars_load_kg = inputs.load_kg;
-            self.cars = weight_shares(&self.train_data, inputs.load_kg);
+            self.cars = self.train_data.weight_shares(inputs.load_kg);
         }
         if let Some(track) = self.track.as_ref().filter(|_| self.train_driven) {
             let head_m = self.wheel.motion.position_m;
@@ -116,13 +115,4 @@ impl Rig {
         }
         inputs
     }
-}
-
-/// Cars of a train from the head, length in m and share of its weight.
-pub(super) fn weight_shares(train: &TrainData, load_kg: f64) -> Vec<(f64, f64)> {
-    let cars = train.cars(load_kg);
-    let weight_kg: f64 = cars.iter().map(|car| car.1).sum();
-    cars.into_iter()
-        .map(|(length_m, kg)| (length_m, kg / weight_kg))
-        .collect()
 }

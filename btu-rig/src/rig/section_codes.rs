@@ -4,6 +4,7 @@ use protocol::config::{SpeedCode, find_code};
 use protocol::line::Section;
 
 use crate::procedure::Refusal;
+use crate::stimulus::CodeSignal;
 
 use super::Rig;
 
@@ -51,8 +52,8 @@ impl Rig {
         if place != self.code_put_in
             && let Some(code) = place.map(|at| &self.codes[at])
         {
-            self.antenna
-                .set(code.carrier_hz, code.rate_hz, self.level_mv);
+            let signal = CodeSignal::new(code.carrier_hz, code.rate_hz, self.level_mv);
+            self.antenna.set(signal);
             self.code_put_in = place;
         }
     }

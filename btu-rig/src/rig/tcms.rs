@@ -7,7 +7,7 @@ use protocol::{CYCLE, Duration, SCAN, Speed};
 use crate::procedure::{EventSource, UnitEvent};
 use crate::stimulus::TrainSwitch;
 use crate::tcms::{CabOrder, TcmsEvent, TcmsInputs, TcmsView};
-use crate::train::{CarSet, TrainData, TrainInputs};
+use crate::train::TrainInputs;
 
 use super::Rig;
 use super::session::MAX_EVENTS;
@@ -22,20 +22,6 @@ pub const PAIR_DEMANDS: [[Signal; 3]; 4] = [
     [Signal::Motor3, Signal::AirTrailer3, Signal::AirMotor3],
     [Signal::Motor4, Signal::AirTrailer4, Signal::AirMotor4],
 ];
-
-/// Cars whose demands make up each signal of [`PAIR_DEMANDS`].
-pub(super) type PairCars = [(CarSet, CarSet); 4];
-
-/// Motor cars and trailers of the first MT pairs.
-pub(super) fn pair_cars(train: &TrainData) -> PairCars {
-    let mut pairs = PairCars::default();
-    if let TrainData::Cars(data) = train {
-        for (at, pair) in pairs.iter_mut().enumerate() {
-            *pair = data.pair_cars(at + 1);
-        }
-    }
-    pairs
-}
 
 impl Rig {
     /// Orders to the train in this scan; TCMS is stepped when its cycle is due.

@@ -83,7 +83,7 @@ impl Rig {
 
     /// Results of the last requested self-test, item by item, as far as they came.
     pub fn self_test_items(&self) -> &[SelfTestItem] {
-        self.tester.self_test_items()
+        &self.tester.exchange.self_test
     }
 
     pub fn self_test_item(&self, item: SelfTest) -> Option<SelfTestItem> {

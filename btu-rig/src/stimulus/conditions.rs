@@ -22,7 +22,7 @@ pub enum TachoCondition {
     Reversed,
 }
 
-/// Condition of the TWC wayside.
+/// Condition of the TWC wayside, in the order of the labels of the signal `wayside`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WaysideCondition {

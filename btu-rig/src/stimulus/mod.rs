@@ -4,6 +4,7 @@
 mod conditions;
 mod orders;
 pub(crate) mod ranges;
+mod signal;
 mod station;
 mod table;
 pub(crate) mod text;
@@ -13,6 +14,7 @@ pub use conditions::{
     WaysideCondition,
 };
 pub use orders::OrderData;
+pub use signal::{CodeSignal, MAX_RATE_HZ};
 pub use station::StationData;
 pub use table::{Stimulus, Way};
 pub use text::number;

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::text::{direction, number, on_off, order_text, side, station_text, tacho_text};
 use super::{
-    CarFailure, CutOut, DoorLine, DoorState, OrderData, StationData, TachoCondition, TcmsCondition,
-    TrainSwitch, WaysideCondition,
+    CarFailure, CodeSignal, CutOut, DoorLine, DoorState, OrderData, StationData, TachoCondition,
+    TcmsCondition, TrainSwitch, WaysideCondition,
 };
 use crate::lever::Lever;
 use crate::stored::{mode_switch, mps};
@@ -75,26 +75,13 @@ macro_rules! stimuli {
 }
 
 stimuli! {
-    /// Signal in the ATP antenna; rate 0 = unmodulated.
-    Code {
-        /// Carrier, Hz.
-        carrier_hz: f64,
-        /// Code rate, Hz.
-        rate_hz: f64,
-        /// Level, mV.
-        level_mv: f64,
-    } [Harness] => format!("antenna signal {carrier_hz} Hz, code rate {rate_hz} Hz, {level_mv} mV");
+    /// Signal in the ATP antenna.
+    Code(signal: CodeSignal) [Harness] => format!("antenna signal {signal}");
     /// A second code in the ATP antenna, of a neighbouring track circuit, until the antenna is off; level 0 = none.
-    Crosstalk {
-        /// Carrier, Hz.
-        carrier_hz: f64,
-        /// Code rate, Hz.
-        rate_hz: f64,
-        /// Level, mV.
-        level_mv: f64,
-    } [Harness] => match level_mv {
+    Crosstalk(signal: CodeSignal) [Harness] => match signal.level_mv {
         0.0 => "no code of a neighbouring track".into(),
-        _ => {
+        level_mv => {
+            let CodeSignal { carrier_hz, rate_hz, .. } = signal;
             let level = number(level_mv);
             format!("code of a neighbouring track {carrier_hz} Hz, code rate {rate_hz} Hz, {level} mV")
         }
@@ -335,14 +322,7 @@ stimuli! {
         on: bool,
     } [Tester] => format!("tester silent: {}", on_off(on));
     /// Test code into the ATP test coil.
-    PtuCode {
-        /// Carrier, Hz.
-        carrier_hz: f64,
-        /// Code rate, Hz.
-        rate_hz: f64,
-        /// Level, mV.
-        level_mv: f64,
-    } [TestBoard] => format!("test code {carrier_hz} Hz, code rate {rate_hz} Hz, {level_mv} mV");
+    PtuCode(signal: CodeSignal) [TestBoard] => format!("test code {signal}");
     /// Speed signal of the TEST board.
     PtuSpeed {
         /// Bit 0 = input 1, bit 1 = input 2.

@@ -1,108 +1,87 @@
-//! Bit sets of causes and lamps, with a name for each bit as signals show it.
+//! Bit sets of causes and lamps. Signals and scripts call each bit by its name in small letters.
 
-macro_rules! causes {
-    ($(#[doc = $doc:literal])* $name:ident { $( $(#[doc = $each:literal])* $bit:ident = $at:literal $label:literal, )* }) => {
-        $(#[doc = $doc])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-        pub struct $name(u16);
+use bitflags::{Flags, bitflags};
 
-        impl $name {
-            $( $(#[doc = $each])* pub const $bit: Self = Self(1 << $at); )*
-            /// All of them with their names.
-            pub const ALL: &'static [(Self, &'static str)] = &[$( (Self::$bit, $label) ),*];
-
-            /// Puts one in if it holds.
-            pub fn set(&mut self, one: Self, on: bool) {
-                self.0 = if on { self.0 | one.0 } else { self.0 & !one.0 };
-            }
-
-            /// Whether the set has this cause.
-            pub fn contains(self, one: Self) -> bool {
-                self.0 & one.0 == one.0
-            }
-
-            /// Whether no cause holds.
-            pub fn is_empty(self) -> bool {
-                self.0 == 0
-            }
-
-            /// Number of the set in the signal.
-            pub fn bits(self) -> u16 {
-                self.0
-            }
-        }
-    };
+/// Names of the bits that are set.
+pub fn names_of<Set: Flags<Bits = u16>>(bits: u16) -> Vec<String> {
+    let set = Set::from_bits_truncate(bits);
+    set.iter_names()
+        .map(|(name, _)| name.to_lowercase())
+        .collect()
 }
 
-causes! {
+bitflags! {
     /// Reasons for cutting powering (S3, S4). Scripts can make every one on the bench but two: `not_released`
     /// takes an injected fault of a brake, `atc_silent` a unit that falls silent.
-    PowerCuts {
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct PowerCuts: u16 {
         /// Doors not proved closed.
-        DOORS = 0 "doors",
+        const DOORS = 1 << 0;
         /// No head control relay energised, or both.
-        HCR = 1 "hcr",
+        const HCR = 1 << 1;
         /// Reverser in neutral.
-        REVERSER = 2 "reverser",
+        const REVERSER = 1 << 2;
         /// Emergency brake train line de-energised.
-        EMERGENCY = 3 "emergency",
+        const EMERGENCY = 1 << 3;
         /// Full service brake by TCMS, or the controller at B7 (BCYPCUT).
-        FULL_SERVICE = 4 "full_service",
+        const FULL_SERVICE = 1 << 4;
         /// ATC's powering cut contact.
-        ATC = 5 "atc",
+        const ATC = 1 << 5;
         /// The unit's contacts are not heard.
-        ATC_SILENT = 6 "atc_silent",
+        const ATC_SILENT = 1 << 6;
         /// ATO asks for the holding brake.
-        HOLDING = 7 "holding",
+        const HOLDING = 1 << 7;
         /// Security brake.
-        SECURITY = 8 "security",
+        const SECURITY = 1 << 8;
         /// Parking brake.
-        PARKING = 9 "parking",
+        const PARKING = 1 << 9;
         /// A brake is not released.
-        NOT_RELEASED = 10 "not_released",
+        const NOT_RELEASED = 1 << 10;
         /// Main reservoir pressure low.
-        MAIN_RESERVOIR = 11 "main_reservoir",
+        const MAIN_RESERVOIR = 1 << 11;
         /// No mode, or more than one.
-        MODE = 12 "mode",
+        const MODE = 1 << 12;
         /// Driverless initialisation or turn-back.
-        TURN_BACK = 13 "turn_back",
+        const TURN_BACK = 1 << 13;
     }
 }
 
-causes! {
+bitflags! {
     /// Causes that open the emergency brake train line (S4).
-    EbSources {
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EbSources: u16 {
         /// Master controller of the active cab.
-        CONTROLLER = 0 "controller",
+        const CONTROLLER = 1 << 0;
         /// Push button in the first cab.
-        BUTTON_1 = 1 "button_1",
+        const BUTTON_1 = 1 << 1;
         /// Push button in the other cab.
-        BUTTON_2 = 2 "button_2",
+        const BUTTON_2 = 1 << 2;
         /// ATC's relay.
-        ATC = 3 "atc",
+        const ATC = 1 << 3;
         /// Pressure switch of the main reservoir.
-        MAIN_RESERVOIR = 4 "main_reservoir",
+        const MAIN_RESERVOIR = 1 << 4;
         /// No head control relay energised, or both.
-        HCR = 5 "hcr",
+        const HCR = 1 << 5;
     }
 }
 
-causes! {
+bitflags! {
     /// Lamps in the cabs (S4).
-    Lamps {
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Lamps: u16 {
         /// Emergency brake, in both cabs.
-        EMERGENCY = 0 "emergency",
+        const EMERGENCY = 1 << 0;
         /// Emergency brake cut out, in both cabs.
-        EB_CUT_OUT = 1 "eb_cut_out",
+        const EB_CUT_OUT = 1 << 1;
         /// Security brake, until it is released.
-        SECURITY = 2 "security",
+        const SECURITY = 1 << 2;
         /// Parking brake, until it is released.
-        PARKING = 3 "parking",
+        const PARKING = 1 << 3;
         /// Brakes released by force.
-        FORCED_RELEASE = 4 "forced_release",
+        const FORCED_RELEASE = 1 << 4;
         /// A brake is not released (monitor).
-        NOT_RELEASED = 5 "not_released",
+        const NOT_RELEASED = 1 << 5;
         /// A part has failed (monitor).
-        FAILURE = 6 "failure",
+        const FAILURE = 1 << 6;
     }
 }

@@ -9,20 +9,15 @@ use super::full_service_brake::BrakeOutputs;
 use super::inputs::TcmsInputs;
 use super::mode::TcmsMode;
 
-/// Findings of a scan on which the decision about powering depends.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Findings<'a> {
-    pub mode: TcmsMode,
-    /// Emergency brake train line.
-    pub line: &'a Line,
-    pub brake: &'a BrakeOutputs,
-    pub found: &'a EquipmentFailures,
-    /// ATO asks for the holding brake by message.
-    pub holding_asked: bool,
-}
-
 /// Every condition that cuts powering in this scan (S3, S4).
-pub(super) fn power_cuts(inputs: &TcmsInputs<'_>, findings: &Findings<'_>) -> PowerCuts {
+pub(super) fn power_cuts(
+    inputs: &TcmsInputs<'_>,
+    mode: TcmsMode,
+    line: &Line,
+    brake: &BrakeOutputs,
+    found: &EquipmentFailures,
+    holding_by_message: bool,
+) -> PowerCuts {
     let cab = inputs.active_cab();
     let mut cuts = PowerCuts::default();
     for (cut, holds) in [
@@ -32,22 +27,16 @@ pub(super) fn power_cuts(inputs: &TcmsInputs<'_>, findings: &Findings<'_>) -> Po
             PowerCuts::REVERSER,
             cab.is_some_and(|cab| cab.reverser == 0),
         ),
-        (PowerCuts::EMERGENCY, findings.line.applied),
-        (PowerCuts::FULL_SERVICE, findings.brake.bcypcut),
+        (PowerCuts::EMERGENCY, line.applied),
+        (PowerCuts::FULL_SERVICE, brake.bcypcut),
         (PowerCuts::ATC, inputs.contact(Outputs::POWER_CUT)),
         (PowerCuts::ATC_SILENT, inputs.contacts.is_none()),
-        (
-            PowerCuts::HOLDING,
-            inputs.holding_asked(findings.holding_asked),
-        ),
+        (PowerCuts::HOLDING, inputs.holding_asked(holding_by_message)),
         (PowerCuts::SECURITY, inputs.security_brake),
         (PowerCuts::PARKING, inputs.parking_brake),
-        (
-            PowerCuts::NOT_RELEASED,
-            !findings.found.not_released.is_empty(),
-        ),
+        (PowerCuts::NOT_RELEASED, !found.not_released.is_empty()),
         (PowerCuts::MAIN_RESERVOIR, inputs.main_reservoir_low),
-        (PowerCuts::MODE, findings.mode == TcmsMode::None),
+        (PowerCuts::MODE, mode == TcmsMode::None),
         (PowerCuts::TURN_BACK, inputs.turn_back),
     ] {
         cuts.set(cut, holds);

@@ -1,7 +1,11 @@
 //! Data of a train's TCMS, the `[tcms]` table of its file.
 
+use protocol::check_ranges;
 use protocol::config::{ConfigError, within};
 use serde::{Deserialize, Serialize};
+
+/// Longest time that may be set, s.
+const LONGEST_S: f64 = 60.0;
 
 /// Data of the train control and monitoring system.
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
@@ -58,7 +62,6 @@ impl TcmsData {
     /// # Errors
     /// The first thing that cannot be.
     pub fn check(&self) -> Result<(), ConfigError> {
-        let time = |key, value| within(key, value, 0.0, 60.0);
         for (key, notches) in [
             ("tcms.power_notches", &self.power_notches[..]),
             ("tcms.brake_notches", &self.brake_notches[..]),
@@ -81,35 +84,23 @@ impl TcmsData {
                 self.controller_v
             )));
         }
-        time("tcms.order_timeout_s", self.order_timeout_s)?;
-        within(
-            "tcms.refused_frames",
-            f64::from(self.refused_frames),
-            1.0,
-            1000.0,
-        )?;
-        time("tcms.refused_within_s", self.refused_within_s)?;
-        time("tcms.dead_man_s", self.dead_man_s)?;
-        within("tcms.holding_below_kmh", self.holding_below_kmh, 0.1, 20.0)?;
-        time("tcms.holding_after_s", self.holding_after_s)?;
-        within("tcms.holding_release", self.holding_release, 0.1, 100.0)?;
-        within(
-            "tcms.not_released_above",
-            self.not_released_above,
-            0.1,
-            100.0,
-        )?;
-        time("tcms.not_released_after_s", self.not_released_after_s)?;
-        within(
-            "tcms.not_following_above",
-            self.not_following_above,
-            0.1,
-            100.0,
-        )?;
-        time("tcms.not_following_after_s", self.not_following_after_s)?;
-        time("tcms.silent_after_s", self.silent_after_s)?;
-        within("tcms.slip_kmh", self.slip_kmh, 0.1, 50.0)?;
-        time("tcms.cab_change_s", self.cab_change_s)
+        check_ranges! { self, "tcms.";
+            order_timeout_s: 0.0, LONGEST_S;
+            refused_frames: 1.0, 1000.0;
+            refused_within_s: 0.0, LONGEST_S;
+            dead_man_s: 0.0, LONGEST_S;
+            holding_below_kmh: 0.1, 20.0;
+            holding_after_s: 0.0, LONGEST_S;
+            holding_release: 0.1, 100.0;
+            not_released_above: 0.1, 100.0;
+            not_released_after_s: 0.0, LONGEST_S;
+            not_following_above: 0.1, 100.0;
+            not_following_after_s: 0.0, LONGEST_S;
+            silent_after_s: 0.0, LONGEST_S;
+            slip_kmh: 0.1, 50.0;
+            cab_change_s: 0.0, LONGEST_S;
+        }
+        Ok(())
     }
 }
 

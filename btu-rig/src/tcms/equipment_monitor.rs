@@ -206,7 +206,7 @@ impl EquipmentMonitor {
     }
 }
 
-/// The cars something holds for. As a rule it is none, and that is found out for all at once.
+/// The cars for which `holds` is true. Mostly there is none, which one pass over all cars finds out without a branch.
 fn cars(holds: impl Fn(usize) -> bool) -> CarSet {
     let mut set = CarSet::NONE;
     if (0..MAX_CARS).fold(false, |any, car| any | holds(car)) {

@@ -69,7 +69,7 @@ pub(super) fn given(
     let brake_n = sum(&equipment.electric_n) + sum(&equipment.air_n);
     let mut share = -brake_n / sum(&effort.consist.full_service_n);
     let traction_n = sum(&equipment.traction_n);
-    // As a rule there is one or the other, and what traction there could be takes time to work out.
+    // Mostly a train either powers or brakes, and the traction that it could give takes time to compute.
     if traction_n > 0.0 {
         share += traction_n / effort.power_n(speed_mps);
     }

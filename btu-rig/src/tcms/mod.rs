@@ -35,7 +35,7 @@ mod timer;
 mod view;
 
 pub use cab_change::CabOrder;
-pub use cause_bits::{EbSources, Lamps, PowerCuts};
+pub use cause_bits::{EbSources, Lamps, PowerCuts, names_of};
 pub use consist::Consist;
 pub use controller::{ControllerInputs, FULL_BRAKE, FULL_POWER};
 pub use data::TcmsData;

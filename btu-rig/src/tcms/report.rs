@@ -35,7 +35,8 @@ pub(super) struct Report {
     regeneration: CarSet,
     /// All inverters have cut out together: the line takes nothing.
     line_takes_nothing: bool,
-    conditions: u8,
+    /// Conditions of the last scan.
+    conditions: [bool; 5],
     contradictions: u32,
     refused: BurstDetector,
     /// Whether the unit was silent, once it has been heard.
@@ -53,7 +54,7 @@ impl Report {
             found: EquipmentFailures::default(),
             regeneration: CarSet::NONE,
             line_takes_nothing: false,
-            conditions: 0,
+            conditions: [false; 5],
             contradictions: 0,
             refused: BurstDetector::new(
                 data.refused_frames,
@@ -144,11 +145,8 @@ impl Report {
             (scan.inputs.main_reservoir_low, Event::MainReservoirLow),
             (scan.dead_man, Event::DeadMan),
         ];
-        let before = std::mem::take(&mut self.conditions);
-        for (at, (holds, event)) in conditions.into_iter().enumerate() {
-            let bit = u8::from(holds) << at;
-            self.conditions |= bit;
-            if bit & !before != 0 {
+        for ((holds, event), held) in conditions.into_iter().zip(self.conditions) {
+            if holds && !held {
                 let parameter = match event {
                     Event::ControllerFailed => (scan.view.volts * 1000.0).round() as i32,
                     _ => 0,
@@ -156,6 +154,7 @@ impl Report {
                 self.note(event, parameter);
             }
         }
+        self.conditions = conditions.map(|(holds, _)| holds);
     }
 
     /// The link to the unit.

@@ -9,7 +9,7 @@ use crate::train::{CarSet, MAX_CARS, TrainData, TrainInputs};
 
 use super::atc_link::{AtcLink, AtoOrder};
 use super::cab_change::CabChange;
-use super::causes::{Findings, lamps, power_cuts};
+use super::causes::{lamps, power_cuts};
 use super::consist::Consist;
 use super::data::TcmsData;
 use super::effort::{Effort, Order};
@@ -149,16 +149,7 @@ impl Tcms {
         let powering = self.view.driving.dryinp;
         let speed_mps = feedback::speed_mps(inputs, self.effort.as_ref(), powering, &self.data);
         let holding = self.hold(&scan, speed_mps);
-        let power_cuts = power_cuts(
-            inputs,
-            &Findings {
-                mode: scan.mode,
-                line: &line,
-                brake: &brake,
-                found: &found,
-                holding_asked: order.holding,
-            },
-        );
+        let power_cuts = power_cuts(inputs, scan.mode, &line, &brake, &found, order.holding);
         let volts = cab.map_or(0.0, |cab| cab.controller.volts);
         let turned = self.turn(&scan, speed_mps);
         let power_cut = !power_cuts.is_empty() || !turned;
@@ -198,8 +189,8 @@ impl Tcms {
         self.tell(&scan, share, load_kg)
     }
 
-    /// Takes the load; what it is does not go beyond the train's. No number is a full train, which
-    /// brakes most.
+    /// Takes the load, limited to what the train can carry. Not-a-number counts as a full train, which
+    /// brakes hardest.
     fn weigh(&mut self, load_kg: f64) -> f64 {
         let load_kg = if load_kg.is_nan() {
             self.full_load_kg

@@ -43,7 +43,7 @@ impl OnDelayCars {
     pub fn update(&mut self, now: Instant, holds: CarSet, at_least: Duration) -> CarSet {
         let before = std::mem::replace(&mut self.holds, holds);
         let mut lasting = CarSet::NONE;
-        // As a rule there is none, and nothing is looked at.
+        // Mostly the condition holds for no car, and the loop is not needed.
         if holds.is_empty() {
             return lasting;
         }

@@ -1,6 +1,10 @@
-//! A set of cars.
+//! Cars of a train: a set of them, a value for each.
 
-use super::{MAX_CARS, PerCar};
+/// Cars a train may have.
+pub const MAX_CARS: usize = 12;
+
+/// A value for each car; those beyond the train's last are 0.
+pub type PerCar = [f64; MAX_CARS];
 
 /// Cars of a train by their place from 0, the first at the head.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

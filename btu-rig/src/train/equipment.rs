@@ -66,7 +66,7 @@ impl EquipmentFaults {
             CarFailure::BrakeStuck => self.brakes_stuck.set(car, on),
             CarFailure::CylinderEmpty => {
                 if let Some(lost) = self.pressure_lost.get_mut(car) {
-                    *lost = f64::from(u8::from(on));
+                    *lost = f64::from(on);
                 }
             }
         }

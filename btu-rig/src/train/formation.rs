@@ -13,7 +13,7 @@ use super::{
 /// Brake force per mass that counts as applied, m/s² [default].
 const BRAKING_MPS2: f64 = 0.02;
 
-/// Share of the emergency brake's pressure that is none.
+/// Share of the emergency brake's pressure that counts as no pressure.
 const EMPTY_SHARE: f64 = 1e-6;
 
 /// Cut-outs, and other brakes, in the last step.
@@ -44,7 +44,7 @@ pub(super) struct Formation {
     sound: bool,
     /// Pressure in each car's cylinders as force, N.
     cylinders_n: PerCar,
-    /// Meaning of the last step's inputs for reports.
+    /// Cut-outs and other brakes of the last step, for reports.
     cut_out: CutOut,
     efforts: Efforts,
     pub velocity_mps: f64,
@@ -127,7 +127,7 @@ impl Formation {
         self.emergency.open_s = 0.0;
         self.emergency.share = 0.0;
         self.cylinders_n = [0.0; MAX_CARS];
-        // What it reports is of this drive, not of the one before.
+        // Reports are about this drive, not about the one before.
         self.cut_out = CutOut::default();
         self.efforts = Efforts::default();
         self.wheels.reset();

@@ -44,7 +44,7 @@ impl FskWave {
     /// Sends bytes behind those that are not sent yet; after silence a rest comes first.
     pub fn send(&mut self, bytes: &[u8]) {
         match self.bits.len().checked_sub(REST) {
-            // The rest behind the bytes before.
+            // The rest that the earlier bytes end with comes after the new bytes instead.
             Some(left) => self.bits.truncate(left),
             None => self.bits.extend(std::iter::repeat_n(true, REST)),
         }

@@ -2,7 +2,7 @@
 
 use super::{Phase, cosine};
 
-/// Weaker than this share of its strongest level a marker is nothing.
+/// Share of its strongest level below which a marker counts as not heard.
 const NOTHING: f64 = 1e-4;
 
 /// The samples of the tone of one marker, mV.

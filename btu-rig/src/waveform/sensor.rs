@@ -24,7 +24,7 @@ pub struct SensorWave {
 #[derive(Clone, Copy, Debug, Default)]
 struct Line {
     high: bool,
-    /// Samples since it changed.
+    /// Samples since the line changed.
     since: f64,
 }
 

@@ -1,6 +1,6 @@
 //! Loading check procedures: the good ones give the plan on file, the bad ones say where and why.
 //!
-//! `UPDATE_GOLDEN=1 cargo test -p btu-rig --test procedure_loader` rewrites what is on file.
+//! `UPDATE_GOLDEN=1 cargo test -p btu-rig --test all procedure_loader` rewrites what is on file.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,8 +8,6 @@ use std::path::Path;
 use btu_rig::procedure::loader::{Loaded, Scripts, load};
 use btu_rig::train::TrainData;
 use proptest::prelude::*;
-use protocol::config::UnitConfig;
-use protocol::line::Line;
 use protocol::lru::shown;
 
 fn root() -> &'static Path {
@@ -17,9 +15,7 @@ fn root() -> &'static Path {
 }
 
 fn load_all(scripts: &Scripts) -> Loaded {
-    let read = |path: &str| std::fs::read_to_string(root().join("..").join(path)).unwrap();
-    let unit = UnitConfig::from_toml(&read("scripts/units/sg100.toml")).unwrap();
-    let line = Line::from_toml(&read("scripts/lines/line8.toml")).unwrap();
+    let (unit, line) = crate::shipped();
     load(scripts, &unit, &line, &TrainData::line6())
 }
 

@@ -1,5 +1,5 @@
 //! The standard EMU's modules (S4) against oracles that know nothing of their code: every combination of
-//! inputs. `cargo test -p btu-rig --test tcms_exhaustive -- --nocapture` shows how many.
+//! inputs. `cargo test -p btu-rig --test all tcms_exhaustive -- --nocapture` shows how many.
 
 #![allow(
     clippy::print_stdout,
@@ -167,22 +167,15 @@ fn driving_control_in_every_mode_and_command() {
                     drxaop: aop,
                     drxaob: aob,
                 });
-                let hand = match (emo, ymo, mmo, amo, dmo) {
-                    (true, false, false, false, false)
-                    | (false, true, false, false, false)
-                    | (false, false, true, false, false) => Some(true),
-                    (false, false, false, true, false) | (false, false, false, false, true) => {
-                        Some(false)
-                    }
-                    _ => None,
-                };
-                let wanted = match hand {
-                    Some(true) => value(p, b, coa, cut, hand_value),
-                    Some(false) => value(aop, aob, false, cut, ato_value),
-                    None => -1024,
+                let on = |modes: &[bool]| modes.iter().filter(|on| **on).count();
+                let by_hand_and_ato = (on(&[emo, ymo, mmo]), on(&[amo, dmo]));
+                let wanted = match by_hand_and_ato {
+                    (1, 0) => value(p, b, coa, cut, hand_value),
+                    (0, 1) => value(aop, aob, false, cut, ato_value),
+                    _ => -1024,
                 };
                 let oracle = DrivingOutputs {
-                    dryinb7: hand == Some(true) && wanted == -1024,
+                    dryinb7: by_hand_and_ato == (1, 0) && wanted == -1024,
                     dryinp: wanted > 0,
                     dryinb: wanted < 0,
                     dryincoa: wanted == 0,

@@ -1,17 +1,16 @@
 //! Figures of S3 as tests: its table derived again from masses, and effort as the train gives it.
-//! `cargo test -p btu-rig --test tcms_figures -- --nocapture` prints them beside the printed ones.
+//! `cargo test -p btu-rig --test all tcms_figures -- --nocapture` prints them beside the printed ones.
 
 #![allow(
     clippy::print_stdout,
     reason = "figures, for whoever asks with --nocapture"
 )]
 
-use btu_rig::conditions::Conditions;
-use btu_rig::tcms::{Consist, Demands, Effort, Order};
-use btu_rig::train::{CarSet, CarsData, Train, TrainData, TrainInputs, TrainState};
+use btu_rig::tcms::Consist;
+use btu_rig::train::{CarSet, CarsData};
 
-/// Full load (S3), kg.
-const FULL_KG: f64 = 160_000.0;
+use super::ride::{FULL_KG, Ride};
+
 /// Speed at which the train all but stands, km/h.
 const STAND_KMH: f64 = 0.1;
 const LOADS_KG: [f64; 3] = [0.0, 80_000.0, FULL_KG];
@@ -301,6 +300,13 @@ fn full_effort_is_the_same_empty_and_full() {
             let whole = (ride.brake_n() + ride.state.resistance_n) / inertia_kg * 3.6;
             let name = format!("B7 {load_kg:.0} kg at {kmh} km/h, km/h/s ({whole:.2})");
             near(&name, brake, 3.5, 0.03 * 3.5);
+            // Air makes up for what the electric brake does not give, and is alone in the end.
+            let electric = ride.state.electric_brake_n / ride.brake_n();
+            match kmh {
+                60.0 | 40.0 => assert!((0.7..0.95).contains(&electric), "{name}: {electric}"),
+                3.0 => assert!(electric < 0.05, "{name}: {electric}"),
+                _ => {}
+            }
         }
         let mut ride = Ride::new(0.0, load_kg, 1.0);
         ride.run_until(|ride| ride.kmh() >= 10.0);
@@ -327,107 +333,5 @@ fn emergency_and_security_brake_are_air_alone() {
             let kmh_per_s = ride.brake_n() * 3.6 / (TABLE[3].1[5] + load_kg);
             assert!(kmh_per_s > if emergency { 4.4 } else { 3.4 }, "{kmh_per_s}");
         }
-    }
-}
-
-/// A train with TCMS's sharing out of effort.
-struct Ride {
-    train: Train,
-    effort: Effort,
-    share: f64,
-    brakes_out: CarSet,
-    demands: Demands,
-    inputs: TrainInputs,
-    state: TrainState,
-}
-
-impl Ride {
-    const SCAN_S: f64 = 0.01;
-
-    fn new(kmh: f64, load_kg: f64, share: f64) -> Self {
-        let mut train = Train::new(&TrainData::line6(), &Conditions::default());
-        train.place(kmh / 3.6);
-        Self {
-            train,
-            effort: Effort::new(consist(load_kg)),
-            share,
-            brakes_out: CarSet::NONE,
-            demands: Demands::default(),
-            inputs: TrainInputs {
-                load_kg,
-                ..TrainInputs::default()
-            },
-            state: TrainState::default(),
-        }
-    }
-
-    fn scan(&mut self) {
-        let order = Order {
-            share: self.share,
-            holding: false,
-            no_inverters: self.inputs.emergency || self.inputs.security,
-            power_cut: false,
-            speed_mps: self.train.velocity_mps().abs(),
-            inverters_out: self.inputs.inverters_cut_out,
-            brakes_out: self.brakes_out,
-        };
-        self.inputs.brakes_cut_out = self.brakes_out;
-        let equipment = self.train.equipment();
-        self.demands = self.effort.step(Self::SCAN_S, &order, Some(&equipment));
-        (self.inputs.motor_n, self.inputs.air_n) = (self.demands.motor_n, self.demands.air_n);
-        for _ in 0..2 {
-            self.state = self.train.step(0.5 * Self::SCAN_S, &self.inputs);
-        }
-    }
-
-    fn run(&mut self, seconds: f64) {
-        for _ in 0..(seconds / Self::SCAN_S).round() as usize {
-            self.scan();
-        }
-    }
-
-    /// Scans until `done`; the time it took, s.
-    fn run_until(&mut self, done: impl Fn(&Self) -> bool) -> f64 {
-        for scans in 0..20_000 {
-            if done(self) {
-                return f64::from(scans) * Self::SCAN_S;
-            }
-            self.scan();
-        }
-        panic!("never: {:?}", self.state);
-    }
-
-    /// Least and most effort over demand down to a speed.
-    fn run_to(&mut self, kmh: f64) -> (f64, f64) {
-        let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
-        while self.kmh() > kmh {
-            self.scan();
-            let of_demand = self.brake_n() / self.demands.brake_n;
-            (low, high) = (low.min(of_demand), high.max(of_demand));
-        }
-        (low, high)
-    }
-
-    /// Time until effort is within 2 % of the demand for good, in the next 3 s, and the extremes of
-    /// effort over demand.
-    fn transient(&mut self) -> (f64, f64, f64) {
-        let (mut last_s, mut low, mut high) = (0.0, f64::INFINITY, 0.0_f64);
-        for scans in 1..=300 {
-            self.scan();
-            let of_demand = self.brake_n() / self.demands.brake_n;
-            if (of_demand - 1.0).abs() > 0.02 {
-                last_s = f64::from(scans) * Self::SCAN_S;
-            }
-            (low, high) = (low.min(of_demand), high.max(of_demand));
-        }
-        (last_s, low, high)
-    }
-
-    fn kmh(&self) -> f64 {
-        self.train.velocity_mps() * 3.6
-    }
-
-    fn brake_n(&self) -> f64 {
-        self.state.electric_brake_n + self.state.air_brake_n
     }
 }

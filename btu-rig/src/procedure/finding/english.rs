@@ -59,7 +59,7 @@ impl Display for Finding {
                 unit,
             }) => {
                 let off = uncertainty.map_or(String::new(), |off| format!(" ± {}", number(off)));
-                let (value, limits) = (number(*value), limits(*low, *high));
+                let (value, limits) = (number(*value), limits(low.map(number), high.map(number)));
                 let name = Part(Name(measurement), said);
                 let text = format!("{name} = {value}{off}, allowed {limits} {unit}");
                 f.write_str(text.trim_end())

@@ -30,7 +30,7 @@ fn is_once(times: &u32) -> bool {
 }
 
 impl Findings {
-    /// Each of them, in the order in which it came first.
+    /// Each finding, in the order in which it came first.
     pub fn iter(&self) -> impl Iterator<Item = &Found> {
         self.0.iter()
     }
@@ -50,17 +50,17 @@ impl Findings {
         serde_json::from_str(text).ok()
     }
 
-    /// One of them is that only a bench with its harness can do this.
+    /// One of the findings says that nothing could be run without the harness of a bench.
     pub fn need_harness(&self) -> bool {
         self.iter().any(|found| found.finding.needs_harness())
     }
 
-    /// One of them is of the bench, and tells nothing of the unit.
+    /// One of the findings is about the bench, and tells nothing of the unit.
     pub fn of_the_bench(&self) -> bool {
         self.iter().any(|found| found.finding.is_of_the_bench())
     }
 
-    /// Adds one that came so often.
+    /// Adds a finding that came `times` times.
     pub fn add(&mut self, finding: Finding, times: u32) {
         if let Some(known) = self.0.iter_mut().find(|found| found.finding == finding) {
             known.times += times;

@@ -1,26 +1,11 @@
 //! Quantities of configuration files: `detect_ms = 400` is the time `detect`, and knows where it comes from.
 
 use super::item::Item;
-use super::quantity::{Dimension, Quantity};
+use super::quantity::{Dimension, Quantity, UNITS};
 use crate::procedure::origin::Origin;
 
-/// Ends of keys with what they are amounts of, and the factor to the unit of that; of two that fit the first counts.
-const UNITS: [(&str, Dimension, f64); 11] = [
-    ("_kmh_per_s", Dimension::Acceleration, 1.0 / 3.6),
-    ("_mps2", Dimension::Acceleration, 1.0),
-    ("_kmh", Dimension::Speed, 1.0),
-    ("_mps", Dimension::Speed, 3.6),
-    ("_ms", Dimension::Time, 1.0),
-    ("_mm", Dimension::Distance, 0.001),
-    ("_hz", Dimension::Frequency, 1.0),
-    ("_mv", Dimension::Level, 1.0),
-    ("_kg", Dimension::Mass, 1.0),
-    ("_s", Dimension::Time, 1000.0),
-    ("_m", Dimension::Distance, 1.0),
-];
-
-/// The quantities of the keys that end in a unit, under their names without it; of two that have the same name then
-/// each has what it is an amount of behind it, as `standstill_speed`. `source` stands before the keys.
+/// Quantities of the keys that end in a unit, each under its key without the unit. Where two keys would share a name,
+/// the kind of quantity follows the name: `standstill_speed`. In origins `source` stands before the key.
 pub(super) fn of(fields: &[(String, Item)], source: &str) -> Vec<(String, Item)> {
     let found = fields
         .iter()
@@ -40,9 +25,10 @@ pub(super) fn of(fields: &[(String, Item)], source: &str) -> Vec<(String, Item)>
 }
 
 fn of_key(key: &str, value: &Item, source: &str) -> Option<(String, Dimension, Item)> {
-    let (name, dimension, factor) = UNITS
-        .iter()
-        .find_map(|(end, dimension, factor)| Some((key.strip_suffix(end)?, *dimension, *factor)))?;
+    let (name, dimension, factor) = UNITS.iter().find_map(|(unit, dimension, factor)| {
+        let name = key.strip_suffix(unit)?.strip_suffix('_')?;
+        Some((name, *dimension, *factor))
+    })?;
     // `drag_per_s` is no time.
     if name.is_empty() || name.ends_with("_per") {
         return None;

@@ -6,7 +6,6 @@ use protocol::signal::Signal;
 
 use super::context::Context;
 use super::item::Item;
-use super::quantity::Quantity;
 use super::suggest::hint;
 use super::verb::Verb;
 use crate::procedure::origin::Origin;
@@ -79,9 +78,10 @@ impl Args<'_> {
         self.get(name).map(|_| self.number(name)).transpose()
     }
 
-    pub(super) fn int(&self, name: &str) -> Result<i64, String> {
+    /// A whole number, which the parameter keeps within the range of `T`.
+    pub(super) fn int<T: TryFrom<i64>>(&self, name: &str) -> Result<T, String> {
         match self.must(name)? {
-            Item::Int(n) => Ok(*n),
+            Item::Int(n) => T::try_from(*n).map_err(|_| format!("`{name}` cannot be {n}")),
             other => Err(format!("`{name}` cannot be {}", other.found())),
         }
     }
@@ -135,14 +135,14 @@ impl Args<'_> {
         texts.collect()
     }
 
-    /// Where its numbers come from: each quantity as it knows, and what the call states.
+    /// Origin of the numbers in the call: that of each quantity, and the sources that the call states.
     pub(super) fn origin(&self) -> Origin {
         let mut origin = Origin::default();
         (self.values.iter().flatten()).for_each(|item| origin.join(&item.origin()));
         self.stated(origin)
     }
 
-    /// The origin with what the call states.
+    /// The origin together with the sources that the call states.
     pub(super) fn stated(&self, mut origin: Origin) -> Origin {
         let sources = self.sources();
         if !sources.is_empty() {
@@ -178,14 +178,6 @@ impl Args<'_> {
             _ => return None,
         };
         u16::try_from(number).ok()
-    }
-
-    /// A quantity, number or measured value as given.
-    pub(super) fn quantity(&self, name: &str) -> Option<Quantity> {
-        match self.get(name) {
-            Some(Item::Quantity(q)) => Some(q.clone()),
-            _ => None,
-        }
     }
 }
 

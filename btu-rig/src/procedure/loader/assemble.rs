@@ -5,8 +5,8 @@ use sha2::{Digest, Sha256};
 use starlark::codemap::FileSpan;
 
 use super::draft::{Declaration, ProcedureDraft, StepDraft};
+use super::error::LoadError;
 use super::suggest::hint;
-use super::{LoadError, error_at};
 use crate::procedure::plan::{
     Action, Condition, Expectation, Measure, Operand, Procedure, Step, TimeFrom, What, of_self_test,
 };
@@ -45,8 +45,8 @@ impl Declared {
                 .find(|p| p.filename() == path)
                 .or(places.first());
             let fail = |message: String| match place {
-                Some(place) => error_at(place, message),
-                None => at_top(path, &message),
+                Some(place) => LoadError::at(place, &message),
+                None => LoadError::at_top(path, &message),
             };
             match declaration {
                 Declaration::Procedure(_) if all.head.is_some() => {
@@ -80,22 +80,13 @@ impl Declared {
     }
 }
 
-fn at_top(path: &str, message: &str) -> LoadError {
-    LoadError {
-        file: path.to_owned(),
-        line: 1,
-        column: 1,
-        message: message.to_owned(),
-    }
-}
-
 /// A procedure out of the declarations of the script at `path`.
 pub(super) fn assemble(
     path: &str,
     text: &str,
     declared: Vec<(Declaration, Vec<FileSpan>)>,
 ) -> Result<Procedure, Vec<LoadError>> {
-    let at_top = |message: &str| at_top(path, message);
+    let at_top = |message: &str| LoadError::at_top(path, message);
     let Declared {
         head,
         mut steps,
@@ -115,28 +106,21 @@ pub(super) fn assemble(
     let no_earlier = |actions: &mut Vec<Action>| {
         resolve_actions(actions, &[]).map_err(|e| vec![at_top(&format!("setup or cleanup: {e}"))])
     };
-    no_earlier(&mut head.setup)?;
-    no_earlier(&mut head.cleanup)?;
+    no_earlier(&mut head.procedure.setup)?;
+    no_earlier(&mut head.procedure.cleanup)?;
     for index in without_suspect {
-        steps[index].suspect.clone_from(&head.suspect);
+        steps[index].suspect.clone_from(&head.procedure.suspect);
     }
     for step in &mut steps {
         step.origin.fill(&head.sources);
     }
     let procedure = Procedure {
         id: path.strip_suffix(".star").unwrap_or(path).to_owned(),
-        title: head.title,
-        title_ko: head.title_ko,
-        needs: head.needs,
-        on_request: head.on_request,
-        lacks: head.lacks,
-        suspect: head.suspect,
         path: path.to_owned(),
         sha256: sha256(text),
-        setup: head.setup,
-        cleanup: head.cleanup,
-        steps,
         slots: measurements.len(),
+        steps,
+        ..head.procedure
     };
     if procedure.worst_case() > LONGEST {
         return Err(vec![at_top("the procedure can take longer than a week")]);
@@ -203,10 +187,8 @@ fn resolve_step(step: &mut Step, known: &[NamedMeasurement]) -> Result<(), Strin
     for measure in &mut step.measures {
         resolve_measure(measure, known)?;
     }
-    match &mut step.when {
-        Some(when) => resolve_condition(when, known),
-        None => Ok(()),
-    }
+    let mut when = step.when.iter_mut();
+    when.try_for_each(|when| resolve_condition(when, known))
 }
 
 fn resolve_measure(measure: &mut Measure, known: &[NamedMeasurement]) -> Result<(), String> {
@@ -222,11 +204,7 @@ fn resolve_measure(measure: &mut Measure, known: &[NamedMeasurement]) -> Result<
             resolve_condition(to, known)
         }
         What::At { when, .. } => resolve_condition(when, known),
-        What::Value(_)
-        | What::Maximum(_)
-        | What::Minimum(_)
-        | What::Change(_)
-        | What::SelfTest { .. } => Ok(()),
+        _ => Ok(()),
     }
 }
 

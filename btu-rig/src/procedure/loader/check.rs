@@ -5,7 +5,7 @@
 //! misspelt verb or parameter, a wrong type or unit, an unknown label or event are found wherever
 //! they stand. What depends on variables is unknown here and is checked when the script runs.
 
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeMap, HashSet};
 
 use starlark::analysis::AstModuleLint;
 use starlark::codemap::Span;
@@ -16,9 +16,9 @@ use starlark::syntax::ast::{
 };
 
 use super::context::Context;
+use super::error::LoadError;
 use super::item::Item;
 use super::suggest::{hint, near};
-use super::{LoadError, error_at};
 
 /// Expressions and blocks nested deeper than this are refused: no person can read them, and walking
 /// them would need an endless stack.
@@ -29,7 +29,7 @@ pub(super) fn check(
     ast: &AstModule,
     context: &Context,
     predeclared: &BTreeMap<&'static str, Item>,
-    names: &BTreeSet<String>,
+    names: &HashSet<String>,
 ) -> Vec<LoadError> {
     let mut checker = Checker {
         ast,
@@ -40,13 +40,17 @@ pub(super) fn check(
         too_deep: false,
         errors: Vec::new(),
     };
-    checker.collect_stmt(ast.statement());
+    let script = ast.statement();
+    checker.collect_stmt(script);
+    script.visit_expr(|expr| checker.collect_expr(expr));
     if !checker.too_deep {
-        checker.stmt(ast.statement());
+        script.visit_expr(|expr| _ = checker.expr(expr));
     }
     if checker.too_deep {
-        let span = ast.statement().span;
-        return vec![error_at(&ast.file_span(span), "nested too deeply".into())];
+        return vec![LoadError::at(
+            &ast.file_span(script.span),
+            "nested too deeply",
+        )];
     }
     let mut errors = checker.errors;
     errors.extend(undefined_names(ast, names));
@@ -55,15 +59,14 @@ pub(super) fn check(
 }
 
 /// Names that nothing defines, by Starlark's own analysis.
-fn undefined_names(ast: &AstModule, names: &BTreeSet<String>) -> Vec<LoadError> {
-    let known: HashSet<String> = names.iter().cloned().collect();
-    ast.lint(Some(&known))
+fn undefined_names(ast: &AstModule, names: &HashSet<String>) -> Vec<LoadError> {
+    ast.lint(Some(names))
         .into_iter()
         .filter(|lint| lint.short_name == "using-undefined")
         .map(|lint| {
             let name = &lint.original;
             let hint = near(name, names.iter().map(String::as_str));
-            error_at(&lint.location, format!("unknown name `{name}`{hint}"))
+            LoadError::at(&lint.location, &format!("unknown name `{name}`{hint}"))
         })
         .collect()
 }
@@ -91,39 +94,28 @@ impl Checker<'_> {
     }
 
     fn report(&mut self, span: Span, message: String) {
-        self.errors
-            .push(error_at(&self.ast.file_span(span), message));
+        let place = self.ast.file_span(span);
+        self.errors.push(LoadError::at(&place, &message));
     }
 
     /// Notes all names that statements bind.
     fn collect_stmt(&mut self, stmt: &AstStmt) {
-        self.deeper(|this| match &stmt.node {
-            Stmt::Assign(assign) => {
-                this.collect_target(&assign.lhs);
-                this.collect_expr(&assign.rhs);
+        self.deeper(|this| {
+            match &stmt.node {
+                Stmt::Assign(assign) => this.collect_target(&assign.lhs),
+                Stmt::AssignModify(target, ..) => this.collect_target(target),
+                Stmt::For(for_) => this.collect_target(&for_.var),
+                Stmt::Def(def) => {
+                    this.shadowed.insert(def.name.ident.clone());
+                    this.collect_params(&def.params);
+                }
+                Stmt::Load(load) => {
+                    let locals = load.args.iter().map(|arg| arg.local.ident.clone());
+                    this.shadowed.extend(locals);
+                }
+                _ => {}
             }
-            Stmt::AssignModify(target, _, value) => {
-                this.collect_target(target);
-                this.collect_expr(value);
-            }
-            Stmt::For(for_) => {
-                this.collect_target(&for_.var);
-                this.collect_expr(&for_.over);
-                this.collect_stmt(&for_.body);
-            }
-            Stmt::Def(def) => {
-                this.shadowed.insert(def.name.ident.clone());
-                this.collect_params(&def.params);
-                this.collect_stmt(&def.body);
-            }
-            Stmt::Load(load) => {
-                let locals = load.args.iter().map(|arg| arg.local.ident.clone());
-                this.shadowed.extend(locals);
-            }
-            other => {
-                for_each_expr(other, &mut |expr| this.collect_expr(expr));
-                for_each_stmt(other, &mut |stmt| this.collect_stmt(stmt));
-            }
+            stmt.visit_stmt(|inner| this.collect_stmt(inner));
         });
     }
 
@@ -161,15 +153,6 @@ impl Checker<'_> {
                 _ => {}
             }
             expr.node.visit_expr(|inner| this.collect_expr(inner));
-        });
-    }
-
-    fn stmt(&mut self, stmt: &AstStmt) {
-        self.deeper(|this| {
-            for_each_expr(&stmt.node, &mut |expr| {
-                this.expr(expr);
-            });
-            for_each_stmt(&stmt.node, &mut |inner| this.stmt(inner));
         });
     }
 
@@ -313,40 +296,5 @@ impl Checker<'_> {
             }
             None => Item::Unknown,
         }
-    }
-}
-
-/// Expressions directly in a statement.
-fn for_each_expr(stmt: &Stmt, f: &mut impl FnMut(&AstExpr)) {
-    match stmt {
-        Stmt::Return(Some(expr)) | Stmt::Expression(expr) => f(expr),
-        Stmt::Assign(assign) => f(&assign.rhs),
-        Stmt::AssignModify(_, _, expr) => f(expr),
-        Stmt::If(condition, _) | Stmt::IfElse(condition, _) => f(condition),
-        Stmt::For(for_) => f(&for_.over),
-        Stmt::Def(def) => {
-            for param in &def.params {
-                if let starlark::syntax::ast::ParameterP::Normal(_, _, Some(default)) = &param.node
-                {
-                    f(default);
-                }
-            }
-        }
-        _ => {}
-    }
-}
-
-/// Statements directly in a statement.
-fn for_each_stmt(stmt: &Stmt, f: &mut impl FnMut(&AstStmt)) {
-    match stmt {
-        Stmt::Statements(stmts) => stmts.iter().for_each(f),
-        Stmt::If(_, body) => f(body),
-        Stmt::IfElse(_, both) => {
-            f(&both.0);
-            f(&both.1);
-        }
-        Stmt::For(for_) => f(&for_.body),
-        Stmt::Def(def) => f(&def.body),
-        _ => {}
     }
 }

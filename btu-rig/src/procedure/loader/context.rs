@@ -64,27 +64,9 @@ impl Context {
             ("unit", configuration.clone()),
             ("line", track.clone()),
             ("consist", train.clone()),
-            (
-                "cuts",
-                bits(
-                    "cuts",
-                    PowerCuts::ALL.iter().map(|(one, name)| (*name, one.bits())),
-                ),
-            ),
-            (
-                "eb_by",
-                bits(
-                    "eb_by",
-                    EbSources::ALL.iter().map(|(one, name)| (*name, one.bits())),
-                ),
-            ),
-            (
-                "lamp",
-                bits(
-                    "lamp",
-                    Lamps::ALL.iter().map(|(one, name)| (*name, one.bits())),
-                ),
-            ),
+            ("cuts", bits::<PowerCuts>("cuts")),
+            ("eb_by", bits::<EbSources>("eb_by")),
+            ("lamp", bits::<Lamps>("lamp")),
         ]
     }
 
@@ -125,20 +107,21 @@ impl Context {
 }
 
 /// Named values, their quantities with them; `source` stands before their names where these are said.
-fn record<'a>(
+fn record(
     kind: &'static str,
-    fields: impl IntoIterator<Item = (&'a str, Item)>,
+    fields: impl IntoIterator<Item = (impl Into<String>, Item)>,
     source: &str,
 ) -> Item {
-    let fields = fields.into_iter().map(|(n, v)| (n.to_owned(), v));
+    let fields = fields.into_iter().map(|(n, v)| (n.into(), v));
     let mut fields: Vec<_> = fields.collect();
     fields.extend(amounts::of(&fields, source));
     Item::Record(Arc::new(Record { kind, fields }))
 }
 
 /// Bits of a signal by their names.
-fn bits<'a>(kind: &'static str, named: impl Iterator<Item = (&'a str, u16)>) -> Item {
-    let fields = named.map(|(name, bit)| (name, Item::Int(i64::from(bit))));
+fn bits<Set: bitflags::Flags<Bits = u16>>(kind: &'static str) -> Item {
+    let named = Set::all().iter_names();
+    let fields = named.map(|(name, bit)| (name.to_lowercase(), Item::Int(bit.bits().into())));
     record(kind, fields, "")
 }
 

@@ -1,8 +1,8 @@
 //! Declarations of `procedure()` and `step()`, before names are resolved and times computed.
 
-use protocol::{Duration, LruId};
+use protocol::Duration;
 
-use crate::procedure::plan::{Action, Connection, Step};
+use crate::procedure::plan::{Procedure, Step};
 
 /// A call that declares something.
 #[derive(Clone, Debug)]
@@ -13,14 +13,8 @@ pub(super) enum Declaration {
 
 #[derive(Clone, Debug)]
 pub(super) struct ProcedureDraft {
-    pub title: String,
-    pub title_ko: Option<String>,
-    pub needs: Connection,
-    pub on_request: bool,
-    pub lacks: Option<String>,
-    pub suspect: Option<LruId>,
-    pub setup: Vec<Action>,
-    pub cleanup: Vec<Action>,
+    /// Without steps, and without what the file says: path and checksum.
+    pub procedure: Procedure,
     /// Sources of numbers in expectations that name none themselves.
     pub sources: Vec<String>,
 }

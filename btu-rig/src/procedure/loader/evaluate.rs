@@ -1,7 +1,7 @@
 //! Evaluates scripts and the libraries they load, within bounds.
 
 use std::cell::{Cell, RefCell};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, HashSet};
 
 use starlark::PrintHandler;
 use starlark::codemap::FileSpan;
@@ -12,11 +12,12 @@ use starlark::syntax::{AstModule, Dialect, DialectTypes};
 use super::check::check;
 use super::context::Context;
 use super::draft::Declaration;
+use super::error::{LoadError, cut};
+use super::globals;
 use super::handle::{Session, error};
 use super::item::Item;
 use super::nesting::too_deep;
 use super::suggest::hint;
-use super::{LoadError, MOST_STEPS, cut, error_from, is_library};
 
 /// Function calls and loop rounds a script may use.
 const MOST_TICKS: u64 = 500_000;
@@ -33,11 +34,12 @@ type Declared = Vec<(Declaration, Vec<FileSpan>)>;
 
 /// Evaluates the scripts of one folder; each library once.
 pub(super) struct Evaluation<'a> {
-    pub scripts: &'a BTreeMap<String, String>,
-    pub context: &'a Context,
-    pub predeclared: &'a BTreeMap<&'static str, Item>,
-    pub names: &'a BTreeSet<String>,
-    pub globals: &'a Globals,
+    scripts: &'a BTreeMap<String, String>,
+    context: &'a Context,
+    predeclared: BTreeMap<&'static str, Item>,
+    globals: Globals,
+    /// Names of all globals.
+    names: HashSet<String>,
     /// Called with the path of each script whose evaluation begins or goes on.
     evaluates: &'a dyn Fn(&str),
     libraries: RefCell<BTreeMap<String, Result<FrozenModule, ()>>>,
@@ -52,16 +54,15 @@ impl<'a> Evaluation<'a> {
     pub(super) fn new(
         scripts: &'a BTreeMap<String, String>,
         context: &'a Context,
-        predeclared: &'a BTreeMap<&'static str, Item>,
-        names: &'a BTreeSet<String>,
-        globals: &'a Globals,
         evaluates: &'a dyn Fn(&str),
     ) -> Self {
+        let predeclared = globals::predeclared(context);
+        let globals = globals::build(&predeclared);
         Self {
             scripts,
             context,
             predeclared,
-            names,
+            names: globals::names(&globals),
             globals,
             evaluates,
             libraries: RefCell::default(),
@@ -108,9 +109,8 @@ impl<'a> Evaluation<'a> {
         library: bool,
     ) -> Result<(FrozenModule, Declared), Vec<LoadError>> {
         (self.evaluates)(path);
-        let one = |error: &starlark::Error| vec![error_from(path, error)];
         let ast = parse(path, text).map_err(|e| vec![e])?;
-        let errors = check(&ast, self.context, self.predeclared, self.names);
+        let errors = check(&ast, self.context, &self.predeclared, &self.names);
         if !errors.is_empty() {
             return Err(errors);
         }
@@ -118,7 +118,6 @@ impl<'a> Evaluation<'a> {
             context: self.context,
             is_library: library,
             declared: RefCell::default(),
-            most: MOST_STEPS,
         };
         let loader = Loader {
             evaluation: self,
@@ -133,11 +132,11 @@ impl<'a> Evaluation<'a> {
                 eval.set_max_tick_count(MOST_TICKS).map_err(plain)?;
                 eval.set_max_heap_size(MOST_HEAP).map_err(plain)?;
                 eval.set_max_callstack_size(DEEPEST_CALLS).map_err(plain)?;
-                eval.eval_module(ast, self.globals)?;
+                eval.eval_module(ast, &self.globals)?;
             }
             Ok(module.freeze()?)
         })
-        .map_err(|e| one(&e))?;
+        .map_err(|e| vec![LoadError::of_starlark(path, &e)])?;
         Ok((module, session.declared.into_inner()))
     }
 }
@@ -154,19 +153,14 @@ fn parse(path: &str, text: &str) -> Result<AstModule, LoadError> {
         enable_f_strings: true,
         ..Dialect::Standard
     };
-    let refuse = |line, column, message| LoadError {
-        file: path.to_owned(),
-        line,
-        column,
-        message,
-    };
     if text.len() > LONGEST_SCRIPT {
-        return Err(refuse(1, 1, format!("longer than {LONGEST_SCRIPT} bytes")));
+        let message = format!("longer than {LONGEST_SCRIPT} bytes");
+        return Err(LoadError::at_top(path, &message));
     }
     if let Some((line, column)) = too_deep(text) {
-        return Err(refuse(line, column, "nested too deeply".into()));
+        return Err(LoadError::new(path, line, column, "nested too deeply"));
     }
-    AstModule::parse(path, text.to_owned(), &dialect).map_err(|e| error_from(path, &e))
+    AstModule::parse(path, text.to_owned(), &dialect).map_err(|e| LoadError::of_starlark(path, &e))
 }
 
 impl PrintHandler for Evaluation<'_> {
@@ -179,6 +173,13 @@ impl PrintHandler for Evaluation<'_> {
         }
         Ok(())
     }
+}
+
+/// Whether the script of this path is a library for `load()` and no procedure.
+pub fn is_library(path: &str) -> bool {
+    path.rsplit('/')
+        .next()
+        .is_some_and(|name| name.starts_with('_'))
 }
 
 /// Resolves `load()` for one script.

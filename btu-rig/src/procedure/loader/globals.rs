@@ -1,6 +1,6 @@
 //! The names every script knows: verbs, signals, configuration, and Starlark's own.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, HashSet};
 
 use protocol::signal::Signal;
 use starlark::environment::{Globals, GlobalsBuilder, LibraryExtension};
@@ -36,7 +36,7 @@ pub(super) fn build(predeclared: &BTreeMap<&'static str, Item>) -> Globals {
 }
 
 /// All names, for "did you mean".
-pub(super) fn names(globals: &Globals) -> BTreeSet<String> {
+pub(super) fn names(globals: &Globals) -> HashSet<String> {
     globals
         .names()
         .map(|name| name.as_str().to_owned())

@@ -26,6 +26,8 @@ use super::item::Item;
 
 /// Lists nested deeper than this are refused; a list may contain itself.
 const DEEPEST_LIST: usize = 16;
+/// Most steps that a script may declare, so that a loop cannot fill the memory.
+const MOST_STEPS: usize = 10_000;
 
 /// Data that a script's verbs need, and declarations that they leave; reached through the
 /// evaluator.
@@ -35,8 +37,6 @@ pub(super) struct Session<'a> {
     /// Libraries may not declare anything.
     pub is_library: bool,
     pub declared: RefCell<Vec<(Declaration, Vec<FileSpan>)>>,
-    /// Limit on declarations, so that a loop cannot fill the memory.
-    pub most: usize,
 }
 
 /// Something wrong with a script, said by a verb.
@@ -165,8 +165,8 @@ fn declare(
         );
     }
     let mut declared = session.declared.borrow_mut();
-    if declared.len() >= session.most {
-        return Err(format!("more than {} steps", session.most));
+    if declared.len() >= MOST_STEPS {
+        return Err(format!("more than {MOST_STEPS} steps"));
     }
     let depth = eval.call_stack_count();
     let places = (0..depth)

@@ -88,7 +88,7 @@ impl Item {
         }
     }
 
-    /// Where the quantities in it come from. A plain number here is a state or a count, and no limit.
+    /// Origin of the quantities in this item. A plain number in an item is a state or a count, and no limit.
     pub(super) fn origin(&self) -> Origin {
         let mut origin = Origin::default();
         match self {
@@ -104,7 +104,7 @@ impl Item {
         origin
     }
 
-    /// Whether it, and all in it, is known while a script is only checked.
+    /// Whether the item and everything in it is known while a script is only checked.
     pub(super) fn is_known(&self) -> bool {
         match self {
             Self::Unknown => false,

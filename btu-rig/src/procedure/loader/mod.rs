@@ -7,7 +7,8 @@
 //! * `handle`: those values inside Starlark;
 //! * `nesting`, `check`: find errors without running a script, also where it would never run;
 //! * `evaluate`: runs it once, within bounds, with no access to anything but its libraries;
-//! * `assemble`: resolves names between steps and computes times.
+//! * `assemble`: resolves names between steps and computes times;
+//! * `error`: what is wrong, where, in plain words.
 
 mod amounts;
 mod args;
@@ -15,6 +16,7 @@ mod assemble;
 mod check;
 mod context;
 mod draft;
+mod error;
 mod evaluate;
 mod globals;
 mod handle;
@@ -33,41 +35,21 @@ use std::sync::Arc;
 
 use protocol::config::UnitConfig;
 use protocol::line::Line;
-use serde::{Deserialize, Serialize};
-use starlark::ErrorKind;
-use starlark::codemap::FileSpan;
-use thiserror::Error;
 
 use super::plan::Procedure;
 use crate::train::TrainData;
 use context::Context;
 use evaluate::Evaluation;
 
+pub use error::LoadError;
+pub use evaluate::is_library;
 pub use stubs::stubs;
 
 /// Script texts by path under the scripts folder, with `/` between names.
 pub type Scripts = BTreeMap<String, String>;
 
-/// Most steps one script may declare.
-pub const MOST_STEPS: usize = 10_000;
 /// Most errors reported for one file: the rest is usually a consequence.
 const MOST_ERRORS: usize = 50;
-/// Longest text of an error or a printed line, characters: a script may make it of anything.
-const LONGEST_TEXT: usize = 2000;
-
-/// What is wrong with a script, and where.
-#[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
-#[error("{file}:{line}:{column}: {message}")]
-pub struct LoadError {
-    /// Path under the scripts folder.
-    pub file: String,
-    /// Line, from 1.
-    pub line: u32,
-    /// Column, from 1.
-    pub column: u32,
-    /// What is wrong, with a hint where there is one.
-    pub message: String,
-}
 
 /// Result of loading scripts.
 #[derive(Clone, Debug, Default)]
@@ -154,19 +136,9 @@ fn load_for(
     on_event: &mut dyn FnMut(LoadEvent<'_>),
 ) -> Loaded {
     let on_event = RefCell::new(on_event);
-    let context = Context::new(unit.clone(), line.clone(), train.clone());
-    let predeclared = globals::predeclared(&context);
-    let globals = globals::build(&predeclared);
-    let names = globals::names(&globals);
     let evaluates = |path: &str| on_event.borrow_mut()(LoadEvent::Evaluates(path));
-    let evaluation = Evaluation::new(
-        scripts,
-        &context,
-        &predeclared,
-        &names,
-        &globals,
-        &evaluates,
-    );
+    let context = Context::new(unit.clone(), line.clone(), train.clone());
+    let evaluation = Evaluation::new(scripts, &context, &evaluates);
     let mut loaded = Loaded::default();
     for (path, text) in scripts {
         if is_library(path) {
@@ -190,78 +162,4 @@ fn load_for(
     loaded.errors.dedup();
     loaded.printed = printed;
     loaded
-}
-
-/// Whether the script of this path is a library for `load()` and no procedure.
-pub fn is_library(path: &str) -> bool {
-    path.rsplit('/')
-        .next()
-        .is_some_and(|name| name.starts_with('_'))
-}
-
-fn error_at(place: &FileSpan, message: String) -> LoadError {
-    let begin = place.resolve_span().begin;
-    LoadError {
-        file: place.filename().to_owned(),
-        line: begin.line as u32 + 1,
-        column: begin.column as u32 + 1,
-        message: cut(&message),
-    }
-}
-
-/// The text, or its beginning.
-fn cut(text: &str) -> String {
-    match text.char_indices().nth(LONGEST_TEXT) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
-}
-
-fn error_from(path: &str, error: &starlark::Error) -> LoadError {
-    let words = match error.kind() {
-        ErrorKind::StackOverflow(_) => {
-            "functions call each other too deeply; does one call itself?".to_owned()
-        }
-        _ => plain_words(&error.without_diagnostic().to_string()),
-    };
-    let caller = caller(path, error).unwrap_or_default();
-    let message = cut(&format!("{words}{caller}"));
-    match error.span() {
-        Some(span) => error_at(span, message),
-        None => LoadError {
-            file: path.to_owned(),
-            line: 1,
-            column: 1,
-            message,
-        },
-    }
-}
-
-/// Where the script calls the library in which the error is.
-fn caller(path: &str, error: &starlark::Error) -> Option<String> {
-    if error.span()?.filename() == path {
-        return None;
-    }
-    let mut frames = error.call_stack().frames.iter().rev();
-    frames.find_map(|frame| {
-        let at = frame.location.as_ref().filter(|at| at.filename() == path)?;
-        let begin = at.resolve_span().begin;
-        let (line, column) = (begin.line + 1, begin.column + 1);
-        Some(format!(
-            " — {}() is called at {path}:{line}:{column}",
-            frame.name
-        ))
-    })
-}
-
-/// Starlark's messages are for programmers; those of limits, which have no kind of their own, are said in plain words.
-fn plain_words(message: &str) -> String {
-    let first = message.lines().next().unwrap_or_default();
-    if first.starts_with("Heap memory limit") {
-        "needs too much memory while it is loaded; does a loop go too far?".into()
-    } else if first.contains("tick") && first.contains("limit") {
-        "does too much while it is loaded; does a loop go too far?".into()
-    } else {
-        first.to_owned()
-    }
 }

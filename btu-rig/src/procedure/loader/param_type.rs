@@ -153,7 +153,7 @@ fn sources(item: &Item, context: &Context) -> Result<(), String> {
     }
 }
 
-/// Whether it is a text that is no longer than this.
+/// `Err` says what was found instead of a text of at most `longest` characters.
 fn text(item: &Item, longest: usize) -> Result<(), String> {
     match item {
         Item::Text(text) if text.chars().count() <= longest => Ok(()),

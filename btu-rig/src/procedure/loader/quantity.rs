@@ -25,6 +25,22 @@ protocol::labelled! {
     }
 }
 
+/// Units by their name, as scripts call them and as keys of configuration files end; with the factor to the unit of the
+/// dimension. Of two that a key may end in, the first counts.
+pub(super) const UNITS: [(&str, Dimension, f64); 11] = [
+    ("kmh_per_s", Dimension::Acceleration, 1.0 / 3.6),
+    ("mps2", Dimension::Acceleration, 1.0),
+    ("kmh", Dimension::Speed, 1.0),
+    ("mps", Dimension::Speed, 3.6),
+    ("ms", Dimension::Time, 1.0),
+    ("mm", Dimension::Distance, 0.001),
+    ("hz", Dimension::Frequency, 1.0),
+    ("mv", Dimension::Level, 1.0),
+    ("kg", Dimension::Mass, 1.0),
+    ("s", Dimension::Time, 1000.0),
+    ("m", Dimension::Distance, 1.0),
+];
+
 impl Dimension {
     /// The dimension of signals and measurements in `unit`; `None` for plain numbers.
     pub(super) fn of_unit(unit: &str) -> Option<Self> {

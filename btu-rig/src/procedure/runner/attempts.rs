@@ -5,8 +5,10 @@
 //! continues from, the step itself and those after it. Only a step that was not tested is repeated, never one
 //! that failed.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use protocol::event::Event;
 use protocol::{Duration, Instant};
 
 use super::pause::Pause;
@@ -14,7 +16,6 @@ use super::schedule::{RunOptions, ScheduledStep, group_start};
 use super::{Phase, Runner};
 use crate::procedure::Verdict;
 use crate::procedure::action_run::ActionRun;
-use crate::procedure::event_set::EventSet;
 use crate::procedure::finding::Finding;
 use crate::procedure::plan::Procedure;
 use crate::procedure::report::{ResultKind, RunEvent, StepResult};
@@ -23,7 +24,7 @@ use crate::procedure::report::{ResultKind, RunEvent, StepResult};
 pub const ATTEMPTS: u32 = 3;
 /// After set-up the unit says within this time how much it has logged.
 const LOG_SETTLES: Duration = Duration::from_ms(600);
-/// And its log is read within this time, or the steps begin all the same.
+/// Time after set-up within which the unit's log is read; then the steps begin all the same.
 const LOG_WITHIN: Duration = Duration::from_ms(10_000);
 /// Time in which the effects of frames lost in a pause show: unit and TCMS miss each other, brake and log it.
 const AFTERMATH: Duration = Duration::from_ms(1_000);
@@ -40,7 +41,7 @@ pub struct Resume {
     /// Number of the target's attempt, from 1.
     pub(super) attempt: u32,
     pub(super) captured: Vec<Option<f64>>,
-    pub(super) provoked: EventSet,
+    pub(super) provoked: BTreeSet<Event>,
     pub(super) pause: Pause,
 }
 
@@ -52,7 +53,7 @@ impl Resume {
             target: 0,
             attempt: 1,
             captured: vec![None; slots],
-            provoked: EventSet::default(),
+            provoked: BTreeSet::new(),
             pause: Pause::default(),
         }
     }
@@ -69,7 +70,7 @@ impl Runner {
         let new = Self::new(procedure, options, round);
         Self {
             captured: resume.captured.clone(),
-            provoked: resume.provoked,
+            provoked: resume.provoked.clone(),
             pause: resume.pause,
             begun_at: resume,
             ..new
@@ -168,13 +169,10 @@ impl Runner {
             target: next,
             attempt: if last { 1 } else { attempt + 1 },
             captured: self.captured.clone(),
-            provoked: self.provoked,
+            provoked: self.provoked.clone(),
             pause: self.pause,
         });
-        self.phase = Phase::CleanUp {
-            actions: ActionRun::default(),
-            since: now,
-        };
+        self.phase = Phase::clean_up(now);
     }
 
     /// Reports the steps that cannot be run without the one given up as skipped; the place of the next one that can.
@@ -200,29 +198,18 @@ impl Runner {
         attempt: u32,
         by: Duration,
     ) {
-        let step = &self.procedure.steps[turn.index];
         let last = attempt >= ATTEMPTS;
+        let (kind, verdict) = match last {
+            true => (ResultKind::Step, Verdict::Error),
+            false => (ResultKind::Attempt, Verdict::Skipped),
+        };
+        let finding = Finding::StoodStill { by, attempt };
         self.out.push(RunEvent::StepFinished(StepResult {
-            index: turn.index,
-            name: step.name.clone(),
-            turn: turn.turn,
-            turns: turn.turns,
-            kind: match last {
-                true => ResultKind::Step,
-                false => ResultKind::Attempt,
-            },
-            line: step.line,
-            verdict: if last {
-                Verdict::Error
-            } else {
-                Verdict::Skipped
-            },
-            findings: Finding::StoodStill { by, attempt }.into(),
+            kind,
             suspect: None,
             started,
             bench_time: now.since(started),
-            limit_source: None,
-            measurements: Vec::new(),
+            ..self.result(turn, now, verdict, finding.into())
         }));
         if last {
             self.verdict = self.verdict.and(Verdict::Error);

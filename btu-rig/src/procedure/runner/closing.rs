@@ -34,12 +34,7 @@ impl Runner {
         if self.link_lost {
             allowed = allowed.min(CLEANUP_WITHOUT_LINK);
         }
-        let scan = Scan {
-            now,
-            sample,
-            captured: &self.captured,
-            unit_time: self.evidence.unit_time,
-        };
+        let scan = Scan::new(now, sample, &self.captured, &self.evidence);
         let mut problems = Vec::new();
         let mut over = loop {
             match actions.advance(

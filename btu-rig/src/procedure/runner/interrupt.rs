@@ -37,17 +37,10 @@ impl Runner {
             }
             Phase::Setup(_) => {
                 self.outside(Outside::Bench, Verdict::Error, why.clone(), now);
-                self.phase = Phase::Steps {
-                    next: 0,
-                    live: None,
-                };
+                self.phase = Phase::steps_from(0);
                 self.skip_rest(now, &why.not_run());
             }
-            Phase::NotStarted
-            | Phase::CleanUp { .. }
-            | Phase::MakeSafe { .. }
-            | Phase::ReadLog { .. }
-            | Phase::Done => {}
+            _ => {}
         }
     }
 
@@ -62,10 +55,7 @@ impl Runner {
                     self.note(Verdict::Aborted, Finding::Stopped);
                 } else {
                     if matches!(self.phase, Phase::Setup(_)) {
-                        self.phase = Phase::Steps {
-                            next: 0,
-                            live: None,
-                        };
+                        self.phase = Phase::steps_from(0);
                     }
                     self.outside(Outside::Stop, Verdict::Aborted, Finding::Stopped, now);
                 }

@@ -12,6 +12,7 @@ mod schedule;
 mod steps;
 mod unsolicited;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use protocol::event::{Event, Severity};
@@ -26,7 +27,6 @@ pub use schedule::RunOptions;
 use schedule::{ScheduledStep, schedule};
 
 use super::action_run::{ActionRun, Progress};
-use super::event_set::EventSet;
 use super::evidence::Evidence;
 use super::finding::{Before, Finding, Findings};
 use super::link_trouble::LinkTrouble;
@@ -67,6 +67,20 @@ enum Phase {
     Done,
 }
 
+impl Phase {
+    /// The steps from this place in the schedule on, none of which has begun.
+    fn steps_from(next: usize) -> Self {
+        Self::Steps { next, live: None }
+    }
+
+    fn clean_up(since: Instant) -> Self {
+        Self::CleanUp {
+            actions: ActionRun::default(),
+            since,
+        }
+    }
+}
+
 /// How often the operator has pressed stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd)]
 enum Stop {
@@ -83,7 +97,7 @@ pub struct Runner {
     schedule: Vec<ScheduledStep>,
     phase: Phase,
     captured: Vec<Option<f64>>,
-    provoked: EventSet,
+    provoked: BTreeSet<Event>,
     brake_applied: Option<bool>,
     clock_reported: bool,
     /// Part of the train that TCMS reported first, in a step that did not provoke it.
@@ -139,7 +153,7 @@ impl Runner {
             procedure,
             options,
             phase: Phase::NotStarted,
-            provoked: EventSet::default(),
+            provoked: BTreeSet::new(),
             brake_applied: None,
             clock_reported: false,
             train_part: None,
@@ -212,7 +226,7 @@ impl Runner {
     pub fn allowed(&self, event: Event) -> bool {
         event.definition().severity <= Severity::Info
             || !matches!(self.phase, Phase::Steps { .. })
-            || self.provoked.contains(event)
+            || self.provoked.contains(&event)
     }
 
     /// The stream of events since the last call.
@@ -280,10 +294,7 @@ impl Runner {
             self.outside(Outside::Whole, Verdict::Error, finding, now);
             self.phase = Phase::MakeSafe { since: now };
         } else if let Some(reason) = self.passed_over.take() {
-            self.phase = Phase::Steps {
-                next: 0,
-                live: None,
-            };
+            self.phase = Phase::steps_from(0);
             self.skip_rest(now, &reason.clone().not_run());
             self.findings.add(reason, 1);
             // Nothing was done, so there is nothing to clean up.
@@ -299,22 +310,14 @@ impl Runner {
         let Phase::Setup(actions) = &mut self.phase else {
             return;
         };
-        let scan = Scan {
-            now,
-            sample,
-            captured: &self.captured,
-            unit_time: self.evidence.unit_time,
-        };
+        let scan = Scan::new(now, sample, &self.captured, &self.evidence);
         let progress =
             actions.advance(&procedure.setup, scan, &mut operator, driver, &mut self.out);
         let done = progress == Progress::Done;
         if progress == Progress::Waiting || (done && !self.has_settled(now)) {
             return;
         }
-        self.phase = Phase::Steps {
-            next: self.begun_at.first,
-            live: None,
-        };
+        self.phase = Phase::steps_from(self.begun_at.first);
         if let Progress::Stuck(problem) = progress {
             let finding = Finding::InSetUp(Box::new(problem.finding().clone()));
             self.outside(Outside::SetUp, Verdict::Error, finding.clone(), now);

@@ -8,9 +8,8 @@ use protocol::{Duration, Instant};
 use super::schedule::ScheduledStep;
 use super::{Phase, Runner};
 use crate::procedure::PromptPolicy;
-use crate::procedure::action_run::ActionRun;
 use crate::procedure::condition::Answer;
-use crate::procedure::finding::Finding;
+use crate::procedure::finding::{Finding, Findings};
 use crate::procedure::plan::{Action, OnFail, Step};
 use crate::procedure::report::{ResultKind, RunEvent, StepResult};
 use crate::procedure::scan::Scan;
@@ -30,10 +29,7 @@ impl Runner {
             };
             let wanted = !self.leaving || live.is_some();
             let Some(turn) = self.schedule.get(*next).copied().filter(|_| wanted) else {
-                self.phase = Phase::CleanUp {
-                    actions: ActionRun::default(),
-                    since: now,
-                };
+                self.phase = Phase::clean_up(now);
                 return;
             };
             let step = &procedure.steps[turn.index];
@@ -48,12 +44,7 @@ impl Runner {
                 else {
                     return;
                 };
-                let scan = Scan {
-                    now,
-                    sample,
-                    captured: &self.captured,
-                    unit_time: self.evidence.unit_time,
-                };
+                let scan = Scan::new(now, sample, &self.captured, &self.evidence);
                 if !live.advance(step, scan, &mut operator, driver, &mut self.out) {
                     return;
                 }
@@ -114,7 +105,7 @@ impl Runner {
             turns: turn.turns,
             at: now,
         });
-        self.provoked = self.provoked.union(step.provoked().collect());
+        self.provoked.extend(step.provoked());
         if let Phase::Steps { live, .. } = &mut self.phase {
             let mut run = StepRun::new(step, now);
             if self.restarted {
@@ -135,12 +126,7 @@ impl Runner {
         let turn = self.schedule[*next];
         *next += 1;
         let step = &procedure.steps[turn.index];
-        let scan = Scan {
-            now,
-            sample,
-            captured: &self.captured,
-            unit_time: self.evidence.unit_time,
-        };
+        let scan = Scan::new(now, sample, &self.captured, &self.evidence);
         let started = run.started;
         let place = *next - 1;
         let before_target = place < self.begun_at.target;
@@ -168,22 +154,16 @@ impl Runner {
             });
         }
         self.out.push(RunEvent::StepFinished(StepResult {
-            index: turn.index,
-            name: step.name.clone(),
-            turn: turn.turn,
-            turns: turn.turns,
             kind: match before_target {
                 true => ResultKind::Again,
                 false => ResultKind::Step,
             },
-            line: step.line,
-            verdict: end.verdict,
-            findings: end.findings,
             suspect: end.named_part.or_else(|| self.suspect(step)),
             started,
             bench_time: end.bench_time,
             limit_source: step.origin.text(),
             measurements: end.measurements,
+            ..self.result(turn, now, end.verdict, end.findings)
         }));
         self.verdict = self.verdict.and(end.verdict);
         self.stop_unless_passed(turn, end.verdict, now);
@@ -210,10 +190,7 @@ impl Runner {
         {
             self.pass_over(turn, now, Verdict::Skipped, reason);
         }
-        self.phase = Phase::CleanUp {
-            actions: ActionRun::default(),
-            since: now,
-        };
+        self.phase = Phase::clean_up(now);
     }
 
     /// Reports a step that is not run.
@@ -234,8 +211,21 @@ impl Runner {
         verdict: Verdict,
         reason: &Finding,
     ) {
+        let result = self.result(turn, now, verdict, reason.clone().into());
+        self.out.push(RunEvent::StepFinished(result));
+        self.verdict = self.verdict.and(verdict);
+    }
+
+    /// Result of a step that took no time and measured nothing.
+    pub(super) fn result(
+        &self,
+        turn: ScheduledStep,
+        now: Instant,
+        verdict: Verdict,
+        findings: Findings,
+    ) -> StepResult {
         let step = &self.procedure.steps[turn.index];
-        self.out.push(RunEvent::StepFinished(StepResult {
+        StepResult {
             index: turn.index,
             name: step.name.clone(),
             turn: turn.turn,
@@ -243,14 +233,13 @@ impl Runner {
             kind: ResultKind::Step,
             line: step.line,
             verdict,
-            findings: reason.clone().into(),
+            findings,
             suspect: self.suspect(step),
             started: now,
             bench_time: Duration::ZERO,
             limit_source: None,
             measurements: Vec::new(),
-        }));
-        self.verdict = self.verdict.and(verdict);
+        }
     }
 }
 

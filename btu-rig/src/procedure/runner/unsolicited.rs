@@ -7,7 +7,6 @@ use protocol::signal::{Sample, Signal};
 use super::{Phase, Runner};
 use crate::procedure::UnitEvent;
 use crate::procedure::Verdict;
-use crate::procedure::event_set::EventSet;
 use crate::procedure::finding::Finding;
 use crate::procedure::plan::Step;
 use crate::procedure::report::{Outside, RunEvent};
@@ -66,7 +65,7 @@ impl Runner {
             }
             // An event that is not in the dictionary cannot have been asked for.
             let asked = known.is_some_and(|event| {
-                event.definition().severity <= Severity::Info || self.provoked.contains(event)
+                event.definition().severity <= Severity::Info || self.provoked.contains(&event)
             });
             if !asked && self.evidence.explains(known, entry.parameter) {
                 if let Some(step) = live.as_mut() {
@@ -165,6 +164,5 @@ fn asks_for_brake(step: &Step) -> bool {
     step.for_each_signal(&mut |signal| {
         looks |= matches!(signal, Signal::Eb | Signal::EbLoop | Signal::EbCause);
     });
-    let provoked: EventSet = step.provoked().collect();
-    looks || provoked.intersects(BRAKING_EVENTS.into_iter().collect())
+    looks || step.provoked().any(|event| BRAKING_EVENTS.contains(&event))
 }

@@ -11,14 +11,14 @@ const SPANS: u32 = 3;
 /// Rate beyond which a clock is wrong, thousandths: a crystal is off by less than a hundredth of this.
 const WRONG_PERMILLE: i32 = 10;
 
-/// Measures span by span.
+/// The measurement, span by span.
 #[derive(Debug, Default)]
 pub struct ClockRate {
     /// When the span began, and the unit's clock then, ms.
     begun: Option<(Instant, u32)>,
-    /// How much faster it went in the last span, thousandths.
+    /// Excess of the unit's clock over the bench's in the last span, thousandths.
     off_permille: i32,
-    /// Spans in a row in which it was wrong the same way.
+    /// Spans in a row in which the unit's clock was wrong in the same direction.
     wrong: u32,
 }
 

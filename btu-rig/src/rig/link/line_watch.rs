@@ -41,17 +41,17 @@ const SILENT: Duration = Duration::from_ms(150);
 #[derive(Clone, Copy, Debug, Default)]
 struct Counts {
     taken: u64,
-    /// Lost or damaged on the way from the unit.
+    /// Frames lost or damaged on the way from the unit.
     from_unit: u64,
-    /// Refused by the unit.
+    /// Frames that the unit refused.
     to_unit: u64,
-    /// Either way, shortly after this bench's computer stood still: no fault of the line, but a reason for what the
-    /// unit and TCMS log.
+    /// Frames lost in either direction shortly after this bench's computer stood still: no fault of the line, but a
+    /// reason for what the unit and TCMS log.
     after_stall: u64,
 }
 
 impl Counts {
-    /// Counted against the line.
+    /// Frames that count against the line.
     fn lost_or_damaged(self) -> u64 {
         self.from_unit + self.to_unit
     }
@@ -61,16 +61,16 @@ impl Counts {
     }
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct LineWatch {
     /// Frames lost within [`SPAN`] that make a line bad.
     bad_at: u64,
     settles_until: Option<Instant>,
     /// When this bench's own computer did not keep up last, since the unit was first heard or started again.
     stalled_at: Option<Instant>,
-    /// What the rig's own counters said when the line had settled.
+    /// The rig's own counters when the line had settled.
     before: Counters,
-    /// What had been counted by then.
+    /// Counts of this watch when the line had settled.
     base: Counts,
     counts: Counts,
     /// When the last frame came, and how many had come then.
@@ -81,11 +81,11 @@ pub struct LineWatch {
     rejected_by_unit: Option<u16>,
     /// When the line had settled, and the unit's clock then, ms.
     clock: Option<(Instant, u32)>,
-    /// Whether the unit's clock goes as the bench's does.
-    clock_is_right: bool,
+    /// The unit's clock does not go as the bench's does.
+    clock_is_wrong: bool,
     pub rate: ClockRate,
     lateness: Lateness,
-    /// When a frame came last, and how late it was.
+    /// When the last frame came, and how late that frame was.
     late: (Instant, Duration),
     /// Time until which the unit refuses what is damaged on purpose.
     on_purpose_until: Instant,
@@ -98,21 +98,7 @@ impl LineWatch {
     pub fn new(bad_at: u32) -> Self {
         Self {
             bad_at: u64::from(bad_at.max(1)),
-            settles_until: None,
-            stalled_at: None,
-            before: Counters::default(),
-            base: Counts::default(),
-            counts: Counts::default(),
-            heard: (Instant::ZERO, 0),
-            silent: false,
-            rejected_by_unit: None,
-            clock: None,
-            clock_is_right: true,
-            rate: ClockRate::default(),
-            lateness: Lateness::default(),
-            late: (Instant::ZERO, Duration::ZERO),
-            on_purpose_until: Instant::ZERO,
-            past: VecDeque::new(),
+            ..Self::default()
         }
     }
 
@@ -171,7 +157,7 @@ impl LineWatch {
         let wrong = off > CLOCK_OFF.as_us() && off > by_bench / CLOCK_SHARE;
         // Before that a share this small cannot show: what was found before a stall stands.
         if wrong || by_bench >= CLOCK_OFF.as_us() * CLOCK_SHARE {
-            self.clock_is_right = !wrong;
+            self.clock_is_wrong = wrong;
         }
     }
 
@@ -183,7 +169,7 @@ impl LineWatch {
             .map_or(0, |before| refused.wrapping_sub(before));
         // A count that falls is of a unit that was started again.
         let fallen = more > u16::MAX / 2;
-        if fallen || !self.clock_is_right || now < self.on_purpose_until {
+        if fallen || self.clock_is_wrong || now < self.on_purpose_until {
             return;
         }
         if self.settled(now) {
@@ -198,7 +184,7 @@ impl LineWatch {
         if !now.as_us().is_multiple_of(CYCLE.as_us()) {
             return;
         }
-        let heard = taken(counters);
+        let heard = of_whole(counters, Counters::accepted);
         if self.settles_until.is_none() && heard > 0 {
             self.settles_until = Some(now + SETTLES);
         }
@@ -212,12 +198,14 @@ impl LineWatch {
         if settled || self.stalled_at.is_some() {
             let sum = |count: fn(&Counters) -> u64| count(counters) - count(&self.before);
             let beyond_modems = sum(refused_whole).saturating_sub(sum(refused_of_modems));
-            let from_unit = sum(lost).max(beyond_modems) + sum(out_of_place);
+            let whole = |count: CountOf| of_whole(counters, count) - of_whole(&self.before, count);
+            let from_unit =
+                whole(Counters::gaps).max(beyond_modems) + whole(Counters::out_of_place);
             let counts = &mut self.counts;
             if settled {
                 // Modems may catch up with what they may have damaged: what was counted stays counted.
                 counts.from_unit = counts.from_unit.max(self.base.from_unit + from_unit);
-                counts.taken = self.base.taken + sum(taken);
+                counts.taken = self.base.taken + whole(Counters::accepted);
             } else {
                 counts.after_stall += from_unit;
             }
@@ -280,22 +268,11 @@ impl LineWatch {
     }
 }
 
-fn taken(counters: &Counters) -> u64 {
-    WHOLE
-        .iter()
-        .map(|&channel| counters.accepted(channel))
-        .sum()
-}
+type CountOf = fn(&Counters, Channel) -> u64;
 
-fn lost(counters: &Counters) -> u64 {
-    WHOLE.iter().map(|&channel| counters.gaps(channel)).sum()
-}
-
-fn out_of_place(counters: &Counters) -> u64 {
-    WHOLE
-        .iter()
-        .map(|&channel| counters.out_of_place(channel))
-        .sum()
+/// Sum of a count over the channels that no part of the unit damages.
+fn of_whole(counters: &Counters, count: CountOf) -> u64 {
+    WHOLE.iter().map(|&channel| count(counters, channel)).sum()
 }
 
 /// Refused as damaged or wrongly addressed, on a channel that no part of the unit damages, or on none.

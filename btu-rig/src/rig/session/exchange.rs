@@ -30,7 +30,7 @@ const ARM_PATIENCE: Duration = Duration::from_ms(4000);
 const SELF_TEST_TIME: Duration = Duration::from_ms(3000);
 
 /// Requests and their outcome.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Exchange {
     session: u32,
     queue: VecDeque<Request>,
@@ -42,7 +42,7 @@ pub struct Exchange {
     pub refusal: ArmRefusal,
     pub failure: Option<Refusal>,
     /// Why the unit ended the session without being asked to.
-    ended: Option<ArmRefusal>,
+    pub ended: Option<ArmRefusal>,
     /// Results of the last self-test asked for, as far as they came.
     pub self_test: Vec<SelfTestItem>,
     /// The outcome is not awaited: the bench is being made safe.
@@ -54,15 +54,7 @@ impl Exchange {
     pub fn new(session: u32) -> Self {
         Self {
             session,
-            queue: VecDeque::with_capacity(MAX_QUEUE),
-            current: None,
-            may_send: Instant::ZERO,
-            armed_at: None,
-            refusal: ArmRefusal::None,
-            failure: None,
-            ended: None,
-            self_test: Vec::new(),
-            quiet: false,
+            ..Self::default()
         }
     }
 
@@ -94,11 +86,6 @@ impl Exchange {
         self.quiet = true;
     }
 
-    /// Why the unit ended the session by itself, once.
-    pub fn take_ended(&mut self) -> Option<ArmRefusal> {
-        self.ended.take()
-    }
-
     pub fn idle(&self) -> bool {
         self.current.is_none() && self.queue.is_empty()
     }
@@ -110,11 +97,8 @@ impl Exchange {
 
     /// Arming is under way or done: there is something to disarm.
     pub fn may_be_armed(&self) -> bool {
-        self.armed()
-            || self
-                .current
-                .as_ref()
-                .is_some_and(|c| matches!(c.request, Request::Arm { .. }))
+        let current = self.current.as_ref().map(|current| &current.request);
+        self.armed() || matches!(current, Some(Request::Arm { .. }))
     }
 
     /// The end of the session is asked for, and nothing that may fail comes before it.
@@ -122,11 +106,6 @@ impl Exchange {
         let current = self.current.as_ref().map(|current| &current.request);
         let next = current.or(self.queue.front());
         matches!(next, Some(Request::Disarm))
-    }
-
-    /// The bench goes on to something else.
-    pub fn forget_failure(&mut self) {
-        self.failure = None;
     }
 
     /// Sends what is due.
@@ -251,7 +230,7 @@ impl Exchange {
         }
     }
 
-    /// The results of the self-test that was asked for with this sequence number are awaited.
+    /// Whether the self-test that was asked for with this sequence number has not yet given all its results.
     fn awaits_self_test(&self, seq: u16) -> bool {
         let current = self.current.as_ref();
         current.is_some_and(|current| current.tests_itself && current.asked(seq))
@@ -280,7 +259,7 @@ impl Exchange {
             self.armed_at = None;
         }
         if self.quiet {
-            // Making safe goes on: what one request did not reach the next may.
+            // Making safe goes on with the next request, whatever became of this one.
             return;
         }
         self.queue.clear();

@@ -62,7 +62,7 @@ impl IdentityCheck {
         self.compared = self.expected.compare(identity).into();
     }
 
-    /// Sets what the comparisons came to; nothing before the unit has said who it is.
+    /// Sets the signals of the comparisons; none before the unit has told its identity.
     pub fn record(&self, sample: &mut Sample) {
         for compared in &self.compared {
             let outcome = compared.same.map_or(2, u8::from);
@@ -162,10 +162,14 @@ fn with_checksum((name, crc): &(String, u32)) -> String {
     format!("{name} {crc:08x}")
 }
 
+/// A field of the identity up to its end.
+pub fn bytes_of(field: &[u8; 16]) -> &[u8] {
+    field.split(|byte| *byte == 0).next().unwrap_or_default()
+}
+
 /// A field of the identity, in letters that can be seen.
 fn text(field: &[u8; 16]) -> String {
-    let end = field.iter().position(|byte| *byte == 0).unwrap_or(16);
-    let text = String::from_utf8_lossy(field.get(..end).unwrap_or_default());
+    let text = String::from_utf8_lossy(bytes_of(field));
     display_text::line(&text).into_owned()
 }
 

@@ -64,21 +64,21 @@ pub struct LogReader {
     next: u32,
     /// Entries the unit says it has logged.
     logged: u32,
-    /// Last sign of the answer being under way; `None` = nothing asked.
+    /// When the answer last showed that it is under way; `None` = nothing is asked for.
     asked: Option<Instant>,
     /// Index at which an entry was missed and asked for again.
     gap_at: Option<u32>,
     /// The entry was missed again: the reader asks only where the log begins.
     probing: bool,
-    /// Times it was asked for since.
+    /// Times the missed entry was asked for since.
     probes: u32,
     /// Since when the next entry is wanted; `None` = there is none, or it is not taken.
     wanted_since: Option<Instant>,
     /// The unit has said how much it has logged.
     contact: bool,
-    /// When the unit last sent anything of its log; before, it is not proved that it does.
+    /// When the unit last sent anything of its log; `None` = nothing yet proves that the unit sends its log.
     heard: Option<Instant>,
-    /// Times it was asked since the next entry is wanted.
+    /// Times the unit was asked since the next entry is wanted.
     asked_times: u32,
     events: VecDeque<UnitEvent>,
     /// Entries the unit had overwritten or cleared before they could be read.
@@ -147,7 +147,8 @@ impl LogReader {
             self.asked = None;
         }
         if self.probes > PROBES {
-            // Not the line: the rest of the answer is awaited; if asked again, the unit would begin it from the start.
+            // The line is not at fault: the reader waits for the rest of the answer, which the unit would begin again if asked
+            // again.
             self.asked = self.asked.map(|_| now);
         }
         if entry.index == self.next && self.events.len() < MAX_EVENTS {

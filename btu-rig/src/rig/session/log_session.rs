@@ -16,8 +16,8 @@ use crate::rig::link::LinkWatch;
 /// Session number, for arming only: never said.
 const SESSION: u32 = 1;
 
-/// Silence before the first question: a unit refuses who speaks while it may still hear a predecessor,
-/// and would log that.
+/// Silence before the first question: while a unit may still hear the tester before this one, it refuses any other
+/// tester, and would log the refusal.
 const HOLD_BACK: Duration = Duration::from_ms(1_100);
 
 /// Stored entries asked for in a cycle: with all else that a unit says without a harness, 35 % of 115 200 baud.
@@ -44,7 +44,7 @@ impl LogSession {
     /// Reads the log; with `rows`, the stored run record, too.
     pub fn new(rows: bool) -> Self {
         let mut tester = Tester::new(SESSION);
-        tester.hold_log(true);
+        tester.holds_log = true;
         Self {
             link: Link::new(End::Bench),
             tester,
@@ -80,7 +80,7 @@ impl LogSession {
         }
         self.events.step(now, &mut self.link, out);
         match &self.events.state {
-            StoreState::Missing => self.tester.hold_log(false),
+            StoreState::Missing => self.tester.holds_log = false,
             // The time is stored before the events are read to their end.
             StoreState::Read => {
                 if let Some(rows) = &mut self.rows {

@@ -14,15 +14,15 @@ const AGAIN: Duration = Duration::from_ms(400);
 /// Times a unit is asked that does not answer.
 const ATTEMPTS: u32 = 4;
 
-/// What is asked for and what came.
+/// State of the request and of the frames that answer it.
 #[derive(Debug, Default)]
 pub struct Subscription {
-    /// Changes are wanted in their scan, as nothing else shows them.
+    /// The unit is to tell each change in its scan, because nothing else shows the change.
     changes: bool,
     due: Instant,
     asked: u32,
     heard: bool,
-    /// Frames of the maintenance channel lost by the last state.
+    /// Frames of the maintenance channel that had been lost when the last state came.
     gaps: u64,
     times: Option<UnitTime>,
     /// Stamp of the last `Status`, and of the one before.

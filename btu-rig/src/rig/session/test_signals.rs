@@ -7,7 +7,7 @@ use protocol::message::{
 };
 
 use crate::procedure::Refusal;
-use crate::stimulus::StationData;
+use crate::stimulus::{CodeSignal, StationData};
 
 use super::request::Request;
 use crate::rig::wayside::wire_data;
@@ -17,10 +17,10 @@ use crate::stimulus::ranges::{U16_MAX, in_range};
 ///
 /// # Errors
 /// A value the wire cannot carry. What the TEST board cannot make, the unit refuses.
-pub fn code(session: u32, carrier: f64, rate: f64, level: f64) -> Result<Request, Refusal> {
-    let carrier_hz = in_range("test carrier", carrier, 0.0, U16_MAX, "Hz")?;
-    let rate_hz = in_range("test code rate", rate, 0.0, U16_MAX / 100.0, "Hz")?;
-    let level_mv = in_range("test level", level, 0.0, U16_MAX, "mV")?;
+pub fn code(session: u32, signal: CodeSignal) -> Result<Request, Refusal> {
+    let carrier_hz = in_range("test carrier", signal.carrier_hz, 0.0, U16_MAX, "Hz")?;
+    let rate_hz = in_range("test code rate", signal.rate_hz, 0.0, U16_MAX / 100.0, "Hz")?;
+    let level_mv = in_range("test level", signal.level_mv, 0.0, U16_MAX, "mV")?;
     let message = TestCode {
         session,
         carrier_hz: carrier_hz.round() as u16,

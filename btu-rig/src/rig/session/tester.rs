@@ -3,8 +3,7 @@
 use protocol::event::Event;
 use protocol::link::Link;
 use protocol::message::{
-    ArmRefusal, Identify, Identity, KeepAlive, LogEnd, Message, SelfTest, SelfTestItem, Status,
-    StatusBits,
+    ArmRefusal, Identify, Identity, KeepAlive, LogEnd, Message, SelfTest, Status, StatusBits,
 };
 use protocol::{Duration, Instant};
 
@@ -12,6 +11,7 @@ use crate::procedure::link_trouble::{Changed, LinkTrouble, Property};
 use crate::procedure::{LogState, Refusal};
 
 use super::exchange::Exchange;
+use super::identity::bytes_of;
 use super::log_reader::LogReader;
 use super::request::Request;
 use super::test_signals;
@@ -26,7 +26,7 @@ const IDENTIFY_CHECK: Duration = Duration::from_ms(2000);
 /// An uptime that falls by more than this is a wrapped counter, not a restart.
 const UPTIME_WRAP_MS: u32 = 1 << 31;
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Tester {
     pub session: u32,
     silent: bool,
@@ -45,7 +45,7 @@ pub struct Tester {
     /// Entries the unit's log had when it was first heard.
     pub events_at_contact: Option<u32>,
     /// Events from before the contact are not read.
-    leaves_old: bool,
+    pub leaves_old: bool,
     /// Times the unit was started again.
     pub restarts: u32,
     /// The log says that the unit restarted by itself after it was started.
@@ -53,7 +53,7 @@ pub struct Tester {
     pub exchange: Exchange,
     pub log: LogReader,
     /// The log is not read: what is stored is, instead.
-    holds_log: bool,
+    pub holds_log: bool,
     pub clock: UnitClock,
     /// The log was to be cleared: what is gone from it then is gone on purpose.
     clears_log: bool,
@@ -66,25 +66,8 @@ impl Tester {
     pub fn new(session: u32) -> Self {
         Self {
             session,
-            silent: false,
-            speaks_since: Instant::ZERO,
-            keep_alive_due: Instant::ZERO,
-            identify_due: Instant::ZERO,
-            identity: None,
-            first: None,
-            changed: None,
-            self_test: SelfTest::empty(),
-            logged: None,
-            events_at_contact: None,
-            leaves_old: false,
-            restarts: 0,
-            restarted_itself: false,
             exchange: Exchange::new(session),
-            log: LogReader::default(),
-            holds_log: false,
-            clock: UnitClock::default(),
-            clears_log: false,
-            missed: 0,
+            ..Self::default()
         }
     }
 
@@ -235,11 +218,6 @@ impl Tester {
         }
     }
 
-    /// Why the unit refused or ended arming, as it said last.
-    pub fn arm_refusal(&self) -> ArmRefusal {
-        self.exchange.refusal
-    }
-
     /// Every request has its outcome.
     ///
     /// # Errors
@@ -261,30 +239,15 @@ impl Tester {
         (!self.silent).then_some(self.speaks_since)
     }
 
-    /// The log is not read, or from now on it is.
-    pub fn hold_log(&mut self, holds: bool) {
-        self.holds_log = holds;
-    }
-
-    /// What the unit logged before it was first heard is not read.
-    pub fn leave_log_before_contact(&mut self) {
-        self.leaves_old = true;
-    }
-
     /// Why the unit ended the session by itself, once; not while this tester is silent on purpose.
     pub fn take_session_ended(&mut self) -> Option<ArmRefusal> {
-        self.exchange.take_ended().filter(|_| !self.silent)
+        self.exchange.ended.take().filter(|_| !self.silent)
     }
 
     /// Whether it restarted by itself when it was started last, as its log says; `None` until that is read.
     pub fn restarted_itself(&self, now: Instant) -> Option<bool> {
         let read = self.logged.is_some() && self.log.state(now) == LogState::Read;
         read.then_some(self.restarted_itself)
-    }
-
-    /// What the last self-test asked for found, as far as it came.
-    pub fn self_test_items(&self) -> &[SelfTestItem] {
-        &self.exchange.self_test
     }
 
     /// How far the log is read.
@@ -311,10 +274,7 @@ impl Tester {
 
 /// First property in which a unit that answers now differs from the one that answered first.
 fn difference(first: &Identity, now: &Identity) -> Option<LinkTrouble> {
-    let name = |field: &[u8; 16]| {
-        let end = field.iter().position(|byte| *byte == 0).unwrap_or(16);
-        format!("\"{}\"", field[..end].escape_ascii())
-    };
+    let name = |field: &[u8; 16]| format!("\"{}\"", bytes_of(field).escape_ascii());
     type Read<'a> = &'a dyn Fn(&Identity) -> String;
     let properties: [(Property, Read<'_>); 4] = [
         (Property::Serial, &|of| name(&of.serial)),

@@ -1,25 +1,11 @@
 //! The closed loop of train, TCMS and desk, and the way back to the quiescent state.
 
 use protocol::Speed;
-use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch, Outputs};
+use protocol::message::{AtcToTcmsBits, ModeSwitch, Outputs};
 use protocol::signal::Signal;
 
-use super::{FakeUnit, bench};
-use crate::rig::Bench;
-use crate::stimulus::{CutOut, Stimulus, TachoCondition};
-
-fn speed(bench: &Bench<FakeUnit>) -> f64 {
-    bench.rig.sample().get(Signal::TrainSpeed).unwrap()
-}
-
-fn order(bits: AtcToTcmsBits, effort: i16) -> AtcToTcms {
-    AtcToTcms {
-        bits,
-        effort,
-        mode: Mode::AutomaticRun,
-        ..AtcToTcms::default()
-    }
-}
+use super::{FakeUnit, bench, order};
+use crate::stimulus::{CodeSignal, CutOut, Stimulus, TachoCondition};
 
 #[test]
 fn the_train_obeys_ato_passes_its_markers_and_stops_for_the_relay() {
@@ -29,15 +15,19 @@ fn the_train_obeys_ato_passes_its_markers_and_stops_for_the_relay() {
     bench.apply(Stimulus::ModeSwitch(ModeSwitch::Automatic));
     bench.link.to_tcms = order(AtcToTcmsBits::POWER, 1023);
     bench.run_ms(25_000);
-    assert!((50.0..75.0).contains(&speed(&bench)), "{}", speed(&bench));
+    assert!(
+        (50.0..75.0).contains(&bench.value(Signal::TrainSpeed)),
+        "{}",
+        bench.value(Signal::TrainSpeed)
+    );
     bench.run_ms(10_000);
-    assert_eq!(bench.rig.sample().get(Signal::MarkerCoil), Some(1.0));
-    let position = bench.rig.sample().get(Signal::TrainPosition).unwrap();
+    assert_eq!(bench.value(Signal::MarkerCoil), 1.0);
+    let position = bench.value(Signal::TrainPosition);
     assert!(position > 304.03, "{position}");
     bench.link.outputs = Outputs::empty();
     bench.run_ms(30_000);
-    assert_eq!(speed(&bench), 0.0);
-    assert_eq!(bench.rig.sample().get(Signal::EbLoop), Some(1.0));
+    assert_eq!(bench.value(Signal::TrainSpeed), 0.0);
+    assert_eq!(bench.value(Signal::EbLoop), 1.0);
 }
 
 #[test]
@@ -48,12 +38,11 @@ fn generators_wait_while_the_train_drives() {
         to: Speed::from_kmh(30.0),
         accel_mps2: 1.0,
     };
-    let now = bench.now();
-    assert!(bench.rig.apply(now, &go).is_err());
+    bench.refusal(go);
     bench.apply(Stimulus::TrainDriven { on: false });
     bench.apply(go);
     bench.run_ms(10_000);
-    assert!((speed(&bench) - 30.0).abs() < 1e-9);
+    assert!((bench.value(Signal::TrainSpeed) - 30.0).abs() < 1e-9);
 }
 
 /// Code and reverser stay until the wheels stand: taking them away at speed would make a healthy
@@ -61,12 +50,7 @@ fn generators_wait_while_the_train_drives() {
 #[test]
 fn making_safe_keeps_what_a_turning_wheel_needs() {
     let mut bench = bench(FakeUnit::default());
-    let (carrier_hz, rate_hz, level_mv) = (3000.0, 15.0, 500.0);
-    bench.apply(Stimulus::Code {
-        carrier_hz,
-        rate_hz,
-        level_mv,
-    });
+    bench.apply(Stimulus::Code(CodeSignal::new(3000.0, 15.0, 500.0)));
     bench.apply(Stimulus::Reverser { position: -1 });
     bench.apply(Stimulus::Direction { backward: true });
     bench.apply(Stimulus::Tacho {
@@ -79,25 +63,22 @@ fn making_safe_keeps_what_a_turning_wheel_needs() {
         accel_mps2: 3.0,
     });
     bench.run_ms(4000);
-    let now = bench.now();
-    bench.rig.make_safe(now);
+    bench.make_safe();
     bench.run_ms(2900);
-    let value = |bench: &Bench<FakeUnit>, signal| bench.rig.sample().get(signal).unwrap();
     assert!(!bench.rig.safe());
-    assert_eq!(value(&bench, Signal::CarrierHz), 3000.0);
-    assert_eq!(value(&bench, Signal::Tacho1), 1.0);
-    assert_eq!(value(&bench, Signal::Doors), 1.0);
+    assert_eq!(bench.value(Signal::CarrierHz), 3000.0);
+    assert_eq!(bench.value(Signal::Tacho1), 1.0);
+    assert_eq!(bench.value(Signal::Doors), 1.0);
     bench.run_ms(200);
     assert!(bench.rig.safe());
-    assert_eq!(value(&bench, Signal::CarrierHz), 0.0);
-    assert_eq!(value(&bench, Signal::Tacho1), 0.0);
-    assert_eq!(speed(&bench), 0.0);
+    assert_eq!(bench.value(Signal::CarrierHz), 0.0);
+    assert_eq!(bench.value(Signal::Tacho1), 0.0);
+    assert_eq!(bench.value(Signal::TrainSpeed), 0.0);
 }
 
 #[test]
 fn an_impossible_request_is_refused_with_a_reason() {
     let mut bench = bench(FakeUnit::default());
-    let now = bench.now();
     for (stimulus, text) in [
         (
             Stimulus::Tacho {
@@ -152,8 +133,8 @@ fn an_impossible_request_is_refused_with_a_reason() {
             "no car 9",
         ),
     ] {
-        let refusal = bench.rig.apply(now, &stimulus).unwrap_err();
-        assert!(refusal.0.contains(text), "{}", refusal.0);
+        let refusal = bench.refusal(stimulus);
+        assert!(refusal.contains(text), "{refusal}");
     }
 }
 
@@ -177,10 +158,9 @@ fn settling_follows_what_was_begun_last() {
     assert_eq!(bench.settle(Stimulus::PtuArm), Ok(()));
     assert!(bench.now().as_secs() < 11.0 && !bench.rig.motion_settled());
     while !bench.rig.safe() {
-        let now = bench.now();
-        bench.rig.make_safe(now);
+        bench.make_safe();
         bench.run_ms(10);
-        assert!(now.as_secs() < 14.0, "10 m/s at 3 m/s² is 3.4 s");
+        assert!(bench.now().as_secs() < 14.0, "10 m/s at 3 m/s² is 3.4 s");
     }
     assert!(!bench.link.armed());
 }

@@ -93,9 +93,8 @@ impl FakeUnit {
     }
 
     pub fn log_event(&mut self, code: u16) {
-        let index = self.oldest + self.log.len() as u32;
         self.log.push(LogEntry {
-            index,
+            index: self.next_index(),
             code,
             ..LogEntry::default()
         });
@@ -120,86 +119,61 @@ impl FakeUnit {
     }
 
     fn reply(&mut self, seq: u16, message: &Message) -> Option<Message> {
-        let disarmed = |session, refusal| {
-            ArmState {
-                session,
-                armed: 0,
-                refusal,
-            }
-            .into()
+        let arm_state = |session, armed, refusal| ArmState {
+            session,
+            armed,
+            refusal,
         };
-        match *message {
-            Message::Identify(_) => Some(
-                Identity {
-                    uptime_ms: self.scan as u32 * 10,
-                    ..self.identity
-                }
-                .into(),
-            ),
-            Message::ArmRequest(m) if self.refusal != ArmRefusal::None => {
-                Some(disarmed(m.session, self.refusal))
+        let reply = match *message {
+            Message::Identify(_) => Identity {
+                uptime_ms: self.scan as u32 * 10,
+                ..self.identity
             }
-            Message::ArmRequest(m) => Some(
-                ArmChallenge {
-                    session: m.session,
-                    challenge: CHALLENGE,
-                }
-                .into(),
-            ),
+            .into(),
+            Message::ArmRequest(m) if self.refusal != ArmRefusal::None => {
+                arm_state(m.session, 0, self.refusal).into()
+            }
+            Message::ArmRequest(m) => ArmChallenge {
+                session: m.session,
+                challenge: CHALLENGE,
+            }
+            .into(),
             Message::ArmConfirm(m) if m.answer == !CHALLENGE ^ m.session => {
                 self.session = Some(m.session);
-                let refusal = ArmRefusal::None;
-                Some(
-                    ArmState {
-                        session: m.session,
-                        armed: 1,
-                        refusal,
-                    }
-                    .into(),
-                )
+                arm_state(m.session, 1, ArmRefusal::None).into()
             }
-            Message::ArmConfirm(m) => Some(disarmed(m.session, ArmRefusal::BadAnswer)),
+            Message::ArmConfirm(m) => arm_state(m.session, 0, ArmRefusal::BadAnswer).into(),
             Message::Disarm(m) => {
                 self.session = None;
-                Some(disarmed(m.session, ArmRefusal::Disarmed))
+                arm_state(m.session, 0, ArmRefusal::Disarmed).into()
             }
             Message::ReadLog(m) => {
                 self.reading = self.answers_log.then_some(m.from_index);
-                None
+                return None;
             }
-            Message::TwcWayside(m) => {
-                let (station, train_number) = (m.station, m.train_number);
-                let answered_seq = seq;
-                Some(
-                    TwcTrain {
-                        answered_seq,
-                        station,
-                        train_number,
-                        ..Default::default()
-                    }
-                    .into(),
-                )
+            Message::TwcWayside(m) => TwcTrain {
+                answered_seq: seq,
+                station: m.station,
+                train_number: m.train_number,
+                ..TwcTrain::default()
             }
-            Message::KeepAlive(_) | Message::IoInput(_) | Message::TcmsToAtc(_) => None,
+            .into(),
+            Message::KeepAlive(_) | Message::IoInput(_) | Message::TcmsToAtc(_) => return None,
             Message::Subscribe(_) => {
                 self.subscribed = self.tells_train_state;
-                None
+                return None;
             }
-            _ => {
-                let answer = if self.armed() {
+            _ => StimulusAnswer {
+                request_seq: seq,
+                answer: if self.armed() {
                     self.answer
                 } else {
                     Answer::NotArmed
-                };
-                Some(
-                    StimulusAnswer {
-                        request_seq: seq,
-                        answer,
-                    }
-                    .into(),
-                )
+                },
             }
-        }
+            .into(),
+        };
+        Some(reply)
     }
 
     fn read_log(&mut self, replies: &mut Vec<Message>) {
@@ -210,47 +184,35 @@ impl FakeUnit {
         replies.extend(some.map(|&entry| Message::from(entry)));
         self.reading = Some(from + self.entries_per_cycle as u32);
         if rest.len() <= self.entries_per_cycle || self.entries_per_cycle == 0 {
-            let (next_index, oldest_index) = (self.next_index(), self.oldest);
-            replies.push(
-                LogEnd {
-                    next_index,
-                    oldest_index,
-                }
-                .into(),
-            );
+            let end = LogEnd {
+                next_index: self.next_index(),
+                oldest_index: self.oldest,
+            };
+            replies.push(end.into());
             self.reading = None;
         }
     }
 
     fn cyclic(&self, replies: &mut Vec<Message>) {
         if self.harness {
-            replies.push(
-                IoOutput {
-                    outputs: self.outputs,
-                    ..IoOutput::default()
-                }
-                .into(),
-            );
+            let output = IoOutput {
+                outputs: self.outputs,
+                ..IoOutput::default()
+            };
+            replies.push(output.into());
         }
         if self.scan.is_multiple_of(5) {
             if self.harness {
                 replies.push(self.to_tcms.into());
             }
-            let bits = if self.armed() {
-                StatusBits::ARMED
-            } else {
-                StatusBits::empty()
+            let mut status = Status {
+                events: self.next_index(),
+                rejected_frames: self.link.counters().rejected_total() as u16,
+                self_test: self.self_test,
+                ..Status::default()
             };
-            replies.push(
-                Status {
-                    bits,
-                    events: self.next_index(),
-                    rejected_frames: self.link.counters().rejected_total() as u16,
-                    self_test: self.self_test,
-                    ..Status::default()
-                }
-                .into(),
-            );
+            status.bits.set(StatusBits::ARMED, self.armed());
+            replies.push(status.into());
             if self.subscribed {
                 replies.push(self.train_state.into());
             }

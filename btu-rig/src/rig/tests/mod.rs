@@ -13,6 +13,8 @@ mod wire;
 
 use protocol::config::UnitConfig;
 use protocol::line::Line;
+use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode};
+use protocol::signal::Signal;
 
 use super::{Bench, Rig, UnitLink};
 use crate::procedure::Refusal;
@@ -41,7 +43,17 @@ fn link_error<L: UnitLink>(bench: &Bench<L>) -> String {
     error.map_or_else(String::new, |error| error.to_string())
 }
 
-impl Bench<FakeUnit> {
+/// An order of ATO in automatic run.
+fn order(bits: AtcToTcmsBits, effort: i16) -> AtcToTcms {
+    AtcToTcms {
+        bits,
+        effort,
+        mode: Mode::AutomaticRun,
+        ..AtcToTcms::default()
+    }
+}
+
+impl<L: UnitLink> Bench<L> {
     fn run_ms(&mut self, ms: u64) {
         for _ in 0..ms / 10 {
             self.tick().unwrap();
@@ -51,6 +63,26 @@ impl Bench<FakeUnit> {
     fn apply(&mut self, stimulus: Stimulus) {
         let now = self.now();
         self.rig.apply(now, &stimulus).unwrap();
+    }
+
+    /// Why the rig refuses a stimulus.
+    fn refusal(&mut self, stimulus: Stimulus) -> String {
+        let now = self.now();
+        self.rig.apply(now, &stimulus).unwrap_err().0
+    }
+
+    fn value(&self, signal: Signal) -> f64 {
+        self.rig.sample().get(signal).unwrap()
+    }
+
+    fn make_safe(&mut self) {
+        let now = self.now();
+        self.rig.make_safe(now);
+    }
+
+    fn note_stalled(&mut self) {
+        let now = self.now();
+        self.rig.note_stalled(now);
     }
 
     /// Applies and waits for the outcome, for at most 10 s.

@@ -49,9 +49,7 @@ fn without_a_harness_only_the_tester_speaks() {
         assert_eq!(counters.accepted(channel), 0, "{channel:?}");
     }
     assert!(counters.accepted(Channel::Ptu) > 0);
-    let now = bench.now();
-    let refused = bench.rig.apply(now, &Stimulus::Hcr { on: false });
-    let why = refused.expect_err("goes through the harness").0;
+    let why = bench.refusal(Stimulus::Hcr { on: false });
     assert!(
         why.contains("only the maintenance port is connected"),
         "{why}"

@@ -8,11 +8,17 @@ use protocol::signal::Signal;
 use super::{FakeUnit, config, rig};
 use crate::lever::Lever;
 use crate::rig::Bench;
-use crate::stimulus::{Stimulus, TachoCondition, TcmsCondition, WaysideCondition};
+use crate::stimulus::{CodeSignal, Stimulus, TachoCondition, TcmsCondition, WaysideCondition};
 
 /// A number that may be anything, often something sensible.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![4 => 0.0..50.0, 1 => any::<f64>(), 1 => Just(0.0), 1 => Just(f64::NAN)]
+}
+
+fn signal() -> impl Strategy<Value = CodeSignal> {
+    let values = (number(), number(), number());
+    values
+        .prop_map(|(carrier_hz, rate_hz, level_mv)| CodeSignal::new(carrier_hz, rate_hz, level_mv))
 }
 
 fn condition() -> impl Strategy<Value = TachoCondition> {
@@ -43,20 +49,8 @@ fn motion() -> impl Strategy<Value = Stimulus> {
 
 fn other() -> impl Strategy<Value = Stimulus> {
     prop_oneof![
-        (number(), number(), number()).prop_map(|(carrier_hz, rate_hz, level_mv)| {
-            Stimulus::Code {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            }
-        }),
-        (number(), number(), number()).prop_map(|(carrier_hz, rate_hz, level_mv)| {
-            Stimulus::Crosstalk {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            }
-        }),
+        signal().prop_map(Stimulus::Code),
+        signal().prop_map(Stimulus::Crosstalk),
         (number(), number()).prop_map(|(rate_hz_per_s, level_mv_per_s)| Stimulus::CodeDrift {
             rate_hz_per_s,
             level_mv_per_s
@@ -127,8 +121,7 @@ proptest! {
             check_sample(&bench)?;
             let _ = bench.rig.settled();
         }
-        let now = bench.now();
-        bench.rig.make_safe(now);
+        bench.make_safe();
         // 200 km/h at 3 m/s² is 18.5 s.
         bench.run_ms(20_000);
         prop_assert!(bench.rig.safe());
@@ -171,8 +164,7 @@ fn a_disarm_behind_a_self_test_that_hangs_is_not_lost() {
         bench.rig.apply(now, &stimulus).unwrap();
         bench.run_ms(300);
     }
-    let now = bench.now();
-    bench.rig.make_safe(now);
+    bench.make_safe();
     bench.run_ms(10_000);
     assert!(bench.rig.safe());
 }

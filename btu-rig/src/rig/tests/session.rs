@@ -67,8 +67,7 @@ fn arming_and_a_stimulus_go_through_and_making_safe_ends_them() {
         Some(0),
         "an armed session is kept alive under its number"
     );
-    let now = bench.now();
-    bench.rig.make_safe(now);
+    bench.make_safe();
     assert!(!bench.rig.safe());
     bench.run_ms(500);
     assert!(bench.rig.safe() && !bench.link.armed());
@@ -125,8 +124,7 @@ fn a_unit_that_never_answers_is_given_up_and_a_bench_still_becomes_safe() {
     bench.link.dead = vec![Channel::Ptu];
     let text = "the unit did not answer the test speed within 900 ms";
     assert_eq!(bench.settle(TEST_SPEED), refusal(text));
-    let now = bench.now();
-    bench.rig.make_safe(now);
+    bench.make_safe();
     bench.run_ms(3000);
     assert!(bench.rig.safe());
     let error = link_error(&bench);
@@ -244,8 +242,7 @@ fn a_silent_tester_sends_nothing_and_takes_no_request() {
     bench.run_ms(5000);
     assert_eq!(ptu(&bench), before);
     assert!(!bench.rig.safe());
-    let now = bench.now();
-    assert!(bench.rig.apply(now, &Stimulus::PtuArm).is_err());
+    bench.refusal(Stimulus::PtuArm);
     bench.apply(Stimulus::PtuSilent { on: false });
     bench.run_ms(500);
     assert!(ptu(&bench) > before && bench.rig.safe());

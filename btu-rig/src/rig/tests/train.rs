@@ -2,10 +2,10 @@
 //! what the rig says is true.
 
 use protocol::line::{CodeFrom, Gradient, Line};
-use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch};
+use protocol::message::{AtcToTcmsBits, ModeSwitch};
 use protocol::signal::Signal;
 
-use super::{FakeUnit, config, line};
+use super::{FakeUnit, config, line, order};
 use crate::conditions::Conditions;
 use crate::rig::{Bench, Rig, TrueMotion};
 use crate::stimulus::{CutOut, Stimulus};
@@ -37,16 +37,7 @@ fn ask(bench: &mut Bench<FakeUnit>, share: f64) {
     } else {
         AtcToTcmsBits::POWER
     };
-    bench.link.to_tcms = AtcToTcms {
-        bits,
-        effort: (share * FULL) as i16,
-        mode: Mode::AutomaticRun,
-        ..AtcToTcms::default()
-    };
-}
-
-fn value(bench: &Bench<FakeUnit>, signal: Signal) -> f64 {
-    bench.rig.sample().get(signal).unwrap()
+    bench.link.to_tcms = order(bits, (share * FULL) as i16);
 }
 
 /// Pulses of channel 1 so far; runs in these tests stay below one turn of the counter.
@@ -71,16 +62,16 @@ fn true_values_are_the_trains_and_the_distance_to_its_stop() {
         ..
     } = bench.rig.truth();
     assert!((position_m + to_stop_m.unwrap() - 850.03).abs() < 1e-9);
-    assert!((value(&bench, Signal::TrainSpeed) / 3.6 - speed_mps).abs() < 1e-9);
-    assert!((value(&bench, Signal::ToStop) - to_stop_m.unwrap()).abs() < 1e-9);
-    assert!((value(&bench, Signal::TrainAccel) - accel_mps2).abs() < 0.02);
+    assert!((bench.value(Signal::TrainSpeed) / 3.6 - speed_mps).abs() < 1e-9);
+    assert!((bench.value(Signal::ToStop) - to_stop_m.unwrap()).abs() < 1e-9);
+    assert!((bench.value(Signal::TrainAccel) - accel_mps2).abs() < 0.02);
     assert!((tractive_power_w / (traction_n * speed_mps) - 1.0).abs() < 1e-3);
     ask(&mut bench, -1.0);
     bench.run_ms(5_000);
     let braking = bench.rig.truth();
     assert!(braking.electric_brake_n > braking.air_brake_n && braking.traction_n == 0.0);
-    assert!((-1.1..-0.9).contains(&value(&bench, Signal::TrainAccel)));
-    assert!(value(&bench, Signal::TrainJerk).abs() < 0.1, "steady");
+    assert!((-1.1..-0.9).contains(&bench.value(Signal::TrainAccel)));
+    assert!(bench.value(Signal::TrainJerk).abs() < 0.1, "steady");
 }
 
 /// A wheel 2 % larger makes 2 % fewer pulses for the distance; markers pulse where they really lie.
@@ -208,15 +199,12 @@ fn the_antenna_follows_the_codes_along_the_section() {
     };
     line.sections[0].speed_codes = vec![code(0.0, "65"), code(100.0, "45")];
     let mut bench = at_departure(&line, Conditions::default());
-    let rate = |b: &Bench<FakeUnit>| value(b, Signal::CodeRateHz);
+    let rate = |b: &Bench<FakeUnit>| b.value(Signal::CodeRateHz);
     bench.run_ms(100);
     assert_eq!(rate(&bench), 0.0, "nothing follows unless asked");
     bench.apply(Stimulus::CodesAlong { on: true });
     bench.run_ms(100);
-    assert_eq!(
-        (rate(&bench), value(&bench, Signal::LevelMv)),
-        (12.0, 500.0)
-    );
+    assert_eq!((rate(&bench), bench.value(Signal::LevelMv)), (12.0, 500.0));
     ask(&mut bench, 1.0);
     while rate(&bench) == 12.0 {
         bench.run_ms(10);
@@ -243,14 +231,12 @@ fn codes_that_cannot_be_sent_are_refused() {
         };
         line.sections[0].speed_codes = codes.into_iter().map(sent).collect();
         let mut bench = at_departure(&line, Conditions::default());
-        let now = bench.now();
-        let refusal = bench.rig.apply(now, &along).unwrap_err();
-        assert!(refusal.0.contains(words), "{}", refusal.0);
+        let refusal = bench.refusal(along);
+        assert!(refusal.contains(words), "{refusal}");
         // In the other order it is the section that is refused.
         bench.apply(Stimulus::MarkersAlong { section: None });
         bench.apply(along);
-        let lay = Stimulus::MarkersAlong { section: Some(61) };
-        assert!(bench.rig.apply(now, &lay).is_err());
+        bench.refusal(Stimulus::MarkersAlong { section: Some(61) });
     }
 }
 
@@ -274,7 +260,6 @@ fn a_train_can_be_exchanged() {
         car: 1,
         on: true,
     };
-    let now = bench.now();
-    let refusal = bench.rig.apply(now, &cut_out).unwrap_err();
-    assert!(refusal.0.contains("point mass"), "{}", refusal.0);
+    let refusal = bench.refusal(cut_out);
+    assert!(refusal.contains("point mass"), "{refusal}");
 }

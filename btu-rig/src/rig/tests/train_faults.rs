@@ -1,14 +1,14 @@
 //! Faults of the train act at their place from their onset on, and nothing on the bench removes them.
 
 use protocol::injection::{FaultCatalogue, FaultMode, Occurrence};
-use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch, Outputs};
+use protocol::message::{AtcToTcms, AtcToTcmsBits, ModeSwitch, Outputs};
 use protocol::signal::Signal;
 use protocol::{Duration, Instant, Speed};
 
-use super::{FakeUnit, bench};
+use super::{FakeUnit, bench, order};
 use crate::rig::train_side::TrainFaults;
 use crate::rig::{Bench, Misplaced, check_places};
-use crate::stimulus::{Stimulus, TrainSwitch, WaysideCondition};
+use crate::stimulus::{CodeSignal, Stimulus, TrainSwitch, WaysideCondition};
 use crate::tcms::EbSources;
 use crate::train::{CarSet, Equipment, TrainData};
 
@@ -31,21 +31,12 @@ fn mode(id: &str) -> FaultMode {
     }
 }
 
-fn signal(bench: &Bench<FakeUnit>, signal: Signal) -> f64 {
-    bench.rig.sample().get(signal).unwrap()
-}
-
 /// The train stands braked by ATO with full service, then released: its equipment at either time.
 fn braked_and_released(bench: &mut Bench<FakeUnit>) -> [Equipment; 2] {
     bench.apply(Stimulus::ModeSwitch(ModeSwitch::Automatic));
     bench.apply(Stimulus::TrainDriven { on: true });
     [(AtcToTcmsBits::BRAKE, -1024), (AtcToTcmsBits::empty(), 0)].map(|(bits, effort)| {
-        bench.link.to_tcms = AtcToTcms {
-            bits,
-            effort,
-            mode: Mode::AutomaticRun,
-            ..AtcToTcms::default()
-        };
+        bench.link.to_tcms = order(bits, effort);
         bench.run_ms(2_500);
         bench.rig.train.equipment()
     })
@@ -82,17 +73,17 @@ const CASES: [(&str, Shows); 30] = [
     }),
     ("brake_cylinder.sticks", |bench| keeps_its_air(bench, 4, 5)),
     ("master_controller.pot_low", |bench| {
-        signal(bench, Signal::ControllerVolts) == 0.0
+        bench.value(Signal::ControllerVolts) == 0.0
     }),
     ("master_controller.pot_high", |bench| {
-        signal(bench, Signal::ControllerVolts) == 10.0
+        bench.value(Signal::ControllerVolts) == 10.0
     }),
     ("master_controller.pot_drifts", |bench| {
         let [_, low, high, _] = bench.rig.tcms.data.controller_v;
-        (signal(bench, Signal::ControllerVolts) - (low + high) / 2.0 - 0.3).abs() < 0.01
+        (bench.value(Signal::ControllerVolts) - (low + high) / 2.0 - 0.3).abs() < 0.01
     }),
     ("master_controller.pot_drops_out", |bench| {
-        signal(bench, Signal::ControllerVolts) == 0.0
+        bench.value(Signal::ControllerVolts) == 0.0
     }),
     ("door_contact.open", doors_say_open),
     ("door_contact.chatters", |bench| {
@@ -104,35 +95,33 @@ const CASES: [(&str, Shows); 30] = [
     ("door_contact.bridged", |bench| {
         bench.apply(Stimulus::Doors { closed: false });
         bench.run_ms(20);
-        signal(bench, Signal::Doors) == 1.0
+        bench.value(Signal::Doors) == 1.0
     }),
     ("door_contact.loose", doors_say_open),
     ("door_contact.loose_at_speed", doors_say_open),
     ("door_contact.left_open", |bench| {
-        signal(bench, Signal::DoorsLeft) == 0.0 && signal(bench, Signal::DoorsRight) == 2.0
+        bench.value(Signal::DoorsLeft) == 0.0 && bench.value(Signal::DoorsRight) == 2.0
     }),
     ("door_contact.right_bridged", |bench| {
         bench.apply(Stimulus::Doors { closed: false });
         bench.run_ms(20);
-        signal(bench, Signal::DoorsRight) == 1.0
+        bench.value(Signal::DoorsRight) == 1.0
     }),
     ("head_control_relay.dead", relay_is_down),
     ("head_control_relay.stuck", |bench| {
         bench.apply(Stimulus::Hcr { on: false });
         bench.run_ms(20);
-        signal(bench, Signal::Hcr) == 1.0
+        bench.value(Signal::Hcr) == 1.0
     }),
     ("head_control_relay.drops_out", relay_is_down),
     ("tcms.silent", tcms_is_silent),
-    ("tcms.stale", |bench| {
-        signal(bench, Signal::TcmsAlive) == 0.0
-    }),
+    ("tcms.stale", |bench| bench.value(Signal::TcmsAlive) == 0.0),
     ("tcms.hangs", tcms_is_silent),
     ("tcms.keeps_cab", |bench| {
         bench.apply(Stimulus::Hcr { on: true });
         bench.link.to_tcms.bits = AtcToTcmsBits::CHANGE_OF_CABS;
         bench.run_ms(200);
-        signal(bench, Signal::Hcr) == 1.0
+        bench.value(Signal::Hcr) == 1.0
     }),
     ("air_supply.low", reservoir_is_low),
     ("air_supply.leak", reservoir_is_low),
@@ -150,12 +139,7 @@ const CASES: [(&str, Shows); 30] = [
 fn traction_share(bench: &mut Bench<FakeUnit>, car: usize, like: usize) -> f64 {
     bench.apply(Stimulus::ModeSwitch(ModeSwitch::Automatic));
     bench.apply(Stimulus::TrainDriven { on: true });
-    bench.link.to_tcms = AtcToTcms {
-        bits: AtcToTcmsBits::POWER,
-        effort: 1023,
-        mode: Mode::AutomaticRun,
-        ..AtcToTcms::default()
-    };
+    bench.link.to_tcms = order(AtcToTcmsBits::POWER, 1023);
     bench.run_ms(1_500);
     let given = bench.rig.train.equipment().traction_n;
     given[car - 1] / given[like - 1]
@@ -179,15 +163,15 @@ fn keeps_its_air(bench: &mut Bench<FakeUnit>, car: usize, like: usize) -> bool {
 }
 
 fn doors_say_open(bench: &mut Bench<FakeUnit>) -> bool {
-    signal(bench, Signal::Doors) == 0.0
+    bench.value(Signal::Doors) == 0.0
 }
 
 fn relay_is_down(bench: &mut Bench<FakeUnit>) -> bool {
-    signal(bench, Signal::Hcr) == 0.0
+    bench.value(Signal::Hcr) == 0.0
 }
 
 fn tcms_is_silent(bench: &mut Bench<FakeUnit>) -> bool {
-    signal(bench, Signal::TcmsAlive) == 0.0 && signal(bench, Signal::TcmsHears) == 1.0
+    bench.value(Signal::TcmsAlive) == 0.0 && bench.value(Signal::TcmsHears) == 1.0
 }
 
 fn reservoir_is_low(bench: &mut Bench<FakeUnit>) -> bool {
@@ -196,8 +180,7 @@ fn reservoir_is_low(bench: &mut Bench<FakeUnit>) -> bool {
 }
 
 fn make_safe(bench: &mut Bench<FakeUnit>) {
-    let now = bench.now();
-    bench.rig.make_safe(now);
+    bench.make_safe();
     bench.link.to_tcms = AtcToTcms::default();
     bench.run_ms(3_000);
     assert!(bench.rig.safe());
@@ -298,11 +281,7 @@ fn played(fault: Option<FaultMode>) -> (Vec<u8>, Vec<Option<f64>>, Vec<Option<f6
     let mut bench = bench(FakeUnit::default());
     bench.apply(Stimulus::Wayside(WaysideCondition::Good));
     bench.apply(Stimulus::Hcr { on: true });
-    bench.apply(Stimulus::Code {
-        carrier_hz: 3_000.0,
-        rate_hz: 15.0,
-        level_mv: 500.0,
-    });
+    bench.apply(Stimulus::Code(CodeSignal::new(3_000.0, 15.0, 500.0)));
     bench.apply(Stimulus::Speed {
         to: Speed::from_kmh(30.0),
         accel_mps2: 2.0,

@@ -94,9 +94,7 @@ fn a_bad_line_is_reported_as_a_line_fault_in_either_direction() {
     ] {
         for (to_unit, from_unit) in [(true, false), (false, true), (true, true)] {
             let mut bench = on_bad_line(harm, to_unit, from_unit);
-            for _ in 0..1_500 {
-                bench.tick().unwrap();
-            }
+            bench.run_ms(15_000);
             let error = link_error(&bench);
             let told = error.starts_with("the line between tester and unit is bad: within 10 s ");
             assert!(told, "{harm:?} {to_unit} {from_unit}: \"{error}\"");
@@ -110,16 +108,15 @@ fn a_bad_line_is_reported_as_a_line_fault_in_either_direction() {
 #[test]
 fn what_a_line_lost_before_and_after_a_standstill_still_explains_events() {
     let mut bench = on_bad_line(LineDisturbance::Flips, true, true);
-    (0..400).for_each(|_| bench.tick().unwrap());
+    bench.run_ms(4_000);
     let lately = |bench: &Bench<BadLine>| bench.rig.evidence().line.lost_or_damaged_lately;
     let before = lately(&bench);
     assert!(before > 0);
-    let now = bench.now();
-    bench.rig.note_stalled(now);
+    bench.note_stalled();
     assert!(lately(&bench) >= before, "what was lost is known still");
     assert_eq!(bench.rig.link_error(), None);
     let against_the_line = bench.rig.evidence().line.lost_or_damaged;
-    (0..100).for_each(|_| bench.tick().unwrap());
+    bench.run_ms(1_000);
     assert!(lately(&bench) > before, "what is lost after is known, too");
     let line = bench.rig.evidence().line;
     assert_eq!(line.lost_or_damaged, against_the_line);
@@ -133,14 +130,12 @@ fn a_line_is_silent_from_a_standstill_until_the_unit_is_heard() {
     bench.run_ms(4_000);
     let silent = |bench: &Bench<FakeUnit>| bench.rig.evidence().line.silent;
     assert!(!silent(&bench));
-    let now = bench.now();
-    bench.rig.note_stalled(now);
+    bench.note_stalled();
     assert!(silent(&bench));
     bench.run_ms(100);
     assert!(!silent(&bench), "the unit is there");
     bench.link.dead = Channel::ALL.to_vec();
-    let now = bench.now();
-    bench.rig.note_stalled(now);
+    bench.note_stalled();
     bench.run_ms(500);
     assert!(silent(&bench), "the line was pulled");
 }
@@ -192,8 +187,7 @@ fn a_fast_clock_is_measured_and_stays_wrong_over_a_stall() {
     bench.run_ms(10_000);
     assert_eq!(bench.rig.evidence().clock_wrong_by_permille, Some(30));
     for _ in 0..30 {
-        let now = bench.now();
-        bench.rig.note_stalled(now);
+        bench.note_stalled();
         bench.run_ms(4_000);
     }
     assert!(bench.link.link.counters().rejected_total() > 200);
@@ -354,9 +348,7 @@ impl UnitLink for Echo {
 #[test]
 fn a_wrong_baud_rate_is_suspected_only_where_no_check_sequence_fits() {
     let mut bench = Bench::new(rig(1), Echo);
-    for _ in 0..301 {
-        bench.tick().unwrap();
-    }
+    bench.run_ms(3_010);
     let error = link_error(&bench);
     assert!(
         error.contains("no valid frame") && error.contains("own frames come back"),

@@ -5,7 +5,9 @@ use protocol::{Instant, SCAN};
 
 use super::{FakeUnit, bench, link_error, rig};
 use crate::rig::{Bench, LinkTrouble, UnitLink};
-use crate::stimulus::{StationData, Stimulus, TachoCondition, TcmsCondition, WaysideCondition};
+use crate::stimulus::{
+    CodeSignal, StationData, Stimulus, TachoCondition, TcmsCondition, WaysideCondition,
+};
 use protocol::Speed;
 
 /// Bytes each way in a cycle of 50 ms (576 fit at 115 200 baud).
@@ -30,12 +32,8 @@ fn no_cycle_exceeds_the_budget() {
     let mut unit = FakeUnit::default();
     (0..200).for_each(|_| unit.log_event(1));
     let mut bench = bench(unit);
-    let (carrier_hz, rate_hz, level_mv) = (32_382.0, 323.82, 32_382.0);
-    bench.apply(Stimulus::Code {
-        carrier_hz,
-        rate_hz,
-        level_mv,
-    });
+    let signal = CodeSignal::new(32_382.0, 323.82, 32_382.0);
+    bench.apply(Stimulus::Code(signal));
     bench.apply(Stimulus::Station(STATION));
     bench.apply(Stimulus::Speed {
         to: Speed::from_kmh(110.0),
@@ -116,9 +114,7 @@ fn a_bad_connection_is_named_after_the_time_for_first_contact() {
         ),
     ] {
         let mut bench = Bench::new(rig(1), Noise(noise));
-        for _ in 0..300 {
-            bench.tick().unwrap();
-        }
+        bench.run_ms(3_000);
         assert_eq!(bench.rig.link_error(), None);
         bench.tick().unwrap();
         let error = link_error(&bench);
@@ -135,8 +131,7 @@ fn a_standstill_of_the_testers_computer_is_no_silence_of_the_unit() {
     bench.link.dead = vec![Channel::Ptu, Channel::Io];
     for _ in 0..300 {
         bench.tick().unwrap();
-        let now = bench.now();
-        bench.rig.note_stalled(now);
+        bench.note_stalled();
     }
     bench.run_ms(1400);
     assert_eq!(bench.rig.link_error(), None);

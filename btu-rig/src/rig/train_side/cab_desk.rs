@@ -46,7 +46,7 @@ pub struct CabDesk {
     pub wheel: Entry,
 }
 
-/// Value keyed in last, 0 = as the unit is configured, and the frames of it still to be sent.
+/// Value keyed in last, 0 = as the unit is configured, and the number of frames with this value still to be sent.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Entry {
     value: u16,

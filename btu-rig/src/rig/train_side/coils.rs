@@ -8,6 +8,7 @@ use protocol::message::{
 use protocol::{Instant, Random, SCAN};
 
 use super::motion::Motion;
+use crate::stimulus::CodeSignal;
 use crate::waveform::{Channel, ChannelConfig, CodeWave, FskWave, MarkerWave, SensorWave};
 
 const SAMPLES: usize = COIL_SAMPLES;
@@ -17,8 +18,8 @@ const ASKED_MPS: f64 = 20.0;
 
 /// Content of the coils in one scan.
 pub struct InCoils<'a> {
-    /// Both codes in the ATP antenna: carrier, Hz, code rate, Hz, level, mV.
-    pub codes: [(f64, f64, f64); 2],
+    /// Both codes in the ATP antenna.
+    pub codes: [CodeSignal; 2],
     /// Frames that the wayside sends through the loop.
     pub twc: &'a [u8],
     /// Motion of the train over its markers.
@@ -44,7 +45,7 @@ pub struct Coils {
 }
 
 impl Coils {
-    /// Silent coils, those of `made`, for a unit of this configuration; what disturbs them begins with the seed.
+    /// Silent coils for a unit of this configuration. Those of `made` have waveforms; the seed begins their disturbances.
     pub fn new(
         config: &UnitConfig,
         channel: &ChannelConfig,
@@ -85,8 +86,8 @@ impl Coils {
         out: &mut Vec<u8>,
     ) {
         let mut samples = [0.0; SAMPLES];
-        for (wave, (carrier_hz, rate_hz, level_mv)) in self.codes.iter_mut().zip(coils.codes) {
-            wave.set(carrier_hz, rate_hz, level_mv, SAMPLE_HZ);
+        for (wave, code) in self.codes.iter_mut().zip(coils.codes) {
+            wave.set(code.carrier_hz, code.rate_hz, code.level_mv, SAMPLE_HZ);
             for (sample, value) in samples.iter_mut().zip(wave) {
                 *sample += value;
             }

@@ -39,7 +39,7 @@ impl DoorGear {
     pub fn follow(&mut self, on: bool, doors: [DoorState; 2]) {
         self.follows = on;
         for (drive, state) in self.sides.iter_mut().zip(doors) {
-            drive.open = f64::from(u8::from(state == DoorState::Open));
+            drive.open = f64::from(state == DoorState::Open);
         }
     }
 

@@ -125,7 +125,7 @@ impl Tacho {
         }
     }
 
-    /// Whether it tells of a wheel that turns backward, or does not, that it does.
+    /// Whether the tachometer reports backward rotation of a wheel that turns `backward` or forward.
     pub fn tells_backward(&self, backward: bool) -> bool {
         backward != (self.condition == TachoCondition::Reversed)
     }

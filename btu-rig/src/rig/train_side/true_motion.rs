@@ -24,7 +24,7 @@ pub struct TrueMotion {
 const ACCEL_SCANS: usize = 5;
 /// Scans the jerk is taken over: 200 ms.
 const JERK_SCANS: usize = 20;
-/// Speeds that takes.
+/// Speeds of the past that mean acceleration and jerk need.
 const HISTORY: usize = ACCEL_SCANS + JERK_SCANS + 1;
 
 /// Speeds of the last scans.

@@ -48,12 +48,12 @@ impl Default for Plan {
 pub struct Wheel {
     /// Size of the speed, m/s.
     speed_mps: f64,
-    /// The wheel turns backward, or would.
+    /// The wheel turns backward, or would if it turned.
     pub backward: bool,
     plan: Plan,
     /// The train's motion in the last scan.
     pub motion: Motion,
-    /// The tachometers' axle's.
+    /// Motion of the tachometers' axle in the last scan.
     pub axle: Motion,
     forward_at_rest: bool,
 }

@@ -5,12 +5,9 @@ use protocol::{Duration, Instant, Random, SCAN};
 
 use crate::conditions::Sensors;
 
-use crate::procedure::Refusal;
 use crate::random::normal;
-use crate::stimulus::ranges::{U16_MAX, in_range};
-
-/// Highest code rate, Hz: the catalogue's range, just below what 0.01 Hz in 16 bits can say.
-pub const MAX_RATE_HZ: f64 = 655.0;
+use crate::stimulus::ranges::U16_MAX;
+use crate::stimulus::{CodeSignal, MAX_RATE_HZ};
 
 /// Time from one frame that tells of a second code to the next.
 const CROSSTALK_PERIOD: Duration = Duration::from_ms(50);
@@ -18,7 +15,10 @@ const CROSSTALK_PERIOD: Duration = Duration::from_ms(50);
 /// Signals put into the antenna, and signals that arrive there.
 #[derive(Debug)]
 pub struct Antenna {
-    wanted: AntennaCommand,
+    /// The signal that is put in.
+    wanted: CodeSignal,
+    /// Its drift, Hz/s and mV/s.
+    drift: (f64, f64),
     /// Signal of a neighbouring track circuit.
     second: Second,
     sensors: Sensors,
@@ -28,20 +28,10 @@ pub struct Antenna {
     level_noise: f64,
 }
 
-/// The signal that is put in; all 0 = none.
-#[derive(Debug, Default)]
-struct AntennaCommand {
-    carrier_hz: f64,
-    rate_hz: f64,
-    level_mv: f64,
-    rate_hz_per_s: f64,
-    level_mv_per_s: f64,
-}
-
 /// A second, steady signal.
 #[derive(Debug, Default)]
 struct Second {
-    signal: AntennaCommand,
+    signal: CodeSignal,
     /// The signal was sent, and its end was not.
     told: bool,
     due: Instant,
@@ -51,7 +41,8 @@ impl Antenna {
     /// No signal; `random` is for noise.
     pub fn new(random: Random) -> Self {
         Self {
-            wanted: AntennaCommand::default(),
+            wanted: CodeSignal::default(),
+            drift: (0.0, 0.0),
             second: Second::default(),
             sensors: Sensors::default(),
             random,
@@ -66,36 +57,26 @@ impl Antenna {
     }
 
     /// Puts a steady signal into the antenna.
-    pub fn set(&mut self, carrier_hz: f64, rate_hz: f64, level_mv: f64) {
-        self.wanted = AntennaCommand {
-            carrier_hz,
-            rate_hz,
-            level_mv,
-            ..AntennaCommand::default()
-        };
+    pub fn set(&mut self, signal: CodeSignal) {
+        self.wanted = signal;
+        self.drift = (0.0, 0.0);
     }
 
     /// Lets rate and level drift from where they are.
     pub fn drift(&mut self, rate_hz_per_s: f64, level_mv_per_s: f64) {
-        self.wanted.rate_hz_per_s = rate_hz_per_s;
-        self.wanted.level_mv_per_s = level_mv_per_s;
+        self.drift = (rate_hz_per_s, level_mv_per_s);
     }
 
     /// Puts a second signal beside it; level 0 takes it away.
-    pub fn set_second(&mut self, now: Instant, carrier_hz: f64, rate_hz: f64, level_mv: f64) {
-        self.second.signal = AntennaCommand {
-            carrier_hz,
-            rate_hz,
-            level_mv,
-            ..AntennaCommand::default()
-        };
+    pub fn set_second(&mut self, now: Instant, signal: CodeSignal) {
+        self.second.signal = signal;
         self.second.due = now;
     }
 
     /// Takes all out.
     pub fn off(&mut self) {
-        self.wanted = AntennaCommand::default();
-        self.second.signal = AntennaCommand::default();
+        self.set(CodeSignal::default());
+        self.second.signal = CodeSignal::default();
     }
 
     /// The second signal, when it is due to be sent: while it is there, and once at its end.
@@ -114,14 +95,12 @@ impl Antenna {
         })
     }
 
-    /// Both signals as they arrive: carrier, Hz, code rate, Hz, level, mV.
-    pub fn arriving(&self) -> [(f64, f64, f64); 2] {
-        [&self.wanted, &self.second.signal].map(|signal| {
-            (
-                f64::from(self.arriving_hz(signal.carrier_hz)),
-                f64::from(self.arriving_chz(signal.rate_hz)) / 100.0,
-                f64::from(self.arriving_mv(signal.level_mv)),
-            )
+    /// Both signals as they arrive.
+    pub fn arriving(&self) -> [CodeSignal; 2] {
+        [self.wanted, self.second.signal].map(|signal| CodeSignal {
+            carrier_hz: self.arriving_hz(signal.carrier_hz).into(),
+            rate_hz: f64::from(self.arriving_chz(signal.rate_hz)) / 100.0,
+            level_mv: self.arriving_mv(signal.level_mv).into(),
         })
     }
 
@@ -133,11 +112,7 @@ impl Antenna {
     /// One scan of drift and noise.
     pub fn step(&mut self) {
         let seconds = SCAN.as_secs();
-        let AntennaCommand {
-            rate_hz_per_s,
-            level_mv_per_s,
-            ..
-        } = self.wanted;
+        let (rate_hz_per_s, level_mv_per_s) = self.drift;
         let wanted = &mut self.wanted;
         wanted.rate_hz = (wanted.rate_hz + rate_hz_per_s * seconds).clamp(0.0, MAX_RATE_HZ);
         wanted.level_mv = (wanted.level_mv + level_mv_per_s * seconds).clamp(0.0, U16_MAX);
@@ -177,16 +152,7 @@ impl Antenna {
     }
 }
 
-/// A signal that the antenna can have: Hz, Hz, mV.
-pub fn antenna_signal(carrier: f64, rate: f64, level: f64) -> Result<(f64, f64, f64), Refusal> {
-    Ok((
-        in_range("carrier", carrier, 0.0, U16_MAX, "Hz")?,
-        in_range("code rate", rate, 0.0, MAX_RATE_HZ, "Hz")?,
-        in_range("level", level, 0.0, U16_MAX, "mV")?,
-    ))
-}
-
-/// Adds to a frequency that is there; one that is not stays away.
+/// A frequency with its offset; a frequency of 0, that is no signal, stays 0.
 fn off_by(hz: f64, off_hz: f64) -> f64 {
     if hz > 0.0 { hz + off_hz } else { 0.0 }
 }
@@ -198,7 +164,7 @@ mod tests {
     #[test]
     fn drift_is_linear_and_stops_at_nothing() {
         let mut antenna = Antenna::new(Random::new(1));
-        antenna.set(3000.0, 15.0, 500.0);
+        antenna.set(CodeSignal::new(3000.0, 15.0, 500.0));
         antenna.drift(-0.5, -100.0);
         for _ in 0..200 {
             antenna.step();
@@ -230,7 +196,7 @@ mod tests {
             (antenna.carrier_hz(), antenna.rate_chz(), antenna.level_mv()),
             (0, 0, 0)
         );
-        antenna.set(3000.0, 15.0, 500.0);
+        antenna.set(CodeSignal::new(3000.0, 15.0, 500.0));
         let scans: Vec<_> = (0..10_000)
             .map(|_| {
                 antenna.step();

@@ -7,7 +7,7 @@ mod step_profile;
 mod track;
 mod twc;
 
-pub use antenna::{Antenna, antenna_signal};
+pub use antenna::Antenna;
 pub use markers::Markers;
 pub use track::Track;
 pub use twc::{Wayside, wire_data};

@@ -18,7 +18,7 @@ pub struct OrderSender {
 }
 
 impl OrderSender {
-    /// Sends these from now on, `None` = none. A unit that gave no report is asked again.
+    /// Sends these orders from now on, or none. A unit that reported to no order before is asked again.
     pub fn set(&mut self, orders: Option<OrderData>) {
         self.orders = orders;
         self.unanswered = 0;

@@ -42,7 +42,8 @@ impl Wayside {
         }
     }
 
-    /// Good again, at a section's departure station, without orders; due times and counts go on.
+    /// Puts the wayside back into good condition at a section's departure station, without orders; due times and counts
+    /// go on.
     pub fn reset(&mut self, section: &Section) {
         self.condition = WaysideCondition::Good;
         self.data = StationData::at_departure(section);

@@ -6,6 +6,7 @@ mod doors;
 use serde::{Deserialize, Serialize};
 
 use crate::tcms::TcmsData;
+use crate::train::car_set::CarSet;
 
 pub use cars::{
     AirBrake, CarData, CarsData, Davis, EffortAt, ElectricBrake, EmergencyBrake, Resistance, Role,
@@ -132,6 +133,23 @@ impl TrainData {
                 cars.map(|c| (c.length_m, c.weight_kg(share))).collect()
             }
         }
+    }
+
+    /// Length of each car from the head, m, and its share of the train's weight.
+    pub fn weight_shares(&self, load_kg: f64) -> Vec<(f64, f64)> {
+        let cars = self.cars(load_kg);
+        let weight_kg: f64 = cars.iter().map(|car| car.1).sum();
+        cars.into_iter()
+            .map(|(length_m, kg)| (length_m, kg / weight_kg))
+            .collect()
+    }
+
+    /// Motor cars and trailers of the first MT pairs; a point mass has none.
+    pub fn first_pairs(&self) -> [(CarSet, CarSet); 4] {
+        std::array::from_fn(|at| match self {
+            Self::Ideal(_) => Default::default(),
+            Self::Cars(data) => data.pair_cars(at + 1),
+        })
     }
 }
 

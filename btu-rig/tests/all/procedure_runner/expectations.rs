@@ -99,7 +99,7 @@ fn an_entry_counts_whose_parameter_is_within_its_limits() {
 #[test]
 fn an_event_nobody_asked_for_fails_the_step() {
     let script = |more: &str| format!("{HEAD}look('a', do = wait(s(1)){more})");
-    let log = |world: &mut World<'_>| {
+    let log = |world: &mut World| {
         if world.ms() == 500 {
             world.log(Event::TwcLost);
             world.log(Event::ModeChanged);
@@ -177,7 +177,7 @@ fn an_event_nobody_asked_for_names_the_part() {
 
 #[test]
 fn an_emergency_brake_nobody_asked_for_fails_the_step() {
-    let brake = |world: &mut World<'_>| world.sample.set_bit(Signal::Eb, world.ms() >= 500);
+    let brake = |world: &mut World| world.sample.set_bit(Signal::Eb, world.ms() >= 500);
     let outcome = run(
         &format!("{HEAD}look('a', do = wait(s(1)))\nlook('b')"),
         brake,

@@ -1,7 +1,6 @@
 //! A stand-in for bench and unit whose signals the test sets by hand, and the run of one script on it.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use btu_rig::procedure::link_trouble::LinkTrouble;
@@ -12,9 +11,7 @@ use btu_rig::procedure::{
 };
 use btu_rig::stimulus::Stimulus;
 use btu_rig::train::TrainData;
-use protocol::config::UnitConfig;
 use protocol::event::Event;
-use protocol::line::Line;
 use protocol::message::{SelfTest, SelfTestItem};
 use protocol::signal::{Sample, Signal};
 use protocol::{Instant, SCAN};
@@ -27,10 +24,7 @@ const LOOK: &str =
     "def look(name, **more):\n    step(name, measure = value('looked', speed), **more)\n";
 
 fn procedure(script: &str) -> Arc<Procedure> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts");
-    let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
-    let unit = UnitConfig::from_toml(&read("units/sg100.toml")).unwrap();
-    let line = Line::from_toml(&read("lines/line8.toml")).unwrap();
+    let (unit, line) = crate::shipped();
     let scripts = BTreeMap::from([("test.star".to_owned(), format!("{LOOK}{script}"))]);
     let loaded = load(&scripts, &unit, &line, &TrainData::line6());
     assert!(loaded.errors.is_empty(), "{:?}", loaded.errors);
@@ -89,16 +83,16 @@ impl Driver for Fake {
 }
 
 /// State that a test may change before each scan.
-pub struct World<'a> {
+pub struct World {
     pub scan: u32,
     pub sample: Sample,
     pub events: Vec<UnitEvent>,
     pub link_error: Option<LinkTrouble>,
     pub fake: Fake,
-    pub runner: &'a mut Runner,
+    pub runner: Runner,
 }
 
-impl World<'_> {
+impl World {
     pub fn ms(&self) -> u32 {
         self.scan * 10
     }
@@ -138,14 +132,15 @@ impl Outcome {
             .collect()
     }
 
-    /// Something that no step provoked was told of the unit.
-    pub fn blames_the_unit(&self) -> bool {
-        self.events.iter().any(|event| {
+    /// Number of brakes and events of the unit that no step provoked.
+    pub fn unsolicited(&self) -> usize {
+        let told = self.events.iter().filter(|event| {
             matches!(
                 event,
                 RunEvent::UnsolicitedBrake { .. } | RunEvent::UnsolicitedEvent(_)
             )
-        })
+        });
+        told.count()
     }
 
     pub fn finished(&self) -> (Verdict, &str) {
@@ -165,11 +160,7 @@ pub fn options(change: impl FnOnce(&mut RunOptions)) -> RunOptions {
     options
 }
 
-pub fn run_with(
-    script: &str,
-    options: RunOptions,
-    each_scan: impl FnMut(&mut World<'_>),
-) -> Outcome {
+pub fn run_with(script: &str, options: RunOptions, each_scan: impl FnMut(&mut World)) -> Outcome {
     run_round(script, options, 0, each_scan)
 }
 
@@ -177,45 +168,50 @@ pub fn run_round(
     script: &str,
     options: RunOptions,
     round: u32,
-    mut each_scan: impl FnMut(&mut World<'_>),
+    mut each_scan: impl FnMut(&mut World),
 ) -> Outcome {
     let procedure = procedure(script);
-    let mut runner = Runner::new(procedure.clone(), options.clone(), round);
     let mut sample = Sample::default();
     sample.set(Signal::Eb, 0.0);
     sample.set(Signal::Speed, 0.0);
-    let (mut fake, mut events) = (Fake::default(), Vec::new());
+    let mut world = World {
+        scan: 0,
+        sample,
+        events: Vec::new(),
+        link_error: None,
+        fake: Fake::default(),
+        runner: Runner::new(procedure.clone(), options.clone(), round),
+    };
+    let mut events = Vec::new();
     for scan in 0..MOST_SCANS {
-        let mut world = World {
-            scan,
-            sample: std::mem::take(&mut sample),
-            events: Vec::new(),
-            link_error: None,
-            fake: std::mem::take(&mut fake),
-            runner: &mut runner,
-        };
+        world.scan = scan;
+        (world.events, world.link_error) = (Vec::new(), None);
         each_scan(&mut world);
-        let (logged, link_error) = (world.events, world.link_error);
-        (sample, fake) = (world.sample, world.fake);
+        let (runner, link_error) = (&mut world.runner, world.link_error.as_ref());
         let now = Instant::from_us(u64::from(scan) * SCAN.as_us());
-        let poll = runner.advance(now, &sample, &logged, link_error.as_ref(), &mut fake);
+        let poll = runner.advance(
+            now,
+            &world.sample,
+            &world.events,
+            link_error,
+            &mut world.fake,
+        );
         events.extend(runner.take_events());
-        if let (Poll::Done, Some(rest)) = (poll, runner.to_be_resumed().cloned()) {
-            runner = Runner::resumed(procedure.clone(), options.clone(), round, rest);
-            continue;
-        }
         if poll == Poll::Done {
-            return Outcome {
-                events,
-                fake,
-                scans: scan,
+            let Some(rest) = runner.to_be_resumed().cloned() else {
+                return Outcome {
+                    events,
+                    fake: world.fake,
+                    scans: scan,
+                };
             };
+            *runner = Runner::resumed(procedure.clone(), options.clone(), round, rest);
         }
     }
     panic!("the run does not end: {:?}", events.last());
 }
 
-pub fn run(script: &str, each_scan: impl FnMut(&mut World<'_>)) -> Outcome {
+pub fn run(script: &str, each_scan: impl FnMut(&mut World)) -> Outcome {
     run_with(script, RunOptions::default(), each_scan)
 }
 

@@ -55,7 +55,7 @@ fn a_stalled_tester_reports_an_error_and_no_fault() {
     assert_eq!(outcome.summary(), expected);
     assert_eq!(outcome.finished(), (Verdict::Error, text));
     assert_eq!(outcome.steps()[1].measurements[0].value, None);
-    assert!(!outcome.blames_the_unit());
+    assert_eq!(outcome.unsolicited(), 0);
     assert_eq!(outcome.fake.applied, [ON, OFF], "clean-up is run");
 }
 
@@ -110,7 +110,7 @@ fn a_procedure_stalled_in_its_setup_runs_no_step_and_cleans_up() {
 #[test]
 fn a_step_ends_when_the_log_of_its_time_is_read_and_is_an_error_if_it_cannot_be() {
     let script = format!("{HEAD}step('a', do = wait(s(1)), expect = never_logs('twc_lost'))");
-    let silent = |world: &mut World<'_>, until_ms: u32| {
+    let silent = |world: &mut World, until_ms: u32| {
         world.fake.evidence.log = match world.ms() {
             ms if ms >= 500 && ms < until_ms => LogState::Unanswered,
             _ => LogState::Read,
@@ -209,14 +209,8 @@ fn an_event_that_lost_frames_explain_is_an_error_and_no_fault() {
                 }
             }
         });
-        let faults = outcome.events.iter().filter(|event| {
-            matches!(
-                event,
-                RunEvent::UnsolicitedBrake { .. } | RunEvent::UnsolicitedEvent(_)
-            )
-        });
         assert_eq!(outcome.finished().0, outcome.steps()[0].verdict);
-        (outcome.steps()[0].verdict, faults.count())
+        (outcome.steps()[0].verdict, outcome.unsolicited())
     };
     let (failed, error) = (Verdict::Failed, Verdict::Error);
     for event in [

@@ -2,9 +2,7 @@
 
 use btu_rig::procedure::EventSource;
 use btu_rig::rig::Rig;
-use protocol::config::UnitConfig;
 use protocol::event::Event;
-use protocol::line::Line;
 use protocol::link::{End, Link};
 use protocol::message::{AtcToTcms, AtcToTcmsBits, Mode, ModeSwitch};
 use protocol::{Instant, SCAN};
@@ -90,10 +88,8 @@ fn refused_frames_are_told_when_many_come_together() {
 /// Through the wire: a frame that comes again (stale sequence), one with a wrong FCS, one cut short.
 #[test]
 fn the_rig_counts_what_its_link_refuses() {
-    let config = include_str!("../../../../scripts/units/sg100.toml");
-    let line = include_str!("../../../../scripts/lines/line8.toml");
-    let config = UnitConfig::from_toml(config).unwrap();
-    let mut rig = Rig::new(&config, &Line::from_toml(line).unwrap(), 1);
+    let (unit, line) = crate::shipped();
+    let mut rig = Rig::new(&unit, &line, 1);
     let mut unit = Link::new(End::Unit);
     let (mut now, mut out) = (Instant::from_ms(1000), Vec::new());
     let mut told = 0;

@@ -7,7 +7,7 @@
 
 use btu_rig::conditions::Conditions;
 use btu_rig::lever::Lever;
-use btu_rig::tcms::PowerCuts;
+use btu_rig::tcms::{PowerCuts, names_of};
 use btu_rig::train::{CarSet, CarsData, Train, TrainData, TrainInputs};
 use protocol::message::{ModeSwitch, Outputs};
 
@@ -69,11 +69,8 @@ const CONDITIONS: [(&str, Make, &[&str]); 14] = [
     ("turn_back", |b| b.inputs.turn_back = true, &[]),
 ];
 
-fn names(cuts: PowerCuts) -> Vec<&'static str> {
-    let all = PowerCuts::ALL.iter();
-    all.filter(|(cut, _)| cuts.contains(*cut))
-        .map(|(_, name)| *name)
-        .collect()
+fn names(cuts: PowerCuts) -> Vec<String> {
+    names_of::<PowerCuts>(cuts.bits())
 }
 
 /// Scans until powering is cut.
@@ -128,7 +125,7 @@ fn traction_goes_by_the_inverters_times_alone() {
 #[test]
 fn every_condition_alone_takes_power_off_and_gives_it_back() {
     let made: Vec<_> = CONDITIONS.iter().map(|(name, ..)| *name).collect();
-    let all: Vec<_> = PowerCuts::ALL.iter().map(|(_, name)| *name).collect();
+    let all = names(PowerCuts::all());
     assert_eq!(made, all, "every one can be made");
     for (name, make, brings) in CONDITIONS {
         let mut bench = Bench::new();
@@ -146,8 +143,8 @@ fn every_condition_alone_takes_power_off_and_gives_it_back() {
         assert!(!bench.powers() && told.demand <= 0.0, "{name}");
         let mut wanted: Vec<_> = all
             .iter()
-            .copied()
-            .filter(|cut| *cut == name || brings.contains(cut))
+            .filter(|cut| *cut == name || brings.contains(&cut.as_str()))
+            .cloned()
             .collect();
         assert_eq!(names(bench.view().power_cuts), wanted, "{name}");
         wanted.clear();

@@ -10,9 +10,7 @@ use btu_rig::lever::Lever;
 use btu_rig::rig::Rig;
 use btu_rig::stimulus::{Stimulus, TrainSwitch};
 use btu_rig::train::{Train, TrainData, TrainInputs};
-use protocol::config::UnitConfig;
 use protocol::event::Event;
-use protocol::line::Line;
 use protocol::link::{End, Link};
 use protocol::message::{AtcToTcms, AtcToTcmsBits, IoOutput, ModeSwitch, Outputs};
 use protocol::signal::Signal;
@@ -31,10 +29,8 @@ struct Stand {
 
 impl Stand {
     fn new(train: TrainData) -> Self {
-        let config = include_str!("../../../../scripts/units/sg100.toml");
-        let line = include_str!("../../../../scripts/lines/line8.toml");
-        let config = UnitConfig::from_toml(config).unwrap();
-        let mut rig = Rig::new(&config, &Line::from_toml(line).unwrap(), 1);
+        let (unit, line) = crate::shipped();
+        let mut rig = Rig::new(&unit, &line, 1);
         rig.set_train(train);
         let mut stand = Self {
             rig,

@@ -168,24 +168,19 @@ impl Places {
 
     /// A code that the generator cannot make.
     fn beyond(&self, stimulus: &Stimulus) -> Option<BenchNote> {
-        let Stimulus::Code {
-            carrier_hz,
-            rate_hz,
-            level_mv,
-        } = *stimulus
-        else {
+        let Stimulus::Code(signal) = *stimulus else {
             return None;
         };
         let Place::Instrument(name) = self.stimuli.get(&UnitInput::Code)?.place() else {
             return None;
         };
-        let values = code_values(carrier_hz, rate_hz, level_mv);
+        let values = code_values(signal.carrier_hz, signal.rate_hz, signal.level_mv);
         if values["level_mv"] == 0.0 {
             return None;
         }
         let model = self.models.get(name)?;
         let unmodulated = &model.acts.get("code")?.get_ref().unmodulated;
-        let beyond = match rate_hz <= 0.0 && unmodulated.is_empty() {
+        let beyond = match signal.rate_hz <= 0.0 && unmodulated.is_empty() {
             true => InstrumentFault::NoUnmodulated,
             false => model.out_of_range(&values)?,
         };

@@ -27,7 +27,7 @@ pub(super) fn needs(stimulus: &Stimulus) -> &'static [UnitInput] {
         Stimulus::Code { .. } | Stimulus::CodeDrift { .. } | Stimulus::CodesAlong { on: true } => {
             &[U::Code]
         }
-        Stimulus::Crosstalk { level_mv, .. } if *level_mv > 0.0 => &[U::Crosstalk],
+        Stimulus::Crosstalk(signal) if signal.level_mv > 0.0 => &[U::Crosstalk],
         Stimulus::Speed { .. }
         | Stimulus::Travel { .. }
         | Stimulus::Direction { .. }

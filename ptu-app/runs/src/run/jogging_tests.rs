@@ -1,7 +1,7 @@
 //! Jogging to a stop point that was missed: the unit, TCMS and the train of cars, with every controller.
 
 use btu_rig::rig::Bench;
-use btu_rig::stimulus::{StationData, Stimulus, WaysideCondition};
+use btu_rig::stimulus::{CodeSignal, StationData, Stimulus, WaysideCondition};
 use protocol::config::ControllerKind;
 use protocol::line::Gradient;
 use protocol::message::{AtoState, Mode, ModeSwitch, Refusals};
@@ -77,11 +77,7 @@ impl Stop {
             Stimulus::Load {
                 passengers_kg: load_kg,
             },
-            Stimulus::Code {
-                carrier_hz: code.carrier_hz,
-                rate_hz: code.rate_hz,
-                level_mv: 500.0,
-            },
+            Stimulus::Code(CodeSignal::new(code.carrier_hz, code.rate_hz, 500.0)),
             Stimulus::Station(StationData::at_departure(&section)),
             Stimulus::Wayside(WaysideCondition::Good),
         ] {

@@ -10,7 +10,7 @@ use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::quantity::Dimension::{Acceleration, Distance, Frequency, Level};
 use crate::procedure::loader::verb::{Param, Verb, needs, takes};
 use crate::procedure::plan::Action;
-use crate::stimulus::{Stimulus, TachoCondition};
+use crate::stimulus::{CodeSignal, Stimulus, TachoCondition};
 
 /// Acceleration of the generators if a script gives none, m/s².
 const DEFAULT_ACCEL_MPS2: f64 = 3.0;
@@ -23,24 +23,24 @@ const ACCEL: Param = takes("accel", ParamType::Amount(Acceleration));
 const CARRIER: Param = takes("carrier", ParamType::Amount(Frequency));
 const TO: Param = needs("to", ParamType::Amount(Dimension::Speed));
 const WAIT: Param = takes("wait", ParamType::Bool);
-pub(super) const LEVEL: Param = takes("level", ParamType::Amount(Level));
+const LEVEL: Param = takes("level", ParamType::Amount(Level));
 pub(super) const MARKER: Param = needs("marker", ParamType::Int(1, 4));
+/// Parameters of [`code_signal`].
+pub(super) const CODE: &[Param] = &[needs("code", ParamType::Code), LEVEL];
 /// Parameters of [`raw_signal`].
 pub(super) const RAW_SIGNAL: &[Param] =
     &[CARRIER, needs("rate", ParamType::Amount(Frequency)), LEVEL];
 
 pub(super) static VERBS: &[Verb] = &[
-    stimulus!(
-        "antenna.code",
-        &[needs("code", ParamType::Code), LEVEL],
-        |args| antenna(code_signal(args)?)
-    ),
-    stimulus!("antenna.raw", RAW_SIGNAL, |args| antenna(raw_signal(args)?)),
-    stimulus!("antenna.unmodulated", &[CARRIER, LEVEL], |args| antenna((
-        carrier(args),
-        0.0,
-        level(args)?
-    ))),
+    stimulus!("antenna.code", CODE, |args| Stimulus::Code(code_signal(
+        args
+    )?)),
+    stimulus!("antenna.raw", RAW_SIGNAL, |args| Stimulus::Code(
+        raw_signal(args)?
+    )),
+    stimulus!("antenna.unmodulated", &[CARRIER, LEVEL], |args| {
+        Stimulus::Code(signal(args, 0.0)?)
+    }),
     stimulus!(
         "antenna.drift",
         &[
@@ -55,17 +55,10 @@ pub(super) static VERBS: &[Verb] = &[
     stimulus!(
         "antenna.crosstalk",
         &[takes("code", ParamType::Code), LEVEL],
-        |args| {
-            let (carrier_hz, rate_hz, level_mv) = match args.get("code") {
-                Some(_) => code_signal(args)?,
-                None => (0.0, 0.0, 0.0),
-            };
-            Stimulus::Crosstalk {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            }
-        }
+        |args| Stimulus::Crosstalk(match args.get("code") {
+            Some(_) => code_signal(args)?,
+            None => CodeSignal::default(),
+        })
     ),
     switch!("antenna.along", |on| Stimulus::CodesAlong { on }),
     stimulus!("antenna.off", &[], |_| Stimulus::CodeOff),
@@ -183,16 +176,8 @@ fn only_where(args: &Args<'_>, wrap: fn(Box<Action>) -> Action) -> Result<Item, 
     Ok(Item::Actions(wrapped.collect()))
 }
 
-fn antenna((carrier_hz, rate_hz, level_mv): (f64, f64, f64)) -> Stimulus {
-    Stimulus::Code {
-        carrier_hz,
-        rate_hz,
-        level_mv,
-    }
-}
-
-/// Carrier, code rate and level of a code of the table.
-pub(super) fn code_signal(args: &Args<'_>) -> Result<(f64, f64, f64), String> {
+/// Signal of a code of the table.
+pub(super) fn code_signal(args: &Args<'_>) -> Result<CodeSignal, String> {
     let by_name;
     let record = match args.get("code") {
         Some(Item::Record(record)) => record,
@@ -207,19 +192,20 @@ pub(super) fn code_signal(args: &Args<'_>) -> Result<(f64, f64, f64), String> {
     };
     let field = |name| record.get(name).and_then(Item::number);
     match (field("carrier_hz"), field("rate_hz")) {
-        (Some(carrier), Some(rate)) => Ok((carrier, rate, level(args)?)),
+        (Some(carrier), Some(rate)) => Ok(CodeSignal::new(carrier, rate, level(args)?)),
         _ => Err("the code has no carrier or code rate".into()),
     }
 }
 
-/// Carrier, code rate and level as given.
-pub(super) fn raw_signal(args: &Args<'_>) -> Result<(f64, f64, f64), String> {
-    Ok((carrier(args), args.amount("rate")?, level(args)?))
+/// Signal of a carrier and a code rate as given.
+pub(super) fn raw_signal(args: &Args<'_>) -> Result<CodeSignal, String> {
+    signal(args, args.amount("rate")?)
 }
 
-fn carrier(args: &Args<'_>) -> f64 {
+fn signal(args: &Args<'_>, rate_hz: f64) -> Result<CodeSignal, String> {
     let first = args.context.unit.codes.first();
-    args.amount_or("carrier", first.map_or(0.0, |code| code.carrier_hz))
+    let carrier_hz = args.amount_or("carrier", first.map_or(0.0, |code| code.carrier_hz));
+    Ok(CodeSignal::new(carrier_hz, rate_hz, level(args)?))
 }
 
 fn level(args: &Args<'_>) -> Result<f64, String> {
@@ -241,11 +227,7 @@ pub(super) fn speed(args: &Args<'_>, name: &str) -> Result<Speed, String> {
 }
 
 pub(super) fn marker(args: &Args<'_>) -> Result<u8, String> {
-    byte(args, "marker")
-}
-
-fn byte(args: &Args<'_>, name: &str) -> Result<u8, String> {
-    u8::try_from(args.int(name)?).map_err(|e| e.to_string())
+    args.int("marker")
 }
 
 fn accel(args: &Args<'_>, name: &str) -> Result<f64, String> {
@@ -295,7 +277,7 @@ fn channel(args: &Args<'_>) -> Result<Item, String> {
         _ => TachoCondition::Good,
     };
     at_once(Stimulus::Tacho {
-        channel: byte(args, "channel")?,
+        channel: args.int("channel")?,
         condition,
     })
 }

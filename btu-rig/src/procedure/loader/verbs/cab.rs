@@ -30,7 +30,7 @@ pub(super) static VERBS: &[Verb] = &[
         ],
         |args| Stimulus::DoorObstacle {
             left: args.text("side") == Some("left"),
-            times: u8::try_from(args.int("times")?).map_err(|e| e.to_string())?,
+            times: args.int("times")?,
         }
     ),
     stimulus!(
@@ -60,7 +60,7 @@ pub(super) static VERBS: &[Verb] = &[
         "cab.train_number",
         &[needs("number", ParamType::Int(0, 65535))],
         |args| {
-            let number = u16::try_from(args.int("number")?).map_err(|e| e.to_string())?;
+            let number = args.int("number")?;
             Stimulus::TrainNumber { number }
         }
     ),

@@ -20,6 +20,7 @@ const UNTIL_WITHIN: Duration = Duration::from_ms(10_000);
 const TIME: ParamType = ParamType::Amount(Dimension::Time);
 /// Where the numbers of the call come from.
 pub(super) const SOURCE: Param = takes("source", ParamType::Sources);
+const CONDITIONS: &[Param] = &[takes("conditions", ParamType::Conditions)];
 /// A limit of an event's parameter.
 const PARAMETER: ParamType = ParamType::Int(i32::MIN as i64, i32::MAX as i64);
 
@@ -60,24 +61,16 @@ macro_rules! about {
 }
 
 pub(super) static VERBS: &[Verb] = &[
-    about!("is_", [], |args| Ok(Item::Condition(
-        condition(args)?,
-        args.origin()
-    ))),
-    about!("when", [], |args| Ok(Item::Condition(
-        condition(args)?,
-        args.origin()
-    ))),
-    verb!(
-        "all_of",
-        &[takes("conditions", ParamType::Conditions)],
-        |args| Ok(Item::Condition(Condition::All(parts(args)?), args.origin()))
-    ),
-    verb!(
-        "any_of",
-        &[takes("conditions", ParamType::Conditions)],
-        |args| Ok(Item::Condition(Condition::Any(parts(args)?), args.origin()))
-    ),
+    about!("is_", [], |args| given(args, condition(args)?)),
+    about!("when", [], |args| given(args, condition(args)?)),
+    verb!("all_of", CONDITIONS, |args| given(
+        args,
+        Condition::All(parts(args)?)
+    )),
+    verb!("any_of", CONDITIONS, |args| given(
+        args,
+        Condition::Any(parts(args)?)
+    )),
     about!("until", [takes("within", TIME)], |args| {
         Ok(Item::Actions(vec![Action::Until {
             condition: condition(args)?,
@@ -122,7 +115,7 @@ pub(super) static VERBS: &[Verb] = &[
         |args| {
             let limit = |name, none| match args.get(name) {
                 None => Ok(none),
-                Some(_) => i32::try_from(args.int(name)?).map_err(|e| e.to_string()),
+                Some(_) => args.int(name),
             };
             expected(
                 args,
@@ -147,6 +140,11 @@ pub(super) static VERBS: &[Verb] = &[
         Ok(Item::Measured(name.to_owned(), None))
     }),
 ];
+
+/// A condition with the source of its numbers.
+fn given(args: &Args<'_>, condition: Condition) -> Result<Item, String> {
+    Ok(Item::Condition(condition, args.origin()))
+}
 
 /// An expectation with the source of its numbers; limits of an event's parameter are plain ones.
 fn expected(args: &Args<'_>, expectation: Expectation) -> Result<Item, String> {
@@ -263,7 +261,7 @@ pub(super) fn operand(signal: Signal, item: &Item) -> Result<Operand, String> {
             Some(index) => Ok(Operand::Literal(index as f64)),
             None => wrong(near(text, labels.iter().copied())),
         },
-        (Kind::Bit, Item::Bool(on)) => Ok(Operand::Literal(f64::from(u8::from(*on)))),
+        (Kind::Bit, Item::Bool(on)) => Ok(Operand::Literal(f64::from(*on))),
         (Kind::Enum(_) | Kind::Bit, Item::Measured(name, None)) => Ok(measured(name, 0.0)),
         (Kind::Number { .. }, item) => {
             amount(definition.unit, item).or_else(|()| wrong(String::new()))

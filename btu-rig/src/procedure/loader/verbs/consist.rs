@@ -21,7 +21,7 @@ macro_rules! failure {
     ($name:literal, $what:ident) => {
         stimulus!($name, CAR_SWITCH, |args| Stimulus::Failure {
             what: CarFailure::$what,
-            car: car(args)?,
+            car: args.int("car")?,
             on: args.flag("on", true),
         })
     };
@@ -37,16 +37,12 @@ pub(super) static VERBS: &[Verb] = &[
             needs("on", ParamType::Bool),
             takes("cab", ParamType::Int(1, 2))
         ],
-        |args| {
-            let other = args.get("cab").is_some() && args.int("cab")? == 2;
-            Stimulus::Switch {
-                switch: if other {
-                    TrainSwitch::Button2
-                } else {
-                    TrainSwitch::Button1
-                },
-                on: args.flag("on", true),
-            }
+        |args| Stimulus::Switch {
+            switch: match args.int("cab") {
+                Ok(2) => TrainSwitch::Button2,
+                _ => TrainSwitch::Button1,
+            },
+            on: args.flag("on", true),
         }
     ),
     train_switch!("train.eb_cut_out", EbCutOut),
@@ -90,11 +86,7 @@ const CAR_SWITCH: &[Param] = &[
 fn cut_out(args: &Args<'_>, what: CutOut) -> Result<Stimulus, String> {
     Ok(Stimulus::CutOut {
         what,
-        car: car(args)?,
+        car: args.int("car")?,
         on: args.flag("on", true),
     })
-}
-
-fn car(args: &Args<'_>) -> Result<u8, String> {
-    u8::try_from(args.int("car")?).map_err(|e| e.to_string())
 }

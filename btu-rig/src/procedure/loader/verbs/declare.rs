@@ -10,7 +10,7 @@ use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::verb::{Verb, needs, takes};
 use crate::procedure::origin::Origin;
-use crate::procedure::plan::{Connection, Measure, OnFail, Step};
+use crate::procedure::plan::{Connection, Measure, OnFail, Procedure, Step};
 
 /// More repetitions than this are a slip of the finger.
 const MOST_REPETITIONS: i64 = 1000;
@@ -30,7 +30,8 @@ pub(super) static VERBS: &[Verb] = &[
             SOURCE,
         ],
         make: |args| {
-            declare(Declaration::Procedure(ProcedureDraft {
+            let procedure = Procedure {
+                id: String::new(),
                 title: named(args, "title")?,
                 title_ko: args.text("title_ko").map(str::to_owned),
                 needs: match args.text("needs") {
@@ -40,9 +41,17 @@ pub(super) static VERBS: &[Verb] = &[
                 on_request: args.flag("on_request", false),
                 lacks: args.text("lacks").map(str::to_owned),
                 suspect: suspect(args)?.flatten(),
+                path: String::new(),
+                sha256: String::new(),
                 setup: args.actions("setup"),
                 cleanup: args.actions("cleanup"),
-                sources: args.sources(),
+                steps: Vec::new(),
+                slots: 0,
+            };
+            let sources = args.sources();
+            declare(Declaration::Procedure(ProcedureDraft {
+                procedure,
+                sources,
             }))
         },
     },
@@ -100,9 +109,7 @@ fn step(args: &Args<'_>) -> Result<Item, String> {
         provokes: args.events("provokes")?,
         when: args.condition("when").ok(),
         lacks: args.text("lacks").map(str::to_owned),
-        repeat: args
-            .int("repeat")
-            .map_or(1, |n| n.clamp(1, MOST_REPETITIONS) as u32),
+        repeat: args.int("repeat").unwrap_or(1),
         on_fail: match args.text("on_fail") {
             Some("stop") => OnFail::Stop,
             _ => OnFail::Continue,

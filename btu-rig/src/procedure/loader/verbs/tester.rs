@@ -1,8 +1,8 @@
 //! The tester's session with the unit: arming and the TEST board. Every verb but `ptu.silent` waits
 //! for the unit's answer.
 
-use super::bench::{LEVEL, MARKER, RAW_SIGNAL, code_signal, marker, raw_signal, speed};
-use super::track::{STATION, StandsAt, station};
+use super::bench::{CODE, MARKER, RAW_SIGNAL, code_signal, marker, raw_signal, speed};
+use super::track::{STATION, arrival, departure};
 use super::with_wait;
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::item::Item;
@@ -26,12 +26,12 @@ pub(super) static VERBS: &[Verb] = &[
     request!("ptu.self_test", &[], |_| Stimulus::PtuSelfTest),
     request!("ptu.clear_log", &[], |_| Stimulus::PtuClearLog),
     switch!("ptu.silent", |on| Stimulus::PtuSilent { on }),
-    request!(
-        "ptu.code",
-        &[needs("code", ParamType::Code), LEVEL],
-        |args| test_code(code_signal(args)?)
-    ),
-    request!("ptu.raw", RAW_SIGNAL, |args| test_code(raw_signal(args)?)),
+    request!("ptu.code", CODE, |args| Stimulus::PtuCode(code_signal(
+        args
+    )?)),
+    request!("ptu.raw", RAW_SIGNAL, |args| Stimulus::PtuCode(raw_signal(
+        args
+    )?)),
     request!(
         "ptu.speed",
         &[
@@ -45,26 +45,16 @@ pub(super) static VERBS: &[Verb] = &[
     request!("ptu.marker", &[MARKER], |args| Stimulus::PtuMarker {
         psm: marker(args)?
     }),
-    request!("ptu.twc", STATION, |args| Stimulus::PtuTwc(station(
-        args,
-        StandsAt::Departure
+    request!("ptu.twc", STATION, |args| Stimulus::PtuTwc(departure(
+        args
     )?)),
     request!("ptu.at_departure", STATION, |args| Stimulus::PtuTwc(
-        station(args, StandsAt::Departure)?
+        departure(args)?
     )),
-    request!("ptu.at_arrival", STATION, |args| Stimulus::PtuTwc(station(
-        args,
-        StandsAt::Arrival
+    request!("ptu.at_arrival", STATION, |args| Stimulus::PtuTwc(arrival(
+        args
     )?)),
 ];
-
-fn test_code((carrier_hz, rate_hz, level_mv): (f64, f64, f64)) -> Stimulus {
-    Stimulus::PtuCode {
-        carrier_hz,
-        rate_hz,
-        level_mv,
-    }
-}
 
 fn test_speed(args: &Args<'_>) -> Result<Stimulus, String> {
     let mut channels = 0;

@@ -7,7 +7,8 @@ use crate::procedure::loader::args::Args;
 use crate::procedure::loader::param_type::ParamType;
 use crate::procedure::loader::quantity::Dimension;
 use crate::procedure::loader::verb::{Param, Verb, takes};
-use crate::stimulus::{OrderData, StationData, Stimulus, WaysideCondition};
+use crate::stimulus::WaysideCondition::{Corrupt, Good, Silent};
+use crate::stimulus::{OrderData, StationData, Stimulus};
 
 const NUMBER: ParamType = ParamType::Int(0, 65535);
 
@@ -37,50 +38,47 @@ const ORDERS: &[Param] = &[
 const LONGEST_M: f64 = 20_000.0;
 
 pub(super) static VERBS: &[Verb] = &[
-    stimulus!("twc.station", STATION, |args| Stimulus::Station(station(
-        args,
-        StandsAt::Departure
+    stimulus!("twc.station", STATION, |args| Stimulus::Station(departure(
+        args
     )?)),
     stimulus!("twc.at_departure", STATION, |args| Stimulus::Station(
-        station(args, StandsAt::Departure)?
+        departure(args)?
     )),
     stimulus!("twc.at_arrival", STATION, |args| Stimulus::Station(
-        station(args, StandsAt::Arrival)?
+        arrival(args)?
     )),
     stimulus!("twc.orders", ORDERS, |args| Stimulus::Orders(Some(orders(
         args
     )?))),
     stimulus!("twc.no_orders", &[], |_| Stimulus::Orders(None)),
-    stimulus!("twc.good", &[], |_| Stimulus::Wayside(
-        WaysideCondition::Good
-    )),
-    stimulus!("twc.silent", &[], |_| Stimulus::Wayside(
-        WaysideCondition::Silent
-    )),
-    stimulus!("twc.corrupt", &[], |_| Stimulus::Wayside(
-        WaysideCondition::Corrupt
-    )),
+    stimulus!("twc.good", &[], |_| Stimulus::Wayside(Good)),
+    stimulus!("twc.silent", &[], |_| Stimulus::Wayside(Silent)),
+    stimulus!("twc.corrupt", &[], |_| Stimulus::Wayside(Corrupt)),
 ];
 
-/// Where the train stands in a section.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum StandsAt {
-    Departure,
-    Arrival,
+/// Station data of a departure, with what the script gives in place of them.
+pub(super) fn departure(args: &Args<'_>) -> Result<StationData, String> {
+    station(args, |section, _| StationData::at_departure(section))
 }
 
-/// Station data of a place, with what the script gives in place of it.
-pub(super) fn station(args: &Args<'_>, place: StandsAt) -> Result<StationData, String> {
+/// Station data of an arrival, with what the script gives in place of them.
+pub(super) fn arrival(args: &Args<'_>) -> Result<StationData, String> {
+    station(args, |section, line| {
+        StationData::at_arrival(section, line.station_after(section))
+    })
+}
+
+fn station(args: &Args<'_>, of: fn(&Section, &Line) -> StationData) -> Result<StationData, String> {
     let line = &args.context.line;
     let section = match args.section("section") {
         Some(number) => line.section(number),
         None => line.sections.first(),
     };
     let section = section.ok_or("the line has no section")?;
-    let mut data = defaults(section, place, line);
+    let mut data = of(section, line);
     let number = |name: &str, field: &mut u16| -> Result<(), String> {
         if args.get(name).is_some() {
-            *field = u16::try_from(args.int(name)?).map_err(|e| e.to_string())?;
+            *field = args.int(name)?;
         }
         Ok(())
     };
@@ -89,11 +87,12 @@ pub(super) fn station(args: &Args<'_>, place: StandsAt) -> Result<StationData, S
     number("loop", &mut data.loop_id)?;
     number("train_number", &mut data.train_number)?;
     number("route", &mut data.route)?;
-    if let Some(speed) = args.quantity("fixed_speed") {
-        if !(0.0..=254.0).contains(&speed.value) {
+    if args.get("fixed_speed").is_some() {
+        let kmh = args.amount("fixed_speed")?;
+        if !(0.0..=254.0).contains(&kmh) {
             return Err("`fixed_speed` must be from 0 to 254 km/h".into());
         }
-        data.fixed_speed_kmh = Some(speed.value.round() as u8);
+        data.fixed_speed_kmh = Some(kmh.round() as u8);
     }
     if let Some(mode) = args.text("running_mode").and_then(RunningMode::from_label) {
         data.running_mode = mode;
@@ -108,7 +107,7 @@ pub(super) fn station(args: &Args<'_>, place: StandsAt) -> Result<StationData, S
 /// Orders of the wayside: the length is that of the section, unless another is given.
 fn orders(args: &Args<'_>) -> Result<OrderData, String> {
     let number = |name: &str| match args.get(name) {
-        Some(_) => u16::try_from(args.int(name)?).map_err(|e| e.to_string()),
+        Some(_) => args.int(name),
         None => Ok(0),
     };
     let section = args
@@ -124,11 +123,4 @@ fn orders(args: &Args<'_>) -> Result<OrderData, String> {
         train_number: number("train_number")?,
         ..OrderData::of_section(order.unwrap_or_default(), section, length_m)
     })
-}
-
-fn defaults(section: &Section, place: StandsAt, line: &Line) -> StationData {
-    match place {
-        StandsAt::Departure => StationData::at_departure(section),
-        StandsAt::Arrival => StationData::at_arrival(section, line.station_after(section)),
-    }
 }

@@ -248,9 +248,9 @@ mod tests {
                 }
             }
             for (signal, count) in [
-                (Signal::PowerCutCauses, PowerCuts::ALL.len()),
-                (Signal::EbSources, EbSources::ALL.len()),
-                (Signal::Lamps, Lamps::ALL.len()),
+                (Signal::PowerCutCauses, PowerCuts::all().iter().count()),
+                (Signal::EbSources, EbSources::all().iter().count()),
+                (Signal::Lamps, Lamps::all().iter().count()),
                 (Signal::Refusals, 16),
                 (Signal::SelfTest, SelfTest::SPEC.entries.len()),
             ] {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::plan::{Action, Condition, Operand, What};
 use btu_rig::procedure::{Procedure, Step};
-use btu_rig::stimulus::{DoorLine, Stimulus};
+use btu_rig::stimulus::{CodeSignal, DoorLine, Stimulus};
 
 use super::{BENCH, ENGLISH, bench};
 use crate::test_support::{procedures, setup};
@@ -22,11 +22,7 @@ fn a_code_beyond_the_generator_is_skipped() {
     ] {
         let mut plain = procedures(&setup(&[]));
         for procedure in plain.iter_mut().filter(|one| one.id == id) {
-            let code = Stimulus::Code {
-                carrier_hz,
-                rate_hz: 15.0,
-                level_mv,
-            };
+            let code = Stimulus::Code(CodeSignal::new(carrier_hz, 15.0, level_mv));
             for step in &mut Arc::make_mut(procedure).steps {
                 step.continues = false;
                 step.actions.push(Action::Stimulus(code));

@@ -3,7 +3,8 @@
 
 use btu_rig::lever::Lever;
 use btu_rig::stimulus::{
-    CutOut, DoorLine, DoorState, StationData, Stimulus, TachoCondition, TcmsCondition, TrainSwitch,
+    CodeSignal, CutOut, DoorLine, DoorState, StationData, Stimulus, TachoCondition, TcmsCondition,
+    TrainSwitch,
 };
 use protocol::message::ModeSwitch;
 use protocol::{Duration, Speed};
@@ -90,11 +91,11 @@ impl Draw<'_> {
         let times = self.one_of(&[0.0, 0.25, 0.5, 0.56, 0.7, 1.0, 1.4, 2.0]);
         self.at(
             at_ms,
-            Stimulus::Crosstalk {
-                carrier_hz: code.carrier_hz,
-                rate_hz: code.rate_hz,
-                level_mv: times * nominal_mv,
-            },
+            Stimulus::Crosstalk(CodeSignal::new(
+                code.carrier_hz,
+                code.rate_hz,
+                times * nominal_mv,
+            )),
         );
     }
 
@@ -102,11 +103,7 @@ impl Draw<'_> {
         let config = &self.setup.config.content;
         let code = config.codes[self.random.below(config.codes.len())].clone();
         let level_mv = config.receiver.level_nominal_mv;
-        let signal = |rate_hz| Stimulus::Code {
-            carrier_hz: code.carrier_hz,
-            rate_hz,
-            level_mv,
-        };
+        let signal = |rate_hz| Stimulus::Code(CodeSignal::new(code.carrier_hz, rate_hz, level_mv));
         match self.random.below(6) {
             0 => Stimulus::CodeOff,
             1 => signal(0.0),
@@ -363,15 +360,7 @@ impl Draw<'_> {
                     ..self.station
                 }),
                 _ => match self.any_code() {
-                    Stimulus::Code {
-                        carrier_hz,
-                        rate_hz,
-                        level_mv,
-                    } => Stimulus::PtuCode {
-                        carrier_hz,
-                        rate_hz,
-                        level_mv,
-                    },
+                    Stimulus::Code(signal) => Stimulus::PtuCode(signal),
                     _ => Stimulus::PtuRelease,
                 },
             };

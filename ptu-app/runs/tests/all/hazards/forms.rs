@@ -4,7 +4,7 @@
 //! farther than [`APART`]. That is the time in which a receiver's window is full or empty, and a code that one of the two
 //! decided on a scan earlier.
 
-use btu_rig::stimulus::Stimulus;
+use btu_rig::stimulus::{CodeSignal, Stimulus};
 use protocol::{Duration, SCAN};
 
 use super::acts::Kind;
@@ -44,11 +44,7 @@ fn bursts_raise_no_limit_by_waveforms_either() {
     let receiver = &search.setup.config.content.receiver;
     let level_mv = receiver.level_nominal_mv;
     let code = search.setup.config.content.codes.last().expect("a code");
-    let signal = |rate_hz| Stimulus::Code {
-        carrier_hz: code.carrier_hz,
-        rate_hz,
-        level_mv,
-    };
+    let signal = |rate_hz| Stimulus::Code(CodeSignal::new(code.carrier_hz, rate_hz, level_mv));
     for (number, (burst_ms, other, other_ms)) in (0..).zip([
         (340, signal(0.0), 170),
         (310, Stimulus::CodeOff, 450),

@@ -297,13 +297,7 @@ impl<'a> Player<'a> {
         }
         match stimulus {
             Stimulus::Reverser { position } => self.reverser = position,
-            Stimulus::Crosstalk {
-                carrier_hz,
-                rate_hz,
-                ..
-            } => {
-                self.crosstalk = [carrier_hz, rate_hz];
-            }
+            Stimulus::Crosstalk(signal) => self.crosstalk = [signal.carrier_hz, signal.rate_hz],
             Stimulus::WheelDiameter { diameter_mm } => self.wheel = Some((diameter_mm, now)),
             Stimulus::Station(data) => self.told = data,
             Stimulus::Start => self.started = Some(now),

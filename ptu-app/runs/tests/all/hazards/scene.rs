@@ -7,8 +7,8 @@
 use std::fmt::Write as _;
 
 use btu_rig::stimulus::{
-    CutOut, DoorState, StationData, Stimulus, TachoCondition, TcmsCondition, TrainSwitch,
-    WaysideCondition,
+    CodeSignal, CutOut, DoorState, StationData, Stimulus, TachoCondition, TcmsCondition,
+    TrainSwitch, WaysideCondition,
 };
 use protocol::event::{Event, Severity};
 use protocol::message::TrainOrder;
@@ -141,21 +141,20 @@ fn repeated(lines: Vec<String>) -> Vec<String> {
 fn verb(stimulus: Stimulus) -> String {
     let flag = |on: bool| if on { "True" } else { "False" };
     let side = |left: bool| if left { "left" } else { "right" };
-    let signal = |carrier_hz: f64, rate_hz: f64, level_mv: f64| {
-        format!("carrier = hz({carrier_hz:?}), rate = hz({rate_hz:?}), level = mv({level_mv:?})")
-    };
-    match stimulus {
-        Stimulus::Code {
+    let signal = |signal: CodeSignal| {
+        let CodeSignal {
             carrier_hz,
             rate_hz,
             level_mv,
-        } => {
-            format!("antenna.raw({})", signal(carrier_hz, rate_hz, level_mv))
-        }
+        } = signal;
+        format!("carrier = hz({carrier_hz:?}), rate = hz({rate_hz:?}), level = mv({level_mv:?})")
+    };
+    match stimulus {
+        Stimulus::Code(code) => format!("antenna.raw({})", signal(code)),
         // A neighbouring track gives a code of the table.
-        Stimulus::Crosstalk {
+        Stimulus::Crosstalk(CodeSignal {
             rate_hz, level_mv, ..
-        } => format!(
+        }) => format!(
             "antenna.crosstalk([c for c in codes if c.rate_hz == {rate_hz:?}][0], level = mv({level_mv:?}))"
         ),
         Stimulus::CodeOff => "antenna.off()".to_owned(),
@@ -279,13 +278,7 @@ fn verb(stimulus: Stimulus) -> String {
         Stimulus::PtuMarker { psm } => format!("ptu.marker({psm})"),
         Stimulus::PtuSpeed { to, .. } => format!("ptu.speed(kmh({:?}))", to.kmh()),
         Stimulus::PtuTwc(data) => format!("ptu.twc({})", station(data)),
-        Stimulus::PtuCode {
-            carrier_hz,
-            rate_hz,
-            level_mv,
-        } => {
-            format!("ptu.raw({})", signal(carrier_hz, rate_hz, level_mv))
-        }
+        Stimulus::PtuCode(code) => format!("ptu.raw({})", signal(code)),
         other => panic!("the search has no {other}"),
     }
 }

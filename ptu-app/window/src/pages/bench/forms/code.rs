@@ -1,6 +1,6 @@
 //! The ATP signal.
 
-use btu_rig::stimulus::Stimulus;
+use btu_rig::stimulus::{CodeSignal, Stimulus};
 use protocol::config::{SpeedCode, UnitConfig};
 
 use super::StimulusPath;
@@ -54,18 +54,10 @@ impl CodeForm {
     }
 
     fn signal(&self, carrier_hz: f64, rate_hz: f64, way: StimulusPath) -> Stimulus {
-        let level_mv = self.level_mv;
+        let signal = CodeSignal::new(carrier_hz, rate_hz, self.level_mv);
         match way {
-            StimulusPath::Harness => Stimulus::Code {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            },
-            StimulusPath::TestBoard => Stimulus::PtuCode {
-                carrier_hz,
-                rate_hz,
-                level_mv,
-            },
+            StimulusPath::Harness => Stimulus::Code(signal),
+            StimulusPath::TestBoard => Stimulus::PtuCode(signal),
         }
     }
 }
@@ -89,22 +81,14 @@ mod tests {
         assert_eq!(form.level_mv, config.receiver.level_nominal_mv);
         form.level_mv = 80.0;
         let code = &config.codes[4];
-        let (carrier_hz, rate_hz, level_mv) = (code.carrier_hz, code.rate_hz, 80.0);
+        let signal = CodeSignal::new(code.carrier_hz, code.rate_hz, 80.0);
         assert_eq!(
             form.of_table(code, StimulusPath::Harness),
-            Stimulus::Code {
-                carrier_hz,
-                rate_hz,
-                level_mv
-            }
+            Stimulus::Code(signal)
         );
         assert_eq!(
             form.of_table(code, StimulusPath::TestBoard),
-            Stimulus::PtuCode {
-                carrier_hz,
-                rate_hz,
-                level_mv
-            }
+            Stimulus::PtuCode(signal)
         );
     }
 
@@ -119,11 +103,7 @@ mod tests {
         };
         assert_eq!(
             form.free(StimulusPath::Harness),
-            Stimulus::Code {
-                carrier_hz: 3_040.0,
-                rate_hz: 0.0,
-                level_mv: 500.0
-            }
+            Stimulus::Code(CodeSignal::new(3_040.0, 0.0, 500.0))
         );
         assert_eq!(
             form.drift(),
