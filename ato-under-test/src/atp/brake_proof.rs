@@ -40,18 +40,6 @@ pub struct BrakeProof {
 }
 
 impl BrakeProof {
-    /// Standing, nothing asked for.
-    pub fn new() -> Self {
-        Self {
-            history: [0.0; DECEL_SCANS],
-            at: 0,
-            effect_changes: OnDelay::default(),
-            effective: false,
-            measurable: OnDelay::default(),
-            demanded: OnDelay::default(),
-        }
-    }
-
     pub fn step(
         &mut self,
         now: Instant,
@@ -82,7 +70,15 @@ impl BrakeProof {
 }
 
 impl Default for BrakeProof {
+    /// Standing, nothing asked for.
     fn default() -> Self {
-        Self::new()
+        Self {
+            history: [0.0; DECEL_SCANS],
+            at: 0,
+            effect_changes: OnDelay::default(),
+            effective: false,
+            measurable: OnDelay::default(),
+            demanded: OnDelay::default(),
+        }
     }
 }

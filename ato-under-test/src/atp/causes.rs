@@ -168,12 +168,12 @@ pub fn shown_cause(tested: &Atp, train: &Atp, held: bool) -> EbCause {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::for_tests::sg100;
 
     /// No input leads to such values: a processor that holds them has failed, and ATP must notice.
     #[test]
     fn a_limit_that_no_processor_may_hold_breaks_an_invariant() {
-        let text = include_str!("../../../scripts/units/sg100.toml");
-        let mut atp = Atp::new(&UnitConfig::from_toml(text).unwrap());
+        let mut atp = Atp::new(&sg100());
         assert_eq!(atp.broken_invariant(), None);
         for mps in [f64::NAN, f64::INFINITY, -1.0] {
             atp.limit = Speed::from_mps(mps);

@@ -32,7 +32,7 @@ const SELDOM: usize = 2;
 ///
 /// Of codes that alternate the most restrictive one holds: it takes over by the sum of its times, and one that comes
 /// back after it must be steady for the hold time.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct CodeDecoder {
     pub code: Code,
     /// When the code in force was confirmed last.
@@ -58,25 +58,6 @@ pub struct CodeDecoder {
 }
 
 impl CodeDecoder {
-    /// A decoder that has received no code.
-    pub fn new() -> Self {
-        Self {
-            code: Code::None,
-            confirmed: Instant::ZERO,
-            candidate: Code::None,
-            since: Instant::ZERO,
-            comes_back: false,
-            heard: Heard::default(),
-            restricted: None,
-            other: None,
-            unconfirmed: false,
-            by_sum: false,
-            flicker_reported: false,
-            unknown: OnDelay::default(),
-            unknown_reported: false,
-        }
-    }
-
     /// One scan. With `confirms`, single scans in which a code in force is heard do not renew the code.
     pub fn step(
         &mut self,
@@ -206,12 +187,6 @@ impl CodeDecoder {
     pub fn limit(&self, codes: &[SpeedCode]) -> Speed {
         self.known(codes)
             .map_or(Speed::ZERO, |code| Speed::from_kmh(code.line_kmh()))
-    }
-}
-
-impl Default for CodeDecoder {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

@@ -174,6 +174,7 @@ mod tests {
     use protocol::message::TrainLines;
 
     use super::*;
+    use crate::for_tests::logged;
 
     const PROVED: TrainLines = TrainLines::DOORS_CLOSED
         .union(TrainLines::DOORS_BY_SIDE)
@@ -240,13 +241,6 @@ mod tests {
             }
             self.doors.hold()
         }
-
-        /// Codes and parameters of what was logged.
-        fn logged(&self) -> alloc::vec::Vec<(u16, i32)> {
-            let entries = self.log.entries();
-            let all = (0..self.log.next_index()).filter_map(|at| entries.at_or_after(at));
-            all.map(|entry| (entry.code, entry.parameter)).collect()
-        }
     }
 
     #[test]
@@ -263,7 +257,7 @@ mod tests {
             train.has(PROVED, side);
             assert_eq!(train.has(lines, side), sides.is_some(), "{side:?}");
             let events: alloc::vec::Vec<_> = sides.map(|sides| (242, sides)).into_iter().collect();
-            assert_eq!(train.logged(), events, "{side:?}");
+            assert_eq!(logged(&train.log), events, "{side:?}");
             assert!(!train.has(PROVED, side), "closed again");
         }
     }
@@ -278,9 +272,9 @@ mod tests {
             "data of the next section"
         );
         assert_eq!(train.doors.enable, Outputs::DOOR_ENABLE_RIGHT);
-        assert_eq!(train.logged(), []);
+        assert_eq!(logged(&train.log), []);
         assert!(train.has(RIGHT_OPEN.intersection(LEFT_OPEN), DoorSide::None));
-        assert_eq!(train.logged(), [(242, 1)], "the other side");
+        assert_eq!(logged(&train.log), [(242, 1)], "the other side");
         assert!(!train.has(PROVED, DoorSide::None));
         assert_eq!(train.doors.enable, Outputs::empty());
         assert!(train.has(RIGHT_OPEN, DoorSide::None), "opened again");
@@ -291,7 +285,7 @@ mod tests {
         let mut train = Train::new();
         train.has(PROVED.difference(TrainLines::DOORS_CLOSED), DoorSide::None);
         train.has(PROVED.difference(TrainLines::DOORS_CLOSED), DoorSide::None);
-        assert_eq!(train.logged(), [(243, 0)]);
+        assert_eq!(logged(&train.log), [(243, 0)]);
     }
 
     #[test]
@@ -310,7 +304,7 @@ mod tests {
                 train.now += protocol::SCAN;
             }
             train.now += Duration::from_ms(2_000);
-            let told = train.logged();
+            let told = logged(&train.log);
             let told = told.iter().filter(|event| event.0 == 247).count();
             assert!((events..=2 * events).contains(&told), "{openings}: {told}");
         }

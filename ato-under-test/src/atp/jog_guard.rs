@@ -152,7 +152,7 @@ impl JogGuard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::with::with;
+    use crate::for_tests::{sg100, with};
 
     const JOG: JogInputs = JogInputs {
         backward: Some(true),
@@ -174,10 +174,9 @@ mod tests {
 
     impl Train {
         fn new() -> Self {
-            let text = include_str!("../../../scripts/units/sg100.toml");
             Self {
                 guard: JogGuard::default(),
-                config: UnitConfig::from_toml(text).unwrap(),
+                config: sg100(),
                 log: EventLog::default(),
                 now: Instant::ZERO,
             }

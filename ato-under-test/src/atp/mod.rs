@@ -127,12 +127,12 @@ impl Atp {
     /// ATP at power-up, with the emergency brake applied.
     pub fn new(config: &UnitConfig) -> Self {
         Self {
-            decoder: CodeDecoder::new(),
+            decoder: CodeDecoder::default(),
             tachometers: Tachometers::new(config),
             yard: Yard::new(config),
             proceeds: StopAndProceed::default(),
-            supervision: OverspeedSupervision::new(),
-            proof: BrakeProof::new(),
+            supervision: OverspeedSupervision::default(),
+            proof: BrakeProof::default(),
             doors: Doors::default(),
             door_orders: DoorOrders::default(),
             switch: Contacts::default(),
@@ -318,7 +318,7 @@ impl Atp {
 
     /// Forgets the decoded code, after the receiver was used for a test.
     pub fn forget_code(&mut self) {
-        self.decoder = CodeDecoder::new();
+        self.decoder = CodeDecoder::default();
     }
 
     /// One cycle of the mode sequence.

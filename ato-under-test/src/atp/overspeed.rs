@@ -40,7 +40,7 @@ pub struct Overspeed {
 }
 
 /// Compares the speed with the limit in force, scan by scan.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct OverspeedSupervision {
     limit: Speed,
     above_alarm: OnDelay,
@@ -57,23 +57,6 @@ pub struct OverspeedSupervision {
 }
 
 impl OverspeedSupervision {
-    /// Limit zero, nothing exceeded.
-    pub fn new() -> Self {
-        Self {
-            limit: Speed::ZERO,
-            above_alarm: OnDelay::default(),
-            above_service: OnDelay::default(),
-            above_emergency: OnDelay::default(),
-            alarm: false,
-            service: false,
-            stood: false,
-            stepped_down: false,
-            grace_until: Instant::ZERO,
-            alarmed: Edge::default(),
-            braked: Edge::default(),
-        }
-    }
-
     /// Alarm and service brake.
     pub fn step(
         &mut self,
@@ -165,23 +148,17 @@ impl OverspeedSupervision {
     }
 }
 
-impl Default for OverspeedSupervision {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::for_tests::seoul34;
 
     /// The rule of `seoul34`: as soon as the train is faster than the limit the service brake comes, and the emergency
     /// brake never by an excess alone, however great and long.
     #[test]
     fn without_delay_and_margin_the_service_brake_comes_at_once_and_alone() {
-        let text = include_str!("../../../scripts/units/seoul34.toml");
-        let config = UnitConfig::from_toml(text).expect("shipped");
-        let (mut one, mut log) = (OverspeedSupervision::new(), EventLog::default());
+        let config = seoul34();
+        let (mut one, mut log) = (OverspeedSupervision::default(), EventLog::default());
         let mut now = Instant::from_ms(1000);
         let mut scan = |kmh: f64, limit_kmh: f64| {
             now += protocol::SCAN;

@@ -71,7 +71,7 @@ mod tests {
     use protocol::SCAN;
 
     use super::*;
-    use crate::with::with;
+    use crate::for_tests::with;
 
     const ACKNOWLEDGED: ProceedInputs = ProceedInputs {
         without_code: true,

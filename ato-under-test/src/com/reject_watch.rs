@@ -11,7 +11,7 @@ use crate::kernel::EventLog;
 const SPAN: Duration = Duration::from_ms(10_000);
 
 /// Counts losses and reports a bad channel once a span.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct RejectWatch {
     threshold: u64,
     span_began: Instant,
@@ -25,10 +25,7 @@ impl RejectWatch {
     pub fn new(threshold: u32) -> Self {
         Self {
             threshold: u64::from(threshold),
-            span_began: Instant::ZERO,
-            at_begin: [0; 4],
-            lost: [0; 4],
-            reported: [false; 4],
+            ..Self::default()
         }
     }
 

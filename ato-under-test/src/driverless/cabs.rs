@@ -151,7 +151,7 @@ impl Cabs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::with::with;
+    use crate::for_tests::with;
 
     const MOST: Duration = Duration::from_ms(6000);
     const STATION: u16 = 824;

@@ -129,7 +129,7 @@ impl Stabling {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::with::with;
+    use crate::for_tests::with;
 
     const ASLEEP: StablingInputs = StablingInputs {
         driverless: Some(true),

@@ -49,7 +49,7 @@ pub struct SelfTestInputs {
 }
 
 /// A self-test under way.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Run {
     /// Sequence number of the request; `None` at start-up.
     request: Option<u16>,
@@ -219,18 +219,8 @@ impl Run {
             request,
             begun: now,
             ends,
-            decoding: OnDelay::default(),
-            decoded_after: None,
-            tests: 0,
-            tra_answers: 0,
-            modem_frames: 0,
-            board_answers: 0,
-            twc_cpu_frames: 0,
-            tcms_link_frames: 0,
-            energised_since: None,
-            energised: Duration::ZERO,
-            line_due: false,
             relay_off: true,
+            ..Self::default()
         }
     }
 

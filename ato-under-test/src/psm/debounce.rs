@@ -71,14 +71,12 @@ impl Debounce {
 mod tests {
     use alloc::vec::Vec;
 
-    use protocol::config::UnitConfig;
-
     use super::*;
+    use crate::for_tests::{parameters, sg100};
 
     /// Edges as (time in ms, marker), those that count, and the parameters of what is blamed on TRA.
     fn counted(edges: &[(u64, u8)]) -> (Vec<(u64, u8)>, Vec<i32>) {
-        let text = include_str!("../../../scripts/units/sg100.toml");
-        let config = UnitConfig::from_toml(text).unwrap().marker;
+        let config = sg100().marker;
         let (mut debounce, mut log) = (Debounce::default(), EventLog::default());
         let take = |&&(ms, marker): &&(u64, u8)| {
             let pulse = Some(MarkerPulse { marker, age_us: 0 });
@@ -86,8 +84,7 @@ mod tests {
             debounce.take(now, pulse, true, &config, &mut log).is_some()
         };
         let first = edges.iter().filter(take).copied().collect();
-        let entries = (0..).map_while(|index| log.entries().at_or_after(index));
-        (first, entries.map(|entry| entry.parameter).collect())
+        (first, parameters(&log, Event::TraBounces))
     }
 
     #[test]

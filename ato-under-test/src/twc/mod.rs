@@ -50,7 +50,7 @@ impl StationSender {
 /// The number of the unit's own train; 0 = none: data for any train are for this one.
 pub type TrainNumber = u16;
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Twc {
     timeout: Duration,
     heard: Option<Instant>,
@@ -78,18 +78,7 @@ impl Twc {
     pub fn new(timeout: Duration) -> Self {
         Self {
             timeout,
-            heard: None,
-            up: false,
-            data: None,
-            valid: false,
-            refusal_reported: None,
-            ordered: None,
-            orders_refusal: None,
-            other_train: None,
-            received: 0,
-            others: 0,
-            refused: 0,
-            answers: 0,
+            ..Self::default()
         }
     }
 
@@ -207,22 +196,20 @@ impl Twc {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::for_tests::{line8, parameters};
 
     const OWN: TrainNumber = 8001;
 
     struct Bench {
         twc: Twc,
-        line: Line,
         log: EventLog,
         now: Instant,
     }
 
     impl Bench {
         fn new() -> Self {
-            let line = include_str!("../../../scripts/lines/line8.toml");
             Self {
                 twc: Twc::new(Duration::from_ms(1000)),
-                line: Line::from_toml(line).unwrap(),
                 log: EventLog::default(),
                 now: Instant::ZERO,
             }
@@ -230,7 +217,7 @@ mod tests {
 
         /// Data of the first section's departure, for a train of this number.
         fn data(&self, train_number: u16) -> TwcWayside {
-            let section = &self.line.sections[0];
+            let section = &line8().sections[0];
             TwcWayside {
                 route: section.route,
                 section: section.section,
@@ -243,18 +230,14 @@ mod tests {
         }
 
         fn take(&mut self, data: TwcWayside, own: TrainNumber) {
-            let line = &self.line;
             self.twc
-                .take(self.now, data, own, line, Guards::ALL, &mut self.log);
+                .take(self.now, data, own, line8(), Guards::ALL, &mut self.log);
             self.now += Duration::from_ms(250);
             self.twc.step(self.now, false, &mut self.log);
         }
 
         fn logged(&self, event: Event) -> usize {
-            let code = event.definition().code;
-            let entries = self.log.entries();
-            let entries = (0..self.log.next_index()).filter_map(|at| entries.at_or_after(at));
-            entries.filter(|entry| entry.code == code).count()
+            parameters(&self.log, event).len()
         }
     }
 
