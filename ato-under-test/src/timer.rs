@@ -30,6 +30,32 @@ impl OnDelay {
     }
 }
 
+/// Counts occurrences in a span, which then begins anew, and tells once that there were many.
+#[derive(Clone, Debug, Default)]
+pub struct Burst {
+    count: u32,
+    since: Instant,
+    told: bool,
+}
+
+impl Burst {
+    /// One scan; true when it brings the `many`th occurrence of the span.
+    pub fn is_many(&mut self, now: Instant, occurs: bool, many: u32, span: Duration) -> bool {
+        if now.since(self.since) > span {
+            (self.count, self.since, self.told) = (0, now, false);
+        }
+        self.count += u32::from(occurs);
+        let tells = self.count >= many && !self.told;
+        self.told |= tells;
+        tells
+    }
+
+    /// There were many in this span.
+    pub fn told(&self) -> bool {
+        self.told
+    }
+}
+
 /// Edge detector: reports each change of a condition once.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Edge(bool);

@@ -5,25 +5,9 @@ use protocol::event::Event;
 use protocol::message::{EbCause, FsbCause, Mode};
 use protocol::{Instant, Speed};
 
-use super::{Atp, Code, ScanContext};
+use super::{Atp, Code, Found, ScanContext};
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
-
-/// Causes for the emergency brake that functions of ATP found in a scan.
-#[derive(Clone, Copy, Debug)]
-pub struct Found {
-    /// The train ran against the reverser.
-    pub rollback: bool,
-    /// The train ran forward although ATO jogs it backward.
-    pub wrong_way: bool,
-    pub door_open: bool,
-    /// Faster than the limit for too long.
-    pub beyond: bool,
-    /// The service brake that is asked for slows the train too little.
-    pub ineffective: bool,
-    /// Others opened the brake line of a train that moves: it stays braked until it stands.
-    pub line_opened: bool,
-}
 
 impl Atp {
     /// The mode is one in which the speed code counts.

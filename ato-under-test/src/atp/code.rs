@@ -4,21 +4,10 @@ use protocol::config::{CodeMeaning, ReceiverConfig, SpeedCode, UnitConfig};
 use protocol::event::Event;
 use protocol::{Duration, Instant, SCAN, Speed};
 
-use super::heard::Heard;
-use crate::kernel::EventLog;
+use super::heard::{Code, Heard};
+use crate::kernel::{EventLog, hundredths};
 use crate::signals::AntennaSignal;
 use crate::timer::OnDelay;
-
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Code {
-    /// Nothing valid: the most restrictive limit holds.
-    #[default]
-    None,
-    /// Carrier without modulation: absolute stop.
-    AbsoluteStop,
-    /// A code of the table, by index.
-    Known(u8),
-}
 
 /// Greatest error of the beginning that a receiver states.
 const KNOWN_TO: Duration = Duration::from_ms(500);
@@ -160,11 +149,7 @@ impl CodeDecoder {
             self.unknown_reported &= strange;
         } else if !self.unknown_reported {
             self.unknown_reported = true;
-            log.push(
-                now,
-                Event::CodeUnknown,
-                libm::round(signal.rate_hz * 100.0) as i32,
-            );
+            log.push(now, Event::CodeUnknown, hundredths(signal.rate_hz));
         }
     }
 

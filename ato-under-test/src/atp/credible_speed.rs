@@ -13,7 +13,7 @@ use protocol::config::TachoConfig;
 use protocol::event::Event;
 use protocol::{Duration, Instant, SCAN, Speed};
 
-use crate::kernel::EventLog;
+use crate::kernel::{EventLog, hundredths, hundredths_of_percent};
 use crate::timer::{Edge, OnDelay};
 
 const GRAVITY_MPS2: f64 = 9.81;
@@ -133,11 +133,7 @@ impl CredibleSpeed {
         let off = ahead > config.clock_share && !evidence.unguarded;
         self.clock_fast = if off { ahead } else { 0.0 };
         if self.clock_told.rises(off) {
-            log.push(
-                now,
-                Event::ClockContradicted,
-                libm::round(ahead * 1e4) as i32,
-            );
+            log.push(now, Event::ClockContradicted, hundredths_of_percent(ahead));
         }
     }
 
@@ -173,11 +169,7 @@ impl CredibleSpeed {
             .update(now, fallen_kmh > config.difference_kmh, span);
         if (vanishes || falls) && self.doubted_mps.is_none() {
             self.doubted_mps = Some(self.last_mps);
-            log.push(
-                now,
-                Event::SpeedVanished,
-                libm::round(self.last_mps * 100.0) as i32,
-            );
+            log.push(now, Event::SpeedVanished, hundredths(self.last_mps));
         }
     }
 

@@ -9,14 +9,14 @@ use protocol::{Duration, Instant, Speed};
 use super::DoorLines;
 use super::sides::contacts;
 use crate::kernel::EventLog;
-use crate::timer::{Edge, OnDelay};
+use crate::timer::{Burst, Edge, OnDelay};
 
 /// Time a train that has just stopped has until its place counts: alignment is known a scan after
 /// standstill.
 const SETTLES: Duration = Duration::from_ms(200);
 
 /// Doors ordered to open so often in this time are not opened by a person: a contact chatters.
-const CHATTER_OPENINGS: i32 = 4;
+const CHATTER_OPENINGS: u32 = 4;
 const CHATTER_SPAN: Duration = Duration::from_ms(1_000);
 
 /// Inputs of the door supervision.
@@ -57,30 +57,7 @@ pub struct Doors {
     contradiction: Edge,
     holds: bool,
     unproved: Edge,
-    chatter: Chatter,
-}
-
-/// Openings of the doors in [`CHATTER_SPAN`].
-#[derive(Clone, Debug, Default)]
-struct Chatter {
-    openings: i32,
-    since: Instant,
-    reported: Edge,
-}
-
-impl Chatter {
-    fn step(&mut self, now: Instant, opens: bool, log: &mut EventLog) {
-        if now.since(self.since) > CHATTER_SPAN {
-            self.since = now;
-            self.openings = 0;
-            self.reported.rises(false);
-        }
-        self.openings += i32::from(opens);
-        let chatters = self.openings >= CHATTER_OPENINGS || self.reported.value();
-        if self.reported.rises(chatters) {
-            log.push(now, Event::DoorChatters, self.openings);
-        }
-    }
+    openings: Burst,
 }
 
 impl Doors {
@@ -100,7 +77,9 @@ impl Doors {
         let span = Duration::from_ms(u64::from(config.open_moving_ms));
         let closed = inputs.lines.is_none_or(DoorLines::closed);
         let opens = self.unproved.rises(!closed);
-        self.chatter.step(now, opens, log);
+        if (self.openings).is_many(now, opens, CHATTER_OPENINGS, CHATTER_SPAN) {
+            log.push(now, Event::DoorChatters, CHATTER_OPENINGS as i32);
+        }
         self.open_m = if closed {
             0.0
         } else {

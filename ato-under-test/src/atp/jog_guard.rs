@@ -9,7 +9,7 @@ use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
-use crate::kernel::EventLog;
+use crate::kernel::{EventLog, hundredths};
 use crate::timer::{Edge, OnDelay};
 
 /// Time after which a permission that ATO no longer asks for is gone: a train that has stopped stands by then.
@@ -43,7 +43,8 @@ pub struct JogGuard {
     /// Way backward that is permitted beside the tolerance of rollback, m.
     back_m: Option<f64>,
     not_asked: OnDelay,
-    /// The permission has ended in this scan.
+    /// True in the one scan in which the permission to go backward ended: what the train has rolled back until then was
+    /// permitted, and rollback is summed up from zero again.
     pub ended: bool,
     /// Way forward since the wheels stood, by each tachometer, m.
     forward_m: [f64; 2],
@@ -88,11 +89,7 @@ impl JogGuard {
         let farthest_m = self.forward_m[0].max(self.forward_m[1]);
         let wrong_way = farthest_m > config.tacho.rollback_m;
         if self.wrong_way.rises(wrong_way) {
-            log.push(
-                now,
-                Event::JogWrongWay,
-                libm::round(farthest_m * 100.0) as i32,
-            );
+            log.push(now, Event::JogWrongWay, hundredths(farthest_m));
         }
         wrong_way
     }
@@ -115,7 +112,7 @@ impl JogGuard {
         self.refused = asked && (!inputs.permitted || self.back_m.is_none());
         let lasts = self.refusal_lasts.update(now, self.refused, REFUSAL_LASTS);
         if self.refusal_reported.rises(lasts) {
-            let overrun_cm = libm::round(overrun_m.unwrap_or_default() * 100.0) as i32;
+            let overrun_cm = hundredths(overrun_m.unwrap_or_default());
             log.push(now, Event::JogRefused, overrun_cm);
         }
     }

@@ -31,12 +31,12 @@ impl RejectWatch {
 
     /// A frame was lost in a modem or line driver before it could be rejected, or says what cannot be.
     pub fn count_lost(&mut self, channel: Channel) {
-        self.lost[place(channel)] += 1;
+        self.lost[channel as usize] += 1;
     }
 
     pub fn step(&mut self, now: Instant, ports: &Ports, log: &mut EventLog) {
         for channel in Channel::ALL {
-            let i = place(channel);
+            let i = channel as usize;
             let total = ports.rejected_on(channel) + self.lost[i];
             if !self.reported[i] && total - self.at_begin[i] >= self.threshold {
                 self.reported[i] = true;
@@ -51,8 +51,4 @@ impl RejectWatch {
             self.span_began = now;
         }
     }
-}
-
-fn place(channel: Channel) -> usize {
-    usize::from(channel.code()) - 1
 }

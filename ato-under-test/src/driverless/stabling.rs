@@ -99,7 +99,7 @@ impl Stabling {
     }
 
     /// The unit is put away, or was woken with a self-test that failed: it stays put away until
-    /// proved sound.
+    /// proved sound, and no run may begin.
     pub fn sleeps(&self) -> bool {
         self.asleep() || self.stage == Stage::Failed
     }
@@ -107,11 +107,6 @@ impl Stabling {
     /// Only a wake-up makes something of it.
     pub fn can_wake(&self) -> bool {
         matches!(self.stage, Stage::PutAway | Stage::Failed)
-    }
-
-    /// No run may begin.
-    pub fn bars_run(&self) -> bool {
-        self.sleeps()
     }
 
     /// State of the order; `None` = the train is awake, and none of these concerns it.

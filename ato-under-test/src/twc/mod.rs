@@ -7,24 +7,22 @@ mod orders;
 
 use protocol::event::Event;
 use protocol::line::Line;
-use protocol::message::{Mode, TwcTrain, TwcTrainBits, TwcWayside};
-use protocol::{Duration, Instant, Speed};
+use protocol::message::{TrainOrder, TwcOrders, TwcTrain, TwcTrainBits, TwcWayside};
+use protocol::{Duration, Instant};
 
 use crate::guards::Guards;
 use crate::kernel::EventLog;
 use check::contradiction;
-use orders::Ordered;
 
 pub use check::departs;
 pub use number::OwnNumber;
 
-#[derive(Clone, Copy, Debug, Default)]
-pub struct TrainState {
-    pub mode: Mode,
-    pub doors_closed: bool,
-    pub aligned: bool,
-    pub standstill: bool,
-    pub speed: Speed,
+/// Data that came through the TWC antenna.
+#[derive(Clone, Copy, Debug)]
+pub enum FromWayside {
+    Station(StationSender, TwcWayside),
+    /// With the sequence number of their frame.
+    Orders(u16, TwcOrders),
 }
 
 /// Sender of station data into the TWC antenna, which hears the answer, with the sequence number of its
@@ -45,6 +43,14 @@ impl StationSender {
     pub fn is_test(self) -> bool {
         matches!(self, Self::TestModem(_))
     }
+}
+
+/// The last orders that were not refused.
+#[derive(Clone, Copy, Debug)]
+struct Ordered {
+    destination: u16,
+    order: TrainOrder,
+    heard: Instant,
 }
 
 /// The number of the unit's own train; 0 = none: data for any train are for this one.
@@ -166,29 +172,25 @@ impl Twc {
         self.data = None;
     }
 
-    /// The answer to a frame of `sender`, with the unit's own train number.
+    /// The answer to a frame of `sender`, with the unit's own train number and the state of the train.
     pub fn answer(
         &mut self,
         sender: StationSender,
         data: &TwcWayside,
         own: TrainNumber,
-        train: TrainState,
+        train: TwcTrain,
     ) -> TwcTrain {
         if !sender.is_test() {
             self.answers = self.answers.wrapping_add(1);
         }
-        let mut bits = TwcTrainBits::empty();
-        bits.set(TwcTrainBits::DOORS_CLOSED, train.doors_closed);
-        bits.set(TwcTrainBits::ALIGNED, train.aligned);
+        let mut bits = train.bits;
         bits.set(TwcTrainBits::STATION_VALID, self.valid);
-        bits.set(TwcTrainBits::STANDSTILL, train.standstill);
         TwcTrain {
             answered_seq: sender.seq(),
             station: data.station,
             train_number: if own == 0 { data.train_number } else { own },
-            mode: train.mode,
             bits,
-            speed_cms: train.speed.to_cms(),
+            ..train
         }
     }
 }
@@ -265,7 +267,7 @@ mod tests {
         let data = bench.data(9999);
         let mut number = |own| {
             let sender = StationSender::Loop(3);
-            let answer = bench.twc.answer(sender, &data, own, TrainState::default());
+            let answer = bench.twc.answer(sender, &data, own, TwcTrain::default());
             answer.train_number
         };
         assert_eq!(number(OWN), OWN);

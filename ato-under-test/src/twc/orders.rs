@@ -7,20 +7,12 @@ use protocol::event::Event;
 use protocol::line::Line;
 use protocol::message::{TrainOrder, TwcOrders};
 
-use super::{TrainNumber, Twc};
+use super::{Ordered, TrainNumber, Twc};
 use crate::guards::Guards;
 use crate::kernel::EventLog;
 
 /// Metres of the wire's unit of length.
 const DECIMETRE_M: f64 = 0.1;
-
-/// The last orders that were not refused.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ordered {
-    destination: u16,
-    order: TrainOrder,
-    heard: Instant,
-}
 
 impl Twc {
     /// Takes orders unless they are for another train or contradict the track database; the order, if they give a new one.

@@ -211,7 +211,7 @@ impl Functions {
 
     /// An order holds the train: no run may begin.
     pub(super) fn ordered_to_stay(&self) -> bool {
-        self.cabs.bars_run() || self.stabling.bars_run()
+        self.cabs.bars_run() || self.stabling.sleeps()
     }
 }
 
