@@ -178,6 +178,17 @@ macro_rules! messages {
 
         $( impl From<$name> for Message {
             fn from(message: $name) -> Self { Self::$name(message) }
+        }
+
+        impl TryFrom<Message> for $name {
+            type Error = ();
+
+            fn try_from(message: Message) -> Result<Self, ()> {
+                match message {
+                    Message::$name(message) => Ok(message),
+                    _ => Err(()),
+                }
+            }
         } )*
 
         /// Every message.
