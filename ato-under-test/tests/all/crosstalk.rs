@@ -29,13 +29,6 @@ fn beside(bench: &mut Bench, level_mv: u16) {
     });
 }
 
-fn under_code_25(faults: &[protocol::injection::FaultMode]) -> Bench {
-    let mut bench = Bench::new(faults);
-    bench.code("25");
-    bench.run(1.0);
-    bench
-}
-
 /// 4 dB are a factor of 1.585: 500 mV are so much above 315 mV, and 793 mV above 500 mV.
 #[test]
 fn the_stronger_counts_while_the_other_stays_4_db_below_it() {
@@ -48,14 +41,14 @@ fn the_stronger_counts_while_the_other_stays_4_db_below_it() {
         (791, 0.0),
         (794, 75.0),
     ] {
-        let mut bench = under_code_25(&[]);
+        let mut bench = Bench::hearing("25", &[]);
         assert_eq!(limit_kmh(&mut bench, second_mv), expected, "{second_mv} mV");
     }
 }
 
 #[test]
 fn what_is_no_longer_told_is_gone() {
-    let mut bench = under_code_25(&[]);
+    let mut bench = Bench::hearing("25", &[]);
     assert_eq!(limit_kmh(&mut bench, 500), 0.0);
     bench.run(0.8);
     assert_eq!(shown_kmh(&bench), 25.0);
@@ -63,7 +56,7 @@ fn what_is_no_longer_told_is_gone() {
 
 #[test]
 fn a_receiver_without_separation_takes_the_weaker() {
-    let mut bench = under_code_25(&[fault(Place::CodeSeparation, Effect::Dead)]);
+    let mut bench = Bench::hearing("25", &[fault(Place::CodeSeparation, Effect::Dead)]);
     assert_eq!(limit_kmh(&mut bench, 0), 25.0);
     assert_eq!(limit_kmh(&mut bench, 250), 75.0);
 }

@@ -14,6 +14,7 @@ use std::time::{Duration, Instant};
 
 use protocol::message::{IoInput, TestSpeed};
 
+use crate::maintenance::test_speed;
 use crate::served::Unit;
 use damage::{Damager, Kind};
 use tester::{SESSION, Tester};
@@ -187,10 +188,7 @@ fn a_frame_that_is_acted_on_is_noticed() {
     let mut tester = Tester::begin(&unit, true);
     let request = TestSpeed {
         session: SESSION,
-        channels: 3,
-        backward: 0,
-        speed_cms: 500,
-        accel_mms2: 0,
+        ..test_speed(500)
     };
     tester.scan(|tester, out| tester.pass_for_damaged(request, out));
     tester.scan(|tester, out| tester.pass_for_damaged(IoInput::default(), out));

@@ -31,9 +31,7 @@ fn say(bench: &mut Bench, stop: Stop) {
 
 /// Standing under a stop that a code has given way to.
 fn standing_under(stop: Stop, faults: &[FaultMode]) -> Bench {
-    let mut bench = Bench::new(faults);
-    bench.code("55");
-    bench.run(0.6);
+    let mut bench = Bench::hearing("55", faults);
     say(&mut bench, stop);
     bench.run(1.5);
     bench
@@ -288,15 +286,11 @@ fn an_automatic_run_goes_on_after_a_stop() {
     for (stop, _) in STOPS {
         let mut journey = Journey::new(&[]).until_position(300.0);
         say(&mut journey.bench, stop);
-        for _ in 0..4_000 {
-            journey.step();
-        }
+        (0..4_000).for_each(|_| journey.step());
         assert_eq!(journey.v_mps, 0.0, "{stop:?}");
         assert!(journey.bench.has(Outputs::FSB) && !journey.bench.braking());
         journey.bench.code("65");
-        for _ in 0..500 {
-            journey.step();
-        }
+        (0..500).for_each(|_| journey.step());
         assert!(journey.v_mps > 1.0, "{stop:?}: it stands");
         let mut journey = journey.run();
         let error_m = journey.stop_error_m();
