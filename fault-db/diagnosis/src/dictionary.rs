@@ -125,7 +125,8 @@ impl Dictionary {
 
     /// Compresses it for storage.
     ///
-    /// Out of memory.
+    /// # Errors
+    /// There is not enough memory for it.
     pub fn to_bytes(&self) -> Result<Vec<u8>, String> {
         let json = serde_json::to_vec(self).map_err(|error| error.to_string())?;
         pack(&json).map_err(|error| error.to_string())
