@@ -2,6 +2,11 @@
 
 use protocol::{Duration, Instant};
 
+/// A time that the unit configuration gives.
+pub fn ms(ms: u32) -> Duration {
+    Duration::from_ms(u64::from(ms))
+}
+
 /// A time as a clock that runs this many times too fast tells it.
 pub fn at_rate(passed: Duration, rate: f64) -> Duration {
     if rate == 1.0 {

@@ -7,7 +7,7 @@ use protocol::{Duration, Instant, SCAN, Speed};
 use super::heard::{Code, Heard};
 use crate::kernel::{EventLog, hundredths};
 use crate::signals::AntennaSignal;
-use crate::timer::OnDelay;
+use crate::timer::{OnDelay, ms};
 
 /// Greatest error of the beginning that a receiver states.
 const KNOWN_TO: Duration = Duration::from_ms(500);
@@ -58,8 +58,8 @@ impl CodeDecoder {
     ) {
         let match_ = lookup(signal, config);
         let receiver = &config.receiver;
-        let detect = Duration::from_ms(u64::from(receiver.detect_ms));
-        let hold = Duration::from_ms(u64::from(receiver.hold_ms));
+        let detect = ms(receiver.detect_ms);
+        let hold = ms(receiver.hold_ms);
         self.heard.note(now, match_, hold);
         let stricter = |code: Code, than: Code| most_kmh(code, config) < most_kmh(than, config);
         if match_ != self.candidate {

@@ -9,7 +9,7 @@ use protocol::{Duration, Instant, Speed};
 use super::DoorLines;
 use super::sides::contacts;
 use crate::kernel::EventLog;
-use crate::timer::{Burst, Edge, OnDelay};
+use crate::timer::{Burst, Edge, OnDelay, ms};
 
 /// Time a train that has just stopped has until its place counts: alignment is known a scan after
 /// standstill.
@@ -74,7 +74,7 @@ impl Doors {
         log: &mut EventLog,
     ) -> bool {
         let moving = !inputs.standstill && inputs.speed > Speed::ZERO;
-        let span = Duration::from_ms(u64::from(config.open_moving_ms));
+        let span = ms(config.open_moving_ms);
         let closed = inputs.lines.is_none_or(DoorLines::closed);
         let opens = self.unproved.rises(!closed);
         if (self.openings).is_many(now, opens, CHATTER_OPENINGS, CHATTER_SPAN) {
@@ -124,8 +124,8 @@ impl Doors {
     ) {
         let lines = inputs.lines.filter(|_| inputs.supervised);
         let open = lines.map_or(DoorSide::None, |lines| lines.open_without(self.enable));
-        let span = Duration::from_ms(u64::from(config.open_moving_ms));
-        self.holds = self.not_enabled.update(now, open != DoorSide::None, span);
+        let is_open = open != DoorSide::None;
+        self.holds = (self.not_enabled).update(now, is_open, ms(config.open_moving_ms));
         // Codes of sides are sets of bits.
         let all_open = inputs.lines.map_or(0, |lines| lines.open().code());
         let opening = all_open & !self.open.replace(all_open).unwrap_or(u8::MAX);
@@ -134,8 +134,8 @@ impl Doors {
             log.push(now, Event::DoorNotEnabled, i32::from(self.opened));
         }
         let contradiction = inputs.lines.and_then(DoorLines::contradiction);
-        let span = Duration::from_ms(u64::from(config.lines_ms));
-        let lasts = self.contradict.update(now, contradiction.is_some(), span);
+        let contradicts = contradiction.is_some();
+        let lasts = (self.contradict).update(now, contradicts, ms(config.lines_ms));
         if self.contradiction.rises(lasts) {
             let sides = contradiction.unwrap_or_default();
             log.push(now, Event::DoorLinesContradict, i32::from(sides.code()));

@@ -10,7 +10,7 @@ use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
 use crate::kernel::{EventLog, hundredths};
-use crate::timer::{Edge, OnDelay};
+use crate::timer::{Edge, OnDelay, ms};
 
 /// Time after which a permission that ATO no longer asks for is gone: a train that has stopped stands by then.
 const TAIL: Duration = Duration::from_ms(1_000);
@@ -127,8 +127,9 @@ impl JogGuard {
     ) {
         let jogs = inputs.backward.is_some() || self.back_m.is_some();
         let over = jogs && inputs.speed.kmh() > config.overspeed.jog_kmh;
-        let delay = Duration::from_ms(u64::from(config.overspeed.fsb_delay_ms));
-        let too_fast = self.too_fast.update(now, over, delay);
+        let too_fast = self
+            .too_fast
+            .update(now, over, ms(config.overspeed.fsb_delay_ms));
         if too_fast && !self.brakes {
             log.push(now, Event::JogOverspeed, i32::from(inputs.speed.to_cms()));
         }

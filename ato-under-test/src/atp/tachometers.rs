@@ -9,7 +9,7 @@ use crate::atp::credible_speed::{CredibleSpeed, SpeedEvidence};
 use crate::kernel::{EventLog, hundredths};
 use crate::signals::Inputs;
 use crate::speedometer::Speedometer;
-use crate::timer::{Burst, OnDelay};
+use crate::timer::{Burst, OnDelay, ms};
 
 /// A channel slower than this beside a turning one counts as dead rather than as different.
 const DEAD_BELOW: Speed = Speed::from_kmh(1.0);
@@ -58,7 +58,7 @@ impl Tachometers {
 
     /// Tachometers of a train that stands.
     pub fn new(config: &UnitConfig) -> Self {
-        let window = Duration::from_ms(u64::from(config.tacho.window_ms));
+        let window = ms(config.tacho.window_ms);
         let meter = || Speedometer::new(window, config.metres_per_pulse());
         Self {
             meters: [meter(), meter()],
@@ -132,7 +132,7 @@ impl Tachometers {
         let told = evidence.tcms_moves(&config.tacho) && !evidence.tested && !evidence.unguarded;
         let doubted = self.credible.doubted().is_some();
         let slow = self.speed().kmh() <= config.tacho.standstill_kmh && !told && !doubted;
-        let span = Duration::from_ms(u64::from(config.tacho.standstill_ms));
+        let span = ms(config.tacho.standstill_ms);
         self.standstill = self.slow.update(now, slow, span);
         // A train that creeps makes pulses in both channels, and more than one: a lone one is spurious.
         let pulses: u64 = inputs.pulses.iter().map(|of| u64::from(of.count)).sum();
@@ -154,7 +154,7 @@ impl Tachometers {
         let tacho = &config.tacho;
         let (one, two) = (self.meters[0].speed, self.meters[1].speed);
         let difference = one.difference(two);
-        let span = Duration::from_ms(u64::from(tacho.difference_ms));
+        let span = ms(tacho.difference_ms);
         let differ = self
             .differ
             .update(now, difference.kmh() > tacho.difference_kmh, span);

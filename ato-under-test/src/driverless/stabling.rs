@@ -2,9 +2,9 @@
 //!
 //! A train that is put away is in mode off with its emergency brake applied; speed codes and departures are not acted
 //! on, TWC is answered. It wakes by the wayside's order, or by somebody at the cab, who turns the mode switch away from
-//! driverless. Then the unit tests itself as at power-up, and only a test that is passed lets the brake be released, as
-//! at power-up; with one that failed in any item, nobody being there who could judge it, the train stays put away, until it is woken again or somebody at the cab takes it.
-//! An old departure counts no more.
+//! driverless. Then the unit tests itself as at power-up, and only a test that is passed lets the brake be released.
+//! After one in which any item failed the train stays put away, for nobody is there who could judge it, until it is woken
+//! again or somebody at the cab takes it. A departure that was given before counts no more.
 //!
 //! A train that is put away stays so over a power-up: the stored event log says it.
 

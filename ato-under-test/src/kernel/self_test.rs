@@ -11,7 +11,7 @@ use protocol::line::Line;
 use protocol::message::{MeasureUnit, Message, SelfTest, SelfTestEnd, SelfTestItem};
 use protocol::{Duration, Instant, SCAN};
 
-use crate::timer::OnDelay;
+use crate::timer::{OnDelay, ms};
 
 /// Greatest time for which the brake line may be energised with the relay off, ms.
 const LINE_ENERGISED_MS: i32 = 190;
@@ -142,7 +142,7 @@ impl SelfTester {
     ) -> Option<SelfTest> {
         let tests = self.tests();
         let run = self.run.as_mut()?;
-        let detect = Duration::from_ms(u64::from(config.receiver.detect_ms));
+        let detect = ms(config.receiver.detect_ms);
         if run.decoding.update(now, inputs.code_heard, detect) && run.decoded_after.is_none() {
             run.decoded_after = Some(now.since(run.begun));
         }

@@ -10,6 +10,7 @@ use protocol::{Duration, Instant};
 
 use crate::kernel::EventLog;
 use crate::signals::MarkerPulse;
+use crate::timer::ms;
 
 /// Markers of a section.
 const MARKERS: usize = 4;
@@ -45,7 +46,6 @@ impl Debounce {
             return Some(pulse);
         };
         let at = now.back(Duration::from_us(u64::from(pulse.age_us)));
-        let ms = |ms: u32| Duration::from_ms(u64::from(ms));
         let Some(known) = contact
             .as_mut()
             .filter(|known| at.since(known.last) <= ms(config.bounce_ms))

@@ -5,13 +5,13 @@
 
 mod operation;
 
+use protocol::Instant;
 use protocol::config::{TachoConfig, UnitConfig};
 use protocol::event::Event;
 use protocol::injection::{Effect, Place};
 use protocol::message::{
     DoorSide, LogEntry, Mode, ModeSwitch, Refusals, TrainLines, TwcTrain, TwcTrainBits, TwcWayside,
 };
-use protocol::{Duration, Instant};
 
 use crate::ato::{Ato, AtoOutputs};
 use crate::atp::{Atp, Code, ModeInputs, ScanContext};
@@ -24,7 +24,7 @@ use crate::kernel::{EventLog, SelfTester, Watchdog, hundredths};
 use crate::psm::{Debounce, Locator, Movement, TachoCompare, Tra, WheelMotion};
 use crate::setup::Setup;
 use crate::signals::{Inputs, MarkerPulse};
-use crate::timer::Edge;
+use crate::timer::{Edge, ms};
 use crate::twc::Twc;
 
 /// Data that the functions need beside their inputs.
@@ -73,7 +73,7 @@ impl Functions {
         Self {
             inputs: Inputs::default(),
             atp: Atp::new(config),
-            twc: Twc::new(Duration::from_ms(u64::from(config.link.twc_timeout_ms))),
+            twc: Twc::new(ms(config.link.twc_timeout_ms)),
             locator: Locator::new(config),
             debounce: Debounce::default(),
             elsewhere: Edge::default(),

@@ -65,7 +65,7 @@ impl Journey {
         }
     }
 
-    /// But for one change.
+    /// The same journey but for one change.
     pub fn with(mut self, change: impl FnOnce(&mut Self)) -> Self {
         change(&mut self);
         self
