@@ -97,11 +97,7 @@ impl Locator {
             config: marker,
             aligned_m: config.doors.aligned_m,
             section: None,
-            fix: PositionFix {
-                place_m: 0.0,
-                distance_m: 0.0,
-                marker: 0,
-            },
+            fix: PositionFix::default(),
             expected: 1,
             pending: None,
             slid_m: 0.0,

@@ -14,7 +14,7 @@ const WRONG_WHEEL: f64 = 0.15;
 const REMEMBERED_M: f64 = 600.0;
 
 /// A place at which the train is known to have been.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PositionFix {
     /// Where, m from the section's start.
     pub place_m: f64,

@@ -77,7 +77,7 @@ fn lies_within(side: DoorSide, platform: DoorSide) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use alloc::vec::Vec;
 
     use protocol::message::RunningMode;
@@ -100,7 +100,8 @@ mod tests {
         }
     }
 
-    fn departure(line: &Line, at: usize) -> TwcWayside {
+    /// Data of the departure into a section, by its place in the line.
+    pub fn departure(line: &Line, at: usize) -> TwcWayside {
         let section = &line.sections[at];
         TwcWayside {
             station: section.from_station,

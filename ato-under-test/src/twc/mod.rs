@@ -219,15 +219,9 @@ mod tests {
 
         /// Data of the first section's departure, for a train of this number.
         fn data(&self, train_number: u16) -> TwcWayside {
-            let section = &line8().sections[0];
             TwcWayside {
-                route: section.route,
-                section: section.section,
-                station: section.from_station,
-                next_station: section.to_station,
-                loop_id: section.from_loop,
                 train_number,
-                ..TwcWayside::default()
+                ..check::tests::departure(line8(), 0)
             }
         }
 

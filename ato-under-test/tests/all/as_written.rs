@@ -11,7 +11,7 @@ use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, CoilSamples, ENUMS, FieldSpec,
     IoOutput, Message, MessageSpec, ModeSwitch, ReadStored, Status, StatusBits, Subscribe,
-    TcmsToAtcBits, TrainLines, TwcOrders,
+    TcmsToAtcBits, TrainLines, TwcOrders, TwcReport,
 };
 use protocol::{Duration, Instant};
 
@@ -362,9 +362,7 @@ fn refuses_orders(orders: Message, name: &str) {
         ..orders
     });
     bench.run(0.1);
-    let [Message::TwcReport(report)] = bench.answers[..] else {
-        panic!("{:?}", bench.answers)
-    };
+    let report: TwcReport = bench.last().expect("a report");
     assert_eq!(report.refused, 1, "{name}");
 }
 

@@ -3,7 +3,7 @@
 use protocol::injection::{Effect, Place};
 use protocol::message::Crosstalk;
 
-use crate::common::{Bench, config, fault};
+use crate::common::{Bench, fault, signal_of};
 
 /// Limit under code 25 at 500 mV with code 75 beside it for 2 s, km/h.
 fn limit_kmh(bench: &mut Bench, second_mv: u16) -> f64 {
@@ -19,12 +19,10 @@ fn shown_kmh(bench: &Bench) -> f64 {
 }
 
 fn beside(bench: &mut Bench, level_mv: u16) {
-    let config = config();
-    let code = config.codes.iter().find(|code| code.name == "75");
-    let code = code.expect("in the table");
+    let (carrier_hz, code_rate_chz) = signal_of("75");
     bench.send(Crosstalk {
-        carrier_hz: code.carrier_hz as u16,
-        code_rate_chz: (code.rate_hz * 100.0) as u16,
+        carrier_hz,
+        code_rate_chz,
         level_mv,
     });
 }

@@ -135,10 +135,6 @@ fn a_dead_guard_lets_a_train_creep() {
 /// A run in which the service brake has been asked for.
 type Brought = (FsbCause, fn() -> Bench);
 
-fn manual_overspeed() -> Bench {
-    Bench::under("45", 49.0)
-}
-
 fn stopped_by_code_0() -> Bench {
     let mut bench = Bench::under("25", 5.0);
     bench.code("0");
@@ -179,10 +175,6 @@ fn silence_between_loops_brakes_nobody_and_in_the_next_loop_it_does() {
     assert_eq!(journey.bench.status.fsb_cause, FsbCause::TwcLost);
 }
 
-fn tcms_lost() -> Bench {
-    on_the_way(&[], |bench| bench.tcms = None)
-}
-
 fn not_permitted() -> Bench {
     on_the_way(&[], |bench| {
         let tcms = bench.tcms.as_mut().expect("TCMS speaks");
@@ -195,11 +187,13 @@ fn ato_failed() -> Bench {
 }
 
 const CAUSES: [Brought; 7] = [
-    (FsbCause::Overspeed, manual_overspeed),
+    (FsbCause::Overspeed, || Bench::under("45", 49.0)),
     (FsbCause::StopCode, stopped_by_code_0),
     (FsbCause::NoCode, code_lost),
     (FsbCause::TwcLost, twc_lost),
-    (FsbCause::TcmsLost, tcms_lost),
+    (FsbCause::TcmsLost, || {
+        on_the_way(&[], |bench| bench.tcms = None)
+    }),
     (FsbCause::AtoFailed, ato_failed),
     (FsbCause::NotPermitted, not_permitted),
 ];

@@ -1,8 +1,8 @@
 //! Promises of the unit while a tester is armed: the train stands and stays braked, whatever test signals say, and
 //! no test signal is left afterwards.
 
-use crate::common::{Bench, all, confirm, departure, fault, line, test_station};
-use crate::maintenance::{SESSION, arm, test_speed};
+use crate::common::{Bench, all, confirm, departure, fault, line, signal_of, test_station};
+use crate::maintenance::{CODE_75, SESSION, arm, test_speed};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -31,13 +31,11 @@ fn armed(faults: &[FaultMode]) -> Bench {
 }
 
 fn test_code(name: &str) -> TestCode {
-    let config = crate::common::config();
-    let code = config.codes.iter().find(|code| code.name == name).unwrap();
+    let (carrier_hz, code_rate_chz) = signal_of(name);
     TestCode {
-        session: SESSION,
-        carrier_hz: code.carrier_hz as u16,
-        code_rate_chz: (code.rate_hz * 100.0) as u16,
-        level_mv: 500,
+        carrier_hz,
+        code_rate_chz,
+        ..CODE_75
     }
 }
 

@@ -123,6 +123,13 @@ pub fn test_station(session: u32, data: TwcWayside) -> TestTwc {
     }
 }
 
+/// Carrier, Hz, and code rate, 0.01 Hz, of the code called `name`.
+pub fn signal_of(name: &str) -> (u16, u16) {
+    let config = config();
+    let code = config.codes.iter().find(|code| code.name == name).unwrap();
+    (code.carrier_hz as u16, (code.rate_hz * 100.0) as u16)
+}
+
 pub fn setup(faults: &[FaultMode]) -> Setup {
     Setup {
         serial: "T-1".into(),
@@ -232,10 +239,7 @@ impl Bench {
 
     /// Sends the code called `name`.
     pub fn code(&mut self, name: &str) {
-        let config = config();
-        let code = config.codes.iter().find(|code| code.name == name).unwrap();
-        self.input.carrier_hz = code.carrier_hz as u16;
-        self.input.code_rate_chz = (code.rate_hz * 100.0) as u16;
+        (self.input.carrier_hz, self.input.code_rate_chz) = signal_of(name);
         self.input.level_mv = 500;
     }
 
