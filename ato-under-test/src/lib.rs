@@ -32,6 +32,8 @@ mod com;
 mod driverless;
 mod faults;
 pub mod flash;
+#[cfg(test)]
+mod for_tests;
 mod front_end;
 mod guards;
 mod kernel;
@@ -47,8 +49,6 @@ mod test_board;
 mod timer;
 mod twc;
 mod unit;
-#[cfg(test)]
-mod with;
 
 pub use com::Port;
 pub use kernel::{LOG_CAPACITY, RUN_ROWS};

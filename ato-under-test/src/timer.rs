@@ -2,6 +2,11 @@
 
 use protocol::{Duration, Instant};
 
+/// A time that the unit configuration gives.
+pub fn ms(ms: u32) -> Duration {
+    Duration::from_ms(u64::from(ms))
+}
+
 /// A time as a clock that runs this many times too fast tells it.
 pub fn at_rate(passed: Duration, rate: f64) -> Duration {
     if rate == 1.0 {
@@ -27,6 +32,32 @@ impl OnDelay {
     /// Starts again, as if the condition had never held.
     pub fn clear(&mut self) {
         self.0 = None;
+    }
+}
+
+/// Counts occurrences in a span, which then begins anew, and tells once that there were many.
+#[derive(Clone, Debug, Default)]
+pub struct Burst {
+    count: u32,
+    since: Instant,
+    told: bool,
+}
+
+impl Burst {
+    /// One scan; true when it brings the `many`th occurrence of the span.
+    pub fn is_many(&mut self, now: Instant, occurs: bool, many: u32, span: Duration) -> bool {
+        if now.since(self.since) > span {
+            (self.count, self.since, self.told) = (0, now, false);
+        }
+        self.count += u32::from(occurs);
+        let tells = self.count >= many && !self.told;
+        self.told |= tells;
+        tells
+    }
+
+    /// There were many in this span.
+    pub fn told(&self) -> bool {
+        self.told
     }
 }
 

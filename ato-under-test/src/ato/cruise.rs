@@ -5,18 +5,8 @@ use protocol::Speed;
 use protocol::config::AtoConfig;
 use protocol::message::RunningMode;
 
-use super::AtoInputs;
+use super::inputs::AtoInputs;
 use super::track_limit::{TrainPosition, limit_ahead};
-
-/// Inputs of the cruising speed.
-#[derive(Clone, Copy, Debug)]
-pub struct CruiseInputs {
-    /// Limit from ATP.
-    pub limit: Speed,
-    /// Fixed speed ordered by the wayside.
-    pub fixed_speed: Option<Speed>,
-    pub running_mode: RunningMode,
-}
 
 /// The cruising speed where the train is. `slowing_m` tells in which way it slows from one speed to a lower one, m/s.
 pub fn on_track(
@@ -24,14 +14,7 @@ pub fn on_track(
     config: &AtoConfig,
     slowing_m: impl Fn(f64, f64) -> f64,
 ) -> Speed {
-    let under = |limit: Speed| {
-        let inputs = CruiseInputs {
-            limit,
-            fixed_speed: inputs.fixed_speed,
-            running_mode: inputs.running_mode,
-        };
-        cruise(inputs, config)
-    };
+    let under = |limit| cruise(limit, inputs.fixed_speed, inputs.running_mode, config);
     let place = TrainPosition {
         section: inputs.section,
         position_m: inputs.position_m,
@@ -46,16 +29,21 @@ pub fn on_track(
     under(limit)
 }
 
-/// The cruising speed in force.
-pub fn cruise(inputs: CruiseInputs, config: &AtoConfig) -> Speed {
-    let lowering = match inputs.running_mode {
+/// The cruising speed under a limit, with the fixed speed that the wayside has ordered.
+pub fn cruise(
+    limit: Speed,
+    fixed_speed: Option<Speed>,
+    running_mode: RunningMode,
+    config: &AtoConfig,
+) -> Speed {
+    let lowering = match running_mode {
         RunningMode::Recovery => 0.0,
         _ => config.normal_lowering_kmh,
     };
     let below = Speed::from_kmh(config.below_limit_kmh + lowering);
-    let allowed = (inputs.limit - below).max(Speed::ZERO);
-    let slow = (inputs.running_mode == RunningMode::Slow).then_some(config.slow_kmh);
-    [slow.map(Speed::from_kmh), inputs.fixed_speed]
+    let allowed = (limit - below).max(Speed::ZERO);
+    let slow = (running_mode == RunningMode::Slow).then_some(config.slow_kmh);
+    [slow.map(Speed::from_kmh), fixed_speed]
         .into_iter()
         .flatten()
         .fold(allowed, Speed::min)
@@ -63,14 +51,14 @@ pub fn cruise(inputs: CruiseInputs, config: &AtoConfig) -> Speed {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::config;
     use super::*;
+    use crate::for_tests::sg100;
 
     /// Limit, order, running mode and the speed to run at, km/h; lowering 5 and 3 km/h, slow at 25.
     #[test]
     fn the_most_restrictive_counts() {
         use RunningMode::{Normal, Recovery, Slow, Unknown};
-        let mut config = config();
+        let mut config = sg100().ato;
         config.below_limit_kmh = 5.0;
         config.normal_lowering_kmh = 3.0;
         config.slow_kmh = 25.0;
@@ -85,13 +73,12 @@ mod tests {
             (45.0, Some(60.0), Recovery, 40.0),
             (0.0, Some(60.0), Recovery, 0.0),
         ] {
-            let inputs = CruiseInputs {
-                limit: Speed::from_kmh(limit),
-                fixed_speed: fixed.map(Speed::from_kmh),
-                running_mode,
-            };
-            let got = cruise(inputs, &config).kmh();
-            assert!((got - expected).abs() < 1e-9, "{inputs:?}: {got}");
+            let (most, order) = (Speed::from_kmh(limit), fixed.map(Speed::from_kmh));
+            let got = cruise(most, order, running_mode, &config).kmh();
+            assert!(
+                (got - expected).abs() < 1e-9,
+                "{limit}, {fixed:?}, {running_mode:?}: {got}"
+            );
         }
     }
 }

@@ -71,19 +71,17 @@ fn at(section: &Section, position_m: f64, uphill: f64, train: &AtoTrainConfig) -
 
 #[cfg(test)]
 mod tests {
-    use protocol::line::Line;
-
     use super::*;
+    use crate::for_tests::{line8, sg100};
 
     /// An approach of 35 ‰ down, with 3.3 kgf/t of rolling resistance, takes 31.7 kgf/t, 0.311 m/s²; level or up
     /// nothing.
     #[test]
     fn an_approach_takes_of_the_brake_downhill_only() {
-        let line8 = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();
-        let mut section = line8.section(61).unwrap().clone();
+        let mut section = line8().section(61).unwrap().clone();
         section.curves.clear();
         section.gradients.truncate(1);
-        let train = super::super::tests::config().train;
+        let train = sg100().ato.train;
         for (permille, expected) in [(-35.0, -0.311), (0.0, 0.0), (35.0, 0.0)] {
             section.gradients[0].permille = permille;
             let least = approach_n_per_kg(&section, &train);

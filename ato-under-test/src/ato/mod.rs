@@ -9,6 +9,7 @@ mod art;
 pub mod controller;
 mod cruise;
 mod feed_forward;
+mod inputs;
 mod jog;
 mod monitor;
 mod observer;
@@ -19,9 +20,8 @@ mod track_limit;
 use alloc::boxed::Box;
 
 use protocol::Speed;
-use protocol::config::{AtoConfig, SpeedCode, UnitConfig};
-use protocol::line::Section;
-use protocol::message::{AtoFailure, AtoState, Mode, RunningMode};
+use protocol::config::{AtoConfig, UnitConfig};
+use protocol::message::{AtoFailure, AtoState, Mode};
 
 use controller::{ControllerInput, SpeedController, controller};
 use jog::{Jog, JogInputs};
@@ -30,8 +30,9 @@ use observer::{Observer, SpeedMeasurement};
 use reg::{Bounds, GrantedEffort, Regulator};
 
 pub use art::{ArtInputs, Checks};
+pub use inputs::{AtoInputs, TrainReport};
 pub use jog::JogOutcome;
-pub use monitor::{Findings, TrainReport};
+pub use monitor::Findings;
 
 /// Speed that counts as zero: no pulse for half a second. Standstill as ATP means it is up to 0.3 m/s, at
 /// which a train that is stopping still has a second to go.
@@ -44,46 +45,6 @@ const STARTING_MPS2: f64 = 0.05;
 const RESTING_MPS2: f64 = 0.1;
 /// Effort of the full service brake.
 const FULL_BRAKE: i16 = -1024;
-
-/// Inputs of ATO in one cycle.
-#[derive(Clone, Copy, Debug)]
-pub struct AtoInputs<'a> {
-    /// Operating mode set by ATP.
-    pub mode: Mode,
-    /// Limit from ATP.
-    pub limit: Speed,
-    /// The unit's speed codes, by which the track database names limits.
-    pub codes: &'a [SpeedCode],
-    /// Time within which a new code is heard, s.
-    pub heard_within_s: f64,
-    /// Fixed speed ordered by the wayside.
-    pub fixed_speed: Option<Speed>,
-    /// Running mode ordered by the wayside.
-    pub running_mode: RunningMode,
-    /// Section of the track database the train is in.
-    pub section: Option<&'a Section>,
-    /// Position in it, m.
-    pub position_m: f64,
-    /// Distance by which the train may be farther on while markers do not come, m.
-    pub ahead_m: f64,
-    /// Distance from the stop point that counts as aligned, m.
-    pub aligned_m: f64,
-    /// The section's last marker was seen.
-    pub last_marker: bool,
-    pub jogs: bool,
-    /// Measured speed.
-    pub speed: Speed,
-    /// Standstill as ATP means it, below 0.3 m/s.
-    pub standstill: bool,
-    /// ATP or TCMS cuts powering.
-    pub power_cut: bool,
-    /// Report of TCMS on the train.
-    pub train: TrainReport,
-    /// Passenger load TCMS reports, kg.
-    pub load_kg: f64,
-    /// Results of KRN's checks.
-    pub checks: Checks,
-}
 
 /// Commands of ATO.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -364,16 +325,5 @@ impl Ato {
     /// Stands after a run away from the stop point, and jogging has given up.
     pub fn gave_up(&self) -> bool {
         self.jog.gave_up
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use protocol::config::{AtoConfig, UnitConfig};
-
-    /// ATO's part of the default configuration.
-    pub fn config() -> AtoConfig {
-        let text = include_str!("../../../scripts/units/sg100.toml");
-        UnitConfig::from_toml(text).unwrap().ato
     }
 }

@@ -16,8 +16,9 @@ use protocol::line::Section;
 use protocol::message::{AbsurdInputs, AtoState};
 use protocol::{CYCLE, Speed};
 
+use super::art;
+use super::inputs::AtoInputs;
 use super::reg::power_mps2;
-use super::{AtoInputs, art};
 
 /// Speed beyond any train's of these lines, m/s: 150 km/h [default].
 const FASTEST_MPS: f64 = 150.0 / 3.6;
@@ -39,17 +40,6 @@ const LONGEST_M: f64 = 50e3;
 const FAR_PAST_M: f64 = 10.0;
 /// Time standing short of the stop point after which nothing more is expected, s [default].
 const STANDS_S: f64 = 5.0;
-
-/// Report of TCMS on the train. Efforts are −1024 full brake .. 1023 full power.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TrainReport {
-    /// TCMS brakes by itself, or gives no power.
-    pub overrides: bool,
-    /// Effort last sent to it.
-    pub sent: i16,
-    /// Effort the train gives; `None` = not known.
-    pub given: Option<i16>,
-}
 
 /// Inputs of the monitor besides ATO's inputs.
 #[derive(Clone, Copy, Debug)]

@@ -64,25 +64,18 @@ pub fn limit_ahead(
 
 #[cfg(test)]
 mod tests {
-    use protocol::config::UnitConfig;
     use protocol::line::Line;
 
     use super::*;
+    use crate::for_tests::{line8, sg100};
 
     /// Limit, km/h, at a place of S2's section under a limit in force, km/h, by a train that slows within 60 m.
     fn at(position_m: f64, limit_kmh: f64) -> f64 {
-        of(
-            include_str!("../../../scripts/lines/line6.toml"),
-            22,
-            position_m,
-            limit_kmh,
-        )
+        let line6 = Line::from_toml(include_str!("../../../scripts/lines/line6.toml"));
+        of(&line6.unwrap(), 22, position_m, limit_kmh)
     }
 
-    fn of(line: &str, section: u16, position_m: f64, limit_kmh: f64) -> f64 {
-        let unit = include_str!("../../../scripts/units/sg100.toml");
-        let unit = UnitConfig::from_toml(unit).unwrap();
-        let line = Line::from_toml(line).unwrap();
+    fn of(line: &Line, section: u16, position_m: f64, limit_kmh: f64) -> f64 {
         let place = TrainPosition {
             section: line.section(section),
             length_m: 160.0,
@@ -90,7 +83,7 @@ mod tests {
             heard_within_m: 15.0,
             limit: Speed::from_kmh(limit_kmh),
         };
-        limit_ahead(place, &unit.codes, |_| 60.0).kmh()
+        limit_ahead(place, &sg100().codes, |_| 60.0).kmh()
     }
 
     /// 55 km/h up to 235 m and 45 from there, as printed [S2 §3.3].
@@ -116,9 +109,8 @@ mod tests {
     /// 55 km/h up to 500 m and 65 from there, on section 56 of line 8, for a train of 160 m.
     #[test]
     fn a_higher_limit_counts_when_the_last_car_is_past_the_lower_one() {
-        let line8 = include_str!("../../../scripts/lines/line8.toml");
         for (position_m, expected_kmh) in [(510.0, 55.0), (659.0, 55.0), (661.0, 65.0)] {
-            let limit_kmh = of(line8, 56, position_m, 65.0);
+            let limit_kmh = of(line8(), 56, position_m, 65.0);
             assert!((limit_kmh - expected_kmh).abs() < 1e-9, "{position_m}");
         }
     }

@@ -1,9 +1,9 @@
 //! Proof that the service brake works: whatever asks for it, the train must slow, or the emergency brake follows.
 
 use protocol::config::OverspeedConfig;
-use protocol::{Duration, Instant, Speed};
+use protocol::{Instant, Speed};
 
-use crate::timer::OnDelay;
+use crate::timer::{OnDelay, ms};
 
 /// Scans over which the deceleration is measured (0.5 s).
 const DECEL_SCANS: usize = 50;
@@ -40,18 +40,6 @@ pub struct BrakeProof {
 }
 
 impl BrakeProof {
-    /// Standing, nothing asked for.
-    pub fn new() -> Self {
-        Self {
-            history: [0.0; DECEL_SCANS],
-            at: 0,
-            effect_changes: OnDelay::default(),
-            effective: false,
-            measurable: OnDelay::default(),
-            demanded: OnDelay::default(),
-        }
-    }
-
     pub fn step(
         &mut self,
         now: Instant,
@@ -64,15 +52,14 @@ impl BrakeProof {
         let decel_mps2 = (before - speed.mps()) / (DECEL_SCANS as f64 * protocol::SCAN.as_secs());
         let proved = decel_mps2 >= config.brake_proof_mps2;
         // A pulse too many in a tachometer hides a deceleration, or feigns one, for as long as its speed window.
-        let delay = Duration::from_ms(u64::from(config.eb_delay_ms));
+        let delay = ms(config.eb_delay_ms);
         let differs = proved != self.effective;
         if self.effect_changes.update(now, differs, delay) {
             self.effective = proved;
         }
         // Nor does it make a train that is at its limit faster.
         let measurable = self.measurable.update(now, demand.measurable, delay);
-        let time = Duration::from_ms(u64::from(config.brake_proof_ms));
-        let waited = self.demanded.update(now, demand.holds, time);
+        let waited = (self.demanded).update(now, demand.holds, ms(config.brake_proof_ms));
         BrakeState {
             decel_mms2: libm::round(decel_mps2 * 1000.0) as i32,
             proved,
@@ -82,7 +69,15 @@ impl BrakeProof {
 }
 
 impl Default for BrakeProof {
+    /// Standing, nothing asked for.
     fn default() -> Self {
-        Self::new()
+        Self {
+            history: [0.0; DECEL_SCANS],
+            at: 0,
+            effect_changes: OnDelay::default(),
+            effective: false,
+            measurable: OnDelay::default(),
+            demanded: OnDelay::default(),
+        }
     }
 }

@@ -5,25 +5,9 @@ use protocol::event::Event;
 use protocol::message::{EbCause, FsbCause, Mode};
 use protocol::{Instant, Speed};
 
-use super::{Atp, Code, ScanContext};
+use super::{Atp, Code, Found, ScanContext};
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
-
-/// Causes for the emergency brake that functions of ATP found in a scan.
-#[derive(Clone, Copy, Debug)]
-pub struct Found {
-    /// The train ran against the reverser.
-    pub rollback: bool,
-    /// The train ran forward although ATO jogs it backward.
-    pub wrong_way: bool,
-    pub door_open: bool,
-    /// Faster than the limit for too long.
-    pub beyond: bool,
-    /// The service brake that is asked for slows the train too little.
-    pub ineffective: bool,
-    /// Others opened the brake line of a train that moves: it stays braked until it stands.
-    pub line_opened: bool,
-}
 
 impl Atp {
     /// The mode is one in which the speed code counts.
@@ -168,12 +152,12 @@ pub fn shown_cause(tested: &Atp, train: &Atp, held: bool) -> EbCause {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::for_tests::sg100;
 
     /// No input leads to such values: a processor that holds them has failed, and ATP must notice.
     #[test]
     fn a_limit_that_no_processor_may_hold_breaks_an_invariant() {
-        let text = include_str!("../../../scripts/units/sg100.toml");
-        let mut atp = Atp::new(&UnitConfig::from_toml(text).unwrap());
+        let mut atp = Atp::new(&sg100());
         assert_eq!(atp.broken_invariant(), None);
         for mps in [f64::NAN, f64::INFINITY, -1.0] {
             atp.limit = Speed::from_mps(mps);

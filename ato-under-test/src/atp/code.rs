@@ -4,21 +4,10 @@ use protocol::config::{CodeMeaning, ReceiverConfig, SpeedCode, UnitConfig};
 use protocol::event::Event;
 use protocol::{Duration, Instant, SCAN, Speed};
 
-use super::heard::Heard;
-use crate::kernel::EventLog;
+use super::heard::{Code, Heard};
+use crate::kernel::{EventLog, hundredths};
 use crate::signals::AntennaSignal;
-use crate::timer::OnDelay;
-
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Code {
-    /// Nothing valid: the most restrictive limit holds.
-    #[default]
-    None,
-    /// Carrier without modulation: absolute stop.
-    AbsoluteStop,
-    /// A code of the table, by index.
-    Known(u8),
-}
+use crate::timer::{OnDelay, ms};
 
 /// Greatest error of the beginning that a receiver states.
 const KNOWN_TO: Duration = Duration::from_ms(500);
@@ -32,7 +21,7 @@ const SELDOM: usize = 2;
 ///
 /// Of codes that alternate the most restrictive one holds: it takes over by the sum of its times, and one that comes
 /// back after it must be steady for the hold time.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct CodeDecoder {
     pub code: Code,
     /// When the code in force was confirmed last.
@@ -58,25 +47,6 @@ pub struct CodeDecoder {
 }
 
 impl CodeDecoder {
-    /// A decoder that has received no code.
-    pub fn new() -> Self {
-        Self {
-            code: Code::None,
-            confirmed: Instant::ZERO,
-            candidate: Code::None,
-            since: Instant::ZERO,
-            comes_back: false,
-            heard: Heard::default(),
-            restricted: None,
-            other: None,
-            unconfirmed: false,
-            by_sum: false,
-            flicker_reported: false,
-            unknown: OnDelay::default(),
-            unknown_reported: false,
-        }
-    }
-
     /// One scan. With `confirms`, single scans in which a code in force is heard do not renew the code.
     pub fn step(
         &mut self,
@@ -88,8 +58,8 @@ impl CodeDecoder {
     ) {
         let match_ = lookup(signal, config);
         let receiver = &config.receiver;
-        let detect = Duration::from_ms(u64::from(receiver.detect_ms));
-        let hold = Duration::from_ms(u64::from(receiver.hold_ms));
+        let detect = ms(receiver.detect_ms);
+        let hold = ms(receiver.hold_ms);
         self.heard.note(now, match_, hold);
         let stricter = |code: Code, than: Code| most_kmh(code, config) < most_kmh(than, config);
         if match_ != self.candidate {
@@ -179,11 +149,7 @@ impl CodeDecoder {
             self.unknown_reported &= strange;
         } else if !self.unknown_reported {
             self.unknown_reported = true;
-            log.push(
-                now,
-                Event::CodeUnknown,
-                libm::round(signal.rate_hz * 100.0) as i32,
-            );
+            log.push(now, Event::CodeUnknown, hundredths(signal.rate_hz));
         }
     }
 
@@ -206,12 +172,6 @@ impl CodeDecoder {
     pub fn limit(&self, codes: &[SpeedCode]) -> Speed {
         self.known(codes)
             .map_or(Speed::ZERO, |code| Speed::from_kmh(code.line_kmh()))
-    }
-}
-
-impl Default for CodeDecoder {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

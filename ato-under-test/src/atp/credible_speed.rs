@@ -13,8 +13,8 @@ use protocol::config::TachoConfig;
 use protocol::event::Event;
 use protocol::{Duration, Instant, SCAN, Speed};
 
-use crate::kernel::EventLog;
-use crate::timer::{Edge, OnDelay};
+use crate::kernel::{EventLog, hundredths, hundredths_of_percent};
+use crate::timer::{Edge, OnDelay, ms};
 
 const GRAVITY_MPS2: f64 = 9.81;
 /// A lower speed comes from one pulse or none.
@@ -133,11 +133,7 @@ impl CredibleSpeed {
         let off = ahead > config.clock_share && !evidence.unguarded;
         self.clock_fast = if off { ahead } else { 0.0 };
         if self.clock_told.rises(off) {
-            log.push(
-                now,
-                Event::ClockContradicted,
-                libm::round(ahead * 1e4) as i32,
-            );
+            log.push(now, Event::ClockContradicted, hundredths_of_percent(ahead));
         }
     }
 
@@ -164,20 +160,13 @@ impl CredibleSpeed {
         if fallen_kmh <= config.fall_kmh {
             self.last_mps = self.reference_mps;
         }
-        let delay = Duration::from_ms(u64::from(config.fall_ms));
         let silent = speed < NO_PULSES && fallen_kmh > config.fall_kmh;
-        let vanishes = self.vanishes.update(now, silent, delay);
-        let span = Duration::from_ms(u64::from(config.difference_ms));
-        let falls = self
-            .falls
-            .update(now, fallen_kmh > config.difference_kmh, span);
+        let vanishes = self.vanishes.update(now, silent, ms(config.fall_ms));
+        let falls = fallen_kmh > config.difference_kmh;
+        let falls = (self.falls).update(now, falls, ms(config.difference_ms));
         if (vanishes || falls) && self.doubted_mps.is_none() {
             self.doubted_mps = Some(self.last_mps);
-            log.push(
-                now,
-                Event::SpeedVanished,
-                libm::round(self.last_mps * 100.0) as i32,
-            );
+            log.push(now, Event::SpeedVanished, hundredths(self.last_mps));
         }
     }
 
@@ -218,9 +207,8 @@ impl CredibleSpeed {
             self.powerless.clear();
             self.cut = false;
         }
-        let span = Duration::from_ms(u64::from(config.no_pulses_ms));
         let waits = evidence.powers && !pulses && !self.cut;
-        self.cut |= self.powerless.update(now, waits, span);
+        self.cut |= (self.powerless).update(now, waits, ms(config.no_pulses_ms));
         self.cut &= !evidence.acknowledge;
         if self.told.rises(self.cut) {
             log.push(now, Event::NoPulses, config.no_pulses_ms as i32);

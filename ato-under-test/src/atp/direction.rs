@@ -4,7 +4,7 @@ use protocol::Instant;
 use protocol::event::Event;
 use protocol::message::TrainLines;
 
-use crate::kernel::EventLog;
+use crate::kernel::{EventLog, hundredths};
 use crate::timer::Edge;
 
 /// Where the reverser lets the train go.
@@ -86,7 +86,7 @@ impl Rollback {
         let farthest_m = self.against_m[0].max(self.against_m[1]);
         let trips = farthest_m > allowed_m;
         if self.tripped.rises(trips) {
-            log.push(now, Event::Rollback, libm::round(farthest_m * 100.0) as i32);
+            log.push(now, Event::Rollback, hundredths(farthest_m));
         }
         trips
     }

@@ -45,6 +45,7 @@ pub fn enabled_sides(enable: Outputs) -> DoorSide {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::for_tests::logged;
 
     const SIDES: [DoorSide; 4] = [
         DoorSide::None,
@@ -75,12 +76,9 @@ mod tests {
                     assert_eq!(passed.contains(Outputs::OPEN_RIGHT), both & 2 != 0);
                 }
                 let beyond = ordered.code() & !enabled.code();
-                let entries = log.entries();
-                let told = entries
-                    .at_or_after(0)
-                    .map(|entry| (entry.code, entry.parameter));
                 let expected = (beyond != 0).then_some((245, i32::from(beyond)));
-                assert_eq!(told, expected, "{ordered:?} {enabled:?}");
+                let told = logged(&log);
+                assert_eq!(told.first().copied(), expected, "{ordered:?} {enabled:?}");
             }
         }
     }

@@ -9,14 +9,14 @@ use protocol::{Duration, Instant, Speed};
 use super::DoorLines;
 use super::sides::contacts;
 use crate::kernel::EventLog;
-use crate::timer::{Edge, OnDelay};
+use crate::timer::{Burst, Edge, OnDelay, ms};
 
 /// Time a train that has just stopped has until its place counts: alignment is known a scan after
 /// standstill.
 const SETTLES: Duration = Duration::from_ms(200);
 
 /// Doors ordered to open so often in this time are not opened by a person: a contact chatters.
-const CHATTER_OPENINGS: i32 = 4;
+const CHATTER_OPENINGS: u32 = 4;
 const CHATTER_SPAN: Duration = Duration::from_ms(1_000);
 
 /// Inputs of the door supervision.
@@ -57,30 +57,7 @@ pub struct Doors {
     contradiction: Edge,
     holds: bool,
     unproved: Edge,
-    chatter: Chatter,
-}
-
-/// Openings of the doors in [`CHATTER_SPAN`].
-#[derive(Clone, Debug, Default)]
-struct Chatter {
-    openings: i32,
-    since: Instant,
-    reported: Edge,
-}
-
-impl Chatter {
-    fn step(&mut self, now: Instant, opens: bool, log: &mut EventLog) {
-        if now.since(self.since) > CHATTER_SPAN {
-            self.since = now;
-            self.openings = 0;
-            self.reported.rises(false);
-        }
-        self.openings += i32::from(opens);
-        let chatters = self.openings >= CHATTER_OPENINGS || self.reported.value();
-        if self.reported.rises(chatters) {
-            log.push(now, Event::DoorChatters, self.openings);
-        }
-    }
+    openings: Burst,
 }
 
 impl Doors {
@@ -97,10 +74,12 @@ impl Doors {
         log: &mut EventLog,
     ) -> bool {
         let moving = !inputs.standstill && inputs.speed > Speed::ZERO;
-        let span = Duration::from_ms(u64::from(config.open_moving_ms));
+        let span = ms(config.open_moving_ms);
         let closed = inputs.lines.is_none_or(DoorLines::closed);
         let opens = self.unproved.rises(!closed);
-        self.chatter.step(now, opens, log);
+        if (self.openings).is_many(now, opens, CHATTER_OPENINGS, CHATTER_SPAN) {
+            log.push(now, Event::DoorChatters, CHATTER_OPENINGS as i32);
+        }
         self.open_m = if closed {
             0.0
         } else {
@@ -145,8 +124,8 @@ impl Doors {
     ) {
         let lines = inputs.lines.filter(|_| inputs.supervised);
         let open = lines.map_or(DoorSide::None, |lines| lines.open_without(self.enable));
-        let span = Duration::from_ms(u64::from(config.open_moving_ms));
-        self.holds = self.not_enabled.update(now, open != DoorSide::None, span);
+        let is_open = open != DoorSide::None;
+        self.holds = (self.not_enabled).update(now, is_open, ms(config.open_moving_ms));
         // Codes of sides are sets of bits.
         let all_open = inputs.lines.map_or(0, |lines| lines.open().code());
         let opening = all_open & !self.open.replace(all_open).unwrap_or(u8::MAX);
@@ -155,8 +134,8 @@ impl Doors {
             log.push(now, Event::DoorNotEnabled, i32::from(self.opened));
         }
         let contradiction = inputs.lines.and_then(DoorLines::contradiction);
-        let span = Duration::from_ms(u64::from(config.lines_ms));
-        let lasts = self.contradict.update(now, contradiction.is_some(), span);
+        let contradicts = contradiction.is_some();
+        let lasts = (self.contradict).update(now, contradicts, ms(config.lines_ms));
         if self.contradiction.rises(lasts) {
             let sides = contradiction.unwrap_or_default();
             log.push(now, Event::DoorLinesContradict, i32::from(sides.code()));
@@ -174,6 +153,7 @@ mod tests {
     use protocol::message::TrainLines;
 
     use super::*;
+    use crate::for_tests::logged;
 
     const PROVED: TrainLines = TrainLines::DOORS_CLOSED
         .union(TrainLines::DOORS_BY_SIDE)
@@ -240,13 +220,6 @@ mod tests {
             }
             self.doors.hold()
         }
-
-        /// Codes and parameters of what was logged.
-        fn logged(&self) -> alloc::vec::Vec<(u16, i32)> {
-            let entries = self.log.entries();
-            let all = (0..self.log.next_index()).filter_map(|at| entries.at_or_after(at));
-            all.map(|entry| (entry.code, entry.parameter)).collect()
-        }
     }
 
     #[test]
@@ -263,7 +236,7 @@ mod tests {
             train.has(PROVED, side);
             assert_eq!(train.has(lines, side), sides.is_some(), "{side:?}");
             let events: alloc::vec::Vec<_> = sides.map(|sides| (242, sides)).into_iter().collect();
-            assert_eq!(train.logged(), events, "{side:?}");
+            assert_eq!(logged(&train.log), events, "{side:?}");
             assert!(!train.has(PROVED, side), "closed again");
         }
     }
@@ -278,9 +251,9 @@ mod tests {
             "data of the next section"
         );
         assert_eq!(train.doors.enable, Outputs::DOOR_ENABLE_RIGHT);
-        assert_eq!(train.logged(), []);
+        assert_eq!(logged(&train.log), []);
         assert!(train.has(RIGHT_OPEN.intersection(LEFT_OPEN), DoorSide::None));
-        assert_eq!(train.logged(), [(242, 1)], "the other side");
+        assert_eq!(logged(&train.log), [(242, 1)], "the other side");
         assert!(!train.has(PROVED, DoorSide::None));
         assert_eq!(train.doors.enable, Outputs::empty());
         assert!(train.has(RIGHT_OPEN, DoorSide::None), "opened again");
@@ -291,7 +264,7 @@ mod tests {
         let mut train = Train::new();
         train.has(PROVED.difference(TrainLines::DOORS_CLOSED), DoorSide::None);
         train.has(PROVED.difference(TrainLines::DOORS_CLOSED), DoorSide::None);
-        assert_eq!(train.logged(), [(243, 0)]);
+        assert_eq!(logged(&train.log), [(243, 0)]);
     }
 
     #[test]
@@ -310,7 +283,7 @@ mod tests {
                 train.now += protocol::SCAN;
             }
             train.now += Duration::from_ms(2_000);
-            let told = train.logged();
+            let told = logged(&train.log);
             let told = told.iter().filter(|event| event.0 == 247).count();
             assert!((events..=2 * events).contains(&told), "{openings}: {told}");
         }

@@ -5,7 +5,16 @@ use alloc::collections::VecDeque;
 
 use protocol::{Duration, Instant, SCAN};
 
-use super::Code;
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Code {
+    /// Nothing valid: the most restrictive limit holds.
+    #[default]
+    None,
+    /// Carrier without modulation: absolute stop.
+    AbsoluteStop,
+    /// A code of the table, by index.
+    Known(u8),
+}
 
 /// Codes of the last scans, one entry for each time that one was heard without a break.
 #[derive(Clone, Debug, Default)]

@@ -9,8 +9,8 @@ use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
-use crate::kernel::EventLog;
-use crate::timer::{Edge, OnDelay};
+use crate::kernel::{EventLog, hundredths};
+use crate::timer::{Edge, OnDelay, ms};
 
 /// Time after which a permission that ATO no longer asks for is gone: a train that has stopped stands by then.
 const TAIL: Duration = Duration::from_ms(1_000);
@@ -43,7 +43,8 @@ pub struct JogGuard {
     /// Way backward that is permitted beside the tolerance of rollback, m.
     back_m: Option<f64>,
     not_asked: OnDelay,
-    /// The permission has ended in this scan.
+    /// True in the one scan in which the permission to go backward ended: what the train has rolled back until then was
+    /// permitted, and rollback is summed up from zero again.
     pub ended: bool,
     /// Way forward since the wheels stood, by each tachometer, m.
     forward_m: [f64; 2],
@@ -88,11 +89,7 @@ impl JogGuard {
         let farthest_m = self.forward_m[0].max(self.forward_m[1]);
         let wrong_way = farthest_m > config.tacho.rollback_m;
         if self.wrong_way.rises(wrong_way) {
-            log.push(
-                now,
-                Event::JogWrongWay,
-                libm::round(farthest_m * 100.0) as i32,
-            );
+            log.push(now, Event::JogWrongWay, hundredths(farthest_m));
         }
         wrong_way
     }
@@ -115,7 +112,7 @@ impl JogGuard {
         self.refused = asked && (!inputs.permitted || self.back_m.is_none());
         let lasts = self.refusal_lasts.update(now, self.refused, REFUSAL_LASTS);
         if self.refusal_reported.rises(lasts) {
-            let overrun_cm = libm::round(overrun_m.unwrap_or_default() * 100.0) as i32;
+            let overrun_cm = hundredths(overrun_m.unwrap_or_default());
             log.push(now, Event::JogRefused, overrun_cm);
         }
     }
@@ -130,8 +127,9 @@ impl JogGuard {
     ) {
         let jogs = inputs.backward.is_some() || self.back_m.is_some();
         let over = jogs && inputs.speed.kmh() > config.overspeed.jog_kmh;
-        let delay = Duration::from_ms(u64::from(config.overspeed.fsb_delay_ms));
-        let too_fast = self.too_fast.update(now, over, delay);
+        let too_fast = self
+            .too_fast
+            .update(now, over, ms(config.overspeed.fsb_delay_ms));
         if too_fast && !self.brakes {
             log.push(now, Event::JogOverspeed, i32::from(inputs.speed.to_cms()));
         }
@@ -152,7 +150,7 @@ impl JogGuard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::with::with;
+    use crate::for_tests::{sg100, with};
 
     const JOG: JogInputs = JogInputs {
         backward: Some(true),
@@ -174,10 +172,9 @@ mod tests {
 
     impl Train {
         fn new() -> Self {
-            let text = include_str!("../../../scripts/units/sg100.toml");
             Self {
                 guard: JogGuard::default(),
-                config: UnitConfig::from_toml(text).unwrap(),
+                config: sg100(),
                 log: EventLog::default(),
                 now: Instant::ZERO,
             }

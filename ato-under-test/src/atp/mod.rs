@@ -31,7 +31,6 @@ use crate::guards::Guards;
 use crate::kernel::EventLog;
 use crate::signals::Inputs;
 use crate::timer::Edge;
-use causes::Found;
 use contacts::Contacts;
 use direction::{Rollback, Towards};
 use door_order::DoorOrders;
@@ -42,11 +41,12 @@ use yard::Yard;
 
 pub use brake_proof::{BrakeProof, BrakeState, Demand};
 pub use causes::shown_cause;
-pub use code::{Code, CodeDecoder, lookup};
+pub use code::{CodeDecoder, lookup};
 pub use credible_speed::SpeedEvidence;
 pub use door_lines::DoorLines;
 pub use doors::{DoorInputs, Doors};
 pub use emergency::{BrakeInputs, EmergencyBrake};
+pub use heard::Code;
 pub use mode::{ModeInputs, ModeSequence};
 pub use overspeed::{Overspeed, OverspeedSupervision, SupervisedMotion};
 pub use tachometers::Tachometers;
@@ -93,6 +93,22 @@ pub struct ScanContext {
     pub guards: Guards,
 }
 
+/// Causes for the emergency brake that functions of ATP found in a scan.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    /// The train ran against the reverser.
+    rollback: bool,
+    /// The train ran forward although ATO jogs it backward.
+    wrong_way: bool,
+    door_open: bool,
+    /// Faster than the limit for too long.
+    beyond: bool,
+    /// The service brake that is asked for slows the train too little.
+    ineffective: bool,
+    /// Others opened the brake line of a train that moves: it stays braked until it stands.
+    line_opened: bool,
+}
+
 /// State of the protection functions from scan to scan.
 #[derive(Clone, Debug)]
 pub struct Atp {
@@ -127,12 +143,12 @@ impl Atp {
     /// ATP at power-up, with the emergency brake applied.
     pub fn new(config: &UnitConfig) -> Self {
         Self {
-            decoder: CodeDecoder::new(),
+            decoder: CodeDecoder::default(),
             tachometers: Tachometers::new(config),
             yard: Yard::new(config),
             proceeds: StopAndProceed::default(),
-            supervision: OverspeedSupervision::new(),
-            proof: BrakeProof::new(),
+            supervision: OverspeedSupervision::default(),
+            proof: BrakeProof::default(),
             doors: Doors::default(),
             door_orders: DoorOrders::default(),
             switch: Contacts::default(),
@@ -318,7 +334,7 @@ impl Atp {
 
     /// Forgets the decoded code, after the receiver was used for a test.
     pub fn forget_code(&mut self) {
-        self.decoder = CodeDecoder::new();
+        self.decoder = CodeDecoder::default();
     }
 
     /// One cycle of the mode sequence.
@@ -350,7 +366,7 @@ impl Atp {
             clock_ahead: context.clock_ahead,
             powers: notch && !held,
             acknowledge: inputs.lines.contains(TrainLines::ACKNOWLEDGE),
-            tested: false,
+            tested: inputs.test_speed.contains(&true),
             unguarded: !context.guards.speed,
         }
     }

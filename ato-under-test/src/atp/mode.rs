@@ -173,10 +173,7 @@ impl ModeSequence {
             .intersects(Refusals::EB_APPLIED | Refusals::NOT_STANDSTILL)
             || self.failed();
         let departs = self.new_departure(inputs.heard) && !held;
-        let left = !matches!(
-            inputs.switch,
-            ModeSwitch::Automatic | ModeSwitch::Driverless
-        );
+        let left = !inputs.switch.is_automatic();
         let runs = self.mode == Mode::AutomaticRun;
         let ends = inputs.lacking.intersection(KEPT);
         if runs && !ends.is_empty() {
@@ -218,11 +215,7 @@ impl ModeSequence {
         if self.mode == Mode::AutomaticRun && inputs.line_open && !braked {
             log.push(now, Event::LineOpened, i32::from(!inputs.line_fell));
         }
-        let by_ato = matches!(
-            inputs.switch,
-            ModeSwitch::Automatic | ModeSwitch::Driverless
-        );
-        self.stops &= by_ato && moves;
+        self.stops &= inputs.switch.is_automatic() && moves;
     }
 
     /// An automatic run has begun in the last cycle.

@@ -1,7 +1,7 @@
 //! What the unit's other functions, and its contacts, take from ATP after a scan.
 
 use protocol::Speed;
-use protocol::message::{DoorSide, FsbCause, ModeSwitch, Outputs};
+use protocol::message::{DoorSide, FsbCause, Outputs};
 
 use super::door_order::enabled_sides;
 use super::{Atp, Code, CodeDecoder, EmergencyBrake, ModeSequence, Tachometers};
@@ -20,11 +20,6 @@ impl Atp {
         outputs.set(Outputs::STANDSTILL, self.tachometers.standstill());
         outputs.set(Outputs::HEALTHY, healthy);
         outputs
-    }
-
-    /// Cab at automatic or driverless.
-    pub fn switch_automatic(switch: ModeSwitch) -> bool {
-        matches!(switch, ModeSwitch::Automatic | ModeSwitch::Driverless)
     }
 
     pub fn decoder(&self) -> &CodeDecoder {

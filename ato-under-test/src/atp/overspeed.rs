@@ -9,11 +9,11 @@
 
 use protocol::config::{OverspeedConfig, UnitConfig};
 use protocol::event::Event;
-use protocol::{Duration, Instant, Speed};
+use protocol::{Instant, Speed};
 
 use super::BrakeState;
 use crate::kernel::EventLog;
-use crate::timer::{Edge, OnDelay};
+use crate::timer::{Edge, OnDelay, ms};
 
 /// Motion of the train in one scan, and its limits.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,7 @@ pub struct Overspeed {
 }
 
 /// Compares the speed with the limit in force, scan by scan.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct OverspeedSupervision {
     limit: Speed,
     above_alarm: OnDelay,
@@ -57,23 +57,6 @@ pub struct OverspeedSupervision {
 }
 
 impl OverspeedSupervision {
-    /// Limit zero, nothing exceeded.
-    pub fn new() -> Self {
-        Self {
-            limit: Speed::ZERO,
-            above_alarm: OnDelay::default(),
-            above_service: OnDelay::default(),
-            above_emergency: OnDelay::default(),
-            alarm: false,
-            service: false,
-            stood: false,
-            stepped_down: false,
-            grace_until: Instant::ZERO,
-            alarmed: Edge::default(),
-            braked: Edge::default(),
-        }
-    }
-
     /// Alarm and service brake.
     pub fn step(
         &mut self,
@@ -118,8 +101,7 @@ impl OverspeedSupervision {
             self.stepped_down && !proof.ineffective && (proof.proved || now < self.grace_until);
         let most_kmh = (margins.eb_margin_kmh).map(|margin| motion.limit.kmh() + margin);
         let beyond = most_kmh.is_some_and(|most_kmh| motion.speed.kmh() > most_kmh) && !in_grace;
-        let delay = Duration::from_ms(u64::from(margins.eb_delay_ms));
-        self.above_emergency.update(now, beyond, delay)
+        (self.above_emergency).update(now, beyond, ms(margins.eb_delay_ms))
     }
 
     /// At a step down the train may be over the new limit at once: the service brake gets its
@@ -134,7 +116,7 @@ impl OverspeedSupervision {
     ) {
         if limit < self.limit && speed > limit {
             self.stepped_down = true;
-            self.grace_until = now + Duration::from_ms(u64::from(margins.step_down_grace_ms));
+            self.grace_until = now + ms(margins.step_down_grace_ms);
         } else if speed <= limit {
             self.stepped_down = false;
         }
@@ -149,14 +131,9 @@ impl OverspeedSupervision {
                 motion.speed.kmh() > motion.limit.kmh() + margin_kmh
             }
         };
-        let alarm_delay = Duration::from_ms(u64::from(margins.alarm_delay_ms));
-        let service_delay = Duration::from_ms(u64::from(margins.fsb_delay_ms));
-        self.alarm |= self
-            .above_alarm
-            .update(now, over(margins.alarm_margin_kmh), alarm_delay);
-        self.service |= self
-            .above_service
-            .update(now, over(margins.fsb_margin_kmh), service_delay);
+        let (alarm, service) = (over(margins.alarm_margin_kmh), over(margins.fsb_margin_kmh));
+        self.alarm |= (self.above_alarm).update(now, alarm, ms(margins.alarm_delay_ms));
+        self.service |= (self.above_service).update(now, service, ms(margins.fsb_delay_ms));
         if motion.speed <= motion.limit {
             self.alarm = false;
             // A train that moved under a stop, or was stopped by it, would roll away again.
@@ -165,23 +142,17 @@ impl OverspeedSupervision {
     }
 }
 
-impl Default for OverspeedSupervision {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::for_tests::seoul34;
 
     /// The rule of `seoul34`: as soon as the train is faster than the limit the service brake comes, and the emergency
     /// brake never by an excess alone, however great and long.
     #[test]
     fn without_delay_and_margin_the_service_brake_comes_at_once_and_alone() {
-        let text = include_str!("../../../scripts/units/seoul34.toml");
-        let config = UnitConfig::from_toml(text).expect("shipped");
-        let (mut one, mut log) = (OverspeedSupervision::new(), EventLog::default());
+        let config = seoul34();
+        let (mut one, mut log) = (OverspeedSupervision::default(), EventLog::default());
         let mut now = Instant::from_ms(1000);
         let mut scan = |kmh: f64, limit_kmh: f64| {
             now += protocol::SCAN;

@@ -7,10 +7,10 @@
 
 use protocol::config::StopAndProceedConfig;
 use protocol::event::Event;
-use protocol::{Duration, Instant, Speed};
+use protocol::{Instant, Speed};
 
 use crate::kernel::EventLog;
-use crate::timer::Edge;
+use crate::timer::{Edge, ms};
 
 /// Inputs of stop and proceed in one scan.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +51,6 @@ impl StopAndProceed {
             self.proceeds = Some((now, limit));
             log.push(now, Event::StopAndProceed, i32::from(limit.to_cms()));
         }
-        let ms = |ms: u32| Duration::from_ms(u64::from(ms));
         self.warns = self.proceeds.is_some_and(|(since, _)| {
             let into_us = now.since(since).as_us() % ms(config.warning_ms).as_us();
             into_us < ms(config.sounds_ms).as_us()
@@ -71,7 +70,7 @@ mod tests {
     use protocol::SCAN;
 
     use super::*;
-    use crate::with::with;
+    use crate::for_tests::with;
 
     const ACKNOWLEDGED: ProceedInputs = ProceedInputs {
         without_code: true,

@@ -6,10 +6,10 @@ use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
 use crate::atp::credible_speed::{CredibleSpeed, SpeedEvidence};
-use crate::kernel::EventLog;
+use crate::kernel::{EventLog, hundredths};
 use crate::signals::Inputs;
 use crate::speedometer::Speedometer;
-use crate::timer::{Edge, OnDelay};
+use crate::timer::{Burst, OnDelay, ms};
 
 /// A channel slower than this beside a turning one counts as dead rather than as different.
 const DEAD_BELOW: Speed = Speed::from_kmh(1.0);
@@ -23,7 +23,7 @@ const NOISE_SPAN: Duration = Duration::from_ms(1000);
 #[derive(Clone, Debug)]
 pub struct Tachometers {
     meters: [Speedometer; 2],
-    noise: [Noise; 2],
+    noise: [Burst; 2],
     from_board: [bool; 2],
     differ: OnDelay,
     opposed: OnDelay,
@@ -46,13 +46,6 @@ pub struct Tachometers {
     farther: f64,
 }
 
-#[derive(Clone, Debug, Default)]
-struct Noise {
-    jumps: u32,
-    since: Instant,
-    reported: Edge,
-}
-
 impl Tachometers {
     /// No wheel has made more than a lone pulse for the time of standstill.
     pub fn still(&self) -> bool {
@@ -65,11 +58,11 @@ impl Tachometers {
 
     /// Tachometers of a train that stands.
     pub fn new(config: &UnitConfig) -> Self {
-        let window = Duration::from_ms(u64::from(config.tacho.window_ms));
+        let window = ms(config.tacho.window_ms);
         let meter = || Speedometer::new(window, config.metres_per_pulse());
         Self {
             meters: [meter(), meter()],
-            noise: [Noise::default(), Noise::default()],
+            noise: Default::default(),
             from_board: [false; 2],
             differ: OnDelay::default(),
             opposed: OnDelay::default(),
@@ -115,7 +108,7 @@ impl Tachometers {
             if self.from_board[i] != inputs.test_speed[i] {
                 self.from_board[i] = inputs.test_speed[i];
                 self.meters[i].reset();
-                self.noise[i] = Noise::default();
+                self.noise[i] = Burst::default();
             }
             let jump = self.meters[i].step(&inputs.pulses[i]);
             let impossible = Speedometer::impossible(jump, config.tacho.plausible_accel_mps2);
@@ -124,24 +117,22 @@ impl Tachometers {
                 self.loose_mps2 = loose;
             }
             let event = [Event::TachoNoise1, Event::TachoNoise2][i];
-            self.noise[i].step(now, impossible, jump, event, log);
+            if self.noise[i].is_many(now, impossible, NOISE_SCANS, NOISE_SPAN) {
+                log.push(now, event, hundredths(jump));
+            }
         }
         self.compare(now, inputs, config, log);
         // By channel 1, by channel 2 when only that turns.
         let first_dead = self.meters[0].speed < DEAD_BELOW && self.meters[1].speed > DEAD_BELOW;
         self.distance_channel = usize::from(first_dead);
         let silent = inputs.pulses.iter().all(|pulses| pulses.count == 0);
-        let evidence = SpeedEvidence {
-            tested: inputs.test_speed.contains(&true),
-            ..evidence
-        };
         let speeds = [0, 1].map(|i| self.meters[i].speed);
         self.credible
             .step(now, speeds, !silent, evidence, &config.tacho, log);
         let told = evidence.tcms_moves(&config.tacho) && !evidence.tested && !evidence.unguarded;
         let doubted = self.credible.doubted().is_some();
         let slow = self.speed().kmh() <= config.tacho.standstill_kmh && !told && !doubted;
-        let span = Duration::from_ms(u64::from(config.tacho.standstill_ms));
+        let span = ms(config.tacho.standstill_ms);
         self.standstill = self.slow.update(now, slow, span);
         // A train that creeps makes pulses in both channels, and more than one: a lone one is spurious.
         let pulses: u64 = inputs.pulses.iter().map(|of| u64::from(of.count)).sum();
@@ -163,7 +154,7 @@ impl Tachometers {
         let tacho = &config.tacho;
         let (one, two) = (self.meters[0].speed, self.meters[1].speed);
         let difference = one.difference(two);
-        let span = Duration::from_ms(u64::from(tacho.difference_ms));
+        let span = ms(tacho.difference_ms);
         let differ = self
             .differ
             .update(now, difference.kmh() > tacho.difference_kmh, span);
@@ -173,10 +164,7 @@ impl Tachometers {
         let faulty = differ || opposed;
         if faulty && !self.faulty {
             // Beside a noisy channel a silent one need not be dead.
-            let believed = [
-                !self.noise[0].reported.value(),
-                !self.noise[1].reported.value(),
-            ];
+            let believed = [!self.noise[0].told(), !self.noise[1].told()];
             match (one < DEAD_BELOW, two < DEAD_BELOW) {
                 (true, false) if believed[1] => {
                     log.push(now, Event::TachoDead1, i32::from(two.to_cms()));
@@ -227,29 +215,5 @@ impl Tachometers {
     /// The greater way in this scan, m.
     pub fn farthest_m(&self) -> f64 {
         libm::fabs(self.ways_m[0]).max(libm::fabs(self.ways_m[1]))
-    }
-}
-
-impl Noise {
-    fn step(
-        &mut self,
-        now: Instant,
-        impossible: bool,
-        jump: f64,
-        event: Event,
-        log: &mut EventLog,
-    ) {
-        if now.since(self.since) > NOISE_SPAN {
-            self.since = now;
-            self.jumps = 0;
-            self.reported.rises(false);
-        }
-        self.jumps += u32::from(impossible);
-        if self
-            .reported
-            .rises(self.jumps >= NOISE_SCANS || self.reported.value())
-        {
-            log.push(now, event, libm::round(jump * 100.0) as i32);
-        }
     }
 }

@@ -54,13 +54,13 @@ impl Yard {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::for_tests::{logged, seoul34, sg100};
     use CodeMeaning::{Line, Yard as OfYard, YardCancel};
 
     /// The rule: 3.2 Hz is for the yard, 16.8 Hz ends it, and so does a code of the line.
     #[test]
     fn what_ends_the_yard_is_this_table() {
-        let text = include_str!("../../../scripts/units/seoul34.toml");
-        let mut yard = Yard::new(&UnitConfig::from_toml(text).expect("shipped"));
+        let mut yard = Yard::new(&seoul34());
         let mut log = EventLog::default();
         for (mode, code, ended) in [
             (Mode::Yard, None, false),
@@ -77,16 +77,12 @@ mod tests {
             yard.step(Instant::ZERO, mode, code, false, &mut log);
             assert_eq!(yard.ended, ended, "{mode:?} {code:?}");
         }
-        assert_eq!(
-            log.entries().at_or_after(0).map(|entry| entry.code),
-            Some(219)
-        );
+        assert_eq!(logged(&log)[0].0, 219);
     }
 
     #[test]
     fn where_the_table_has_no_yard_codes_only_a_stop_ends_it() {
-        let text = include_str!("../../../scripts/units/sg100.toml");
-        let mut yard = Yard::new(&UnitConfig::from_toml(text).expect("shipped"));
+        let mut yard = Yard::new(&sg100());
         let mut log = EventLog::default();
         for (code, stops, ended) in [
             (Some(Line), false, false),

@@ -10,7 +10,7 @@ use crate::timer::at_rate;
 const CROSSTALK_LASTS: Duration = Duration::from_ms(150);
 
 /// Latched I/O inputs.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct IoImage {
     latest: Option<IoInput>,
     stamp_ms: u32,
@@ -28,15 +28,9 @@ impl IoImage {
     /// An image that dies after `timeout` without a frame.
     pub fn new(timeout: Duration) -> Self {
         Self {
-            latest: None,
-            stamp_ms: 0,
-            sampled_at: Instant::ZERO,
-            heard: None,
-            alive: false,
             timeout,
             clock_rate: 1.0,
-            crosstalk: None,
-            sampled: None,
+            ..Self::default()
         }
     }
 

@@ -21,9 +21,8 @@ pub enum Port {
 /// A link on each port.
 #[derive(Debug)]
 pub struct Ports {
-    harness: Link,
-    maintenance: Link,
-    track_loop: Link,
+    /// By number of the [`Port`].
+    links: [Link; 3],
     /// Where a tester was heard last: it is spoken to there.
     pub tester_at: Port,
     /// Bytes to be sent on the maintenance port.
@@ -34,29 +33,23 @@ impl Ports {
     /// Ports on which nothing was received.
     pub fn new() -> Self {
         Self {
-            harness: Link::new(End::Unit),
-            maintenance: Link::with_channels(End::Unit, &[Channel::Ptu]),
-            track_loop: Link::with_channels(End::Unit, &[Channel::Twc]),
+            links: [
+                Link::new(End::Unit),
+                Link::with_channels(End::Unit, &[Channel::Ptu]),
+                Link::with_channels(End::Unit, &[Channel::Twc]),
+            ],
             tester_at: Port::Harness,
             to_maintenance: Vec::new(),
         }
     }
 
     pub fn link(&self, port: Port) -> &Link {
-        match port {
-            Port::Harness => &self.harness,
-            Port::Maintenance => &self.maintenance,
-            Port::Loop => &self.track_loop,
-        }
+        &self.links[port as usize]
     }
 
     /// The link on a port, to be given bytes.
     pub fn link_mut(&mut self, port: Port) -> &mut Link {
-        match port {
-            Port::Harness => &mut self.harness,
-            Port::Maintenance => &mut self.maintenance,
-            Port::Loop => &mut self.track_loop,
-        }
+        &mut self.links[port as usize]
     }
 
     /// The next accepted frame: those of the harness first.
@@ -69,10 +62,10 @@ impl Ports {
     /// Sends to the partner of the message's channel; frames for the harness are appended to `out`.
     pub fn send(&mut self, now: Instant, message: &Message, out: &mut Vec<u8>) {
         if message.channel() == Channel::Ptu && self.tester_at == Port::Maintenance {
-            let out = &mut self.to_maintenance;
-            self.maintenance.send(now, message, out);
+            let link = &mut self.links[Port::Maintenance as usize];
+            link.send(now, message, &mut self.to_maintenance);
         } else {
-            self.harness.send(now, message, out);
+            self.link_mut(Port::Harness).send(now, message, out);
         }
     }
 
@@ -88,15 +81,13 @@ impl Ports {
 
     /// Frames rejected on all ports, for any reason.
     pub fn rejected_total(&self) -> u64 {
-        self.sum(|link| link.counters().rejected_total())
+        let links = self.links.iter();
+        links.map(|link| link.counters().rejected_total()).sum()
     }
 
     /// Frames rejected on a channel, on all ports.
     pub fn rejected_on(&self, channel: Channel) -> u64 {
-        self.sum(|link| link.counters().rejected_on(channel))
-    }
-
-    fn sum(&self, count: impl Fn(&Link) -> u64) -> u64 {
-        count(&self.harness) + count(&self.maintenance) + count(&self.track_loop)
+        let links = self.links.iter();
+        links.map(|link| link.counters().rejected_on(channel)).sum()
     }
 }

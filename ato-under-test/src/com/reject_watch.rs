@@ -11,7 +11,7 @@ use crate::kernel::EventLog;
 const SPAN: Duration = Duration::from_ms(10_000);
 
 /// Counts losses and reports a bad channel once a span.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct RejectWatch {
     threshold: u64,
     span_began: Instant,
@@ -25,21 +25,18 @@ impl RejectWatch {
     pub fn new(threshold: u32) -> Self {
         Self {
             threshold: u64::from(threshold),
-            span_began: Instant::ZERO,
-            at_begin: [0; 4],
-            lost: [0; 4],
-            reported: [false; 4],
+            ..Self::default()
         }
     }
 
     /// A frame was lost in a modem or line driver before it could be rejected, or says what cannot be.
     pub fn count_lost(&mut self, channel: Channel) {
-        self.lost[place(channel)] += 1;
+        self.lost[channel as usize] += 1;
     }
 
     pub fn step(&mut self, now: Instant, ports: &Ports, log: &mut EventLog) {
         for channel in Channel::ALL {
-            let i = place(channel);
+            let i = channel as usize;
             let total = ports.rejected_on(channel) + self.lost[i];
             if !self.reported[i] && total - self.at_begin[i] >= self.threshold {
                 self.reported[i] = true;
@@ -54,8 +51,4 @@ impl RejectWatch {
             self.span_began = now;
         }
     }
-}
-
-fn place(channel: Channel) -> usize {
-    usize::from(channel.code()) - 1
 }

@@ -14,7 +14,7 @@ const HINDERS: TcmsToAtcBits = TcmsToAtcBits::POWERING_CUT
     .union(TcmsToAtcBits::HOLDING_BRAKE_APPLIED);
 
 /// Latest report of TCMS.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct TcmsLink {
     /// The last frame that made sense.
     pub last: TcmsToAtc,
@@ -32,14 +32,9 @@ impl TcmsLink {
     /// more than `most_load_kg`.
     pub fn new(timeout: Duration, most_load_kg: f64) -> Self {
         Self {
-            last: TcmsToAtc::default(),
-            heard: None,
-            counter_moved: None,
-            pace: Pace::default(),
-            alive: false,
-            reported: None,
             timeout,
             most_load_kg,
+            ..Self::default()
         }
     }
 
@@ -153,7 +148,7 @@ fn load_kg(frame: &TcmsToAtc) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::with::with;
+    use crate::for_tests::with;
 
     const FRAME: TcmsToAtc = TcmsToAtc {
         bits: TcmsToAtcBits::ATO_ENABLE,

@@ -94,13 +94,10 @@ impl Cabs {
             Stage::Ready if inputs.running => Stage::Idle,
             other => other,
         };
-        if !matches!(
-            stage,
-            Stage::Asked { .. } | Stage::HandedOver | Stage::TakingOver
-        ) {
+        self.stage = stage;
+        if !self.busy() {
             self.given_up_at = None;
         }
-        self.stage = stage;
     }
 
     /// Station data lead on from where the train was given up, and its departure is still to come.
@@ -151,7 +148,7 @@ impl Cabs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::with::with;
+    use crate::for_tests::with;
 
     const MOST: Duration = Duration::from_ms(6000);
     const STATION: u16 = 824;

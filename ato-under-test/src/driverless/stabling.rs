@@ -2,9 +2,9 @@
 //!
 //! A train that is put away is in mode off with its emergency brake applied; speed codes and departures are not acted
 //! on, TWC is answered. It wakes by the wayside's order, or by somebody at the cab, who turns the mode switch away from
-//! driverless. Then the unit tests itself as at power-up, and only a test that is passed lets the brake be released, as
-//! at power-up; with one that failed in any item, nobody being there who could judge it, the train stays put away, until it is woken again or somebody at the cab takes it.
-//! An old departure counts no more.
+//! driverless. Then the unit tests itself as at power-up, and only a test that is passed lets the brake be released.
+//! After one in which any item failed the train stays put away, for nobody is there who could judge it, until it is woken
+//! again or somebody at the cab takes it. A departure that was given before counts no more.
 //!
 //! A train that is put away stays so over a power-up: the stored event log says it.
 
@@ -99,7 +99,7 @@ impl Stabling {
     }
 
     /// The unit is put away, or was woken with a self-test that failed: it stays put away until
-    /// proved sound.
+    /// proved sound, and no run may begin.
     pub fn sleeps(&self) -> bool {
         self.asleep() || self.stage == Stage::Failed
     }
@@ -107,11 +107,6 @@ impl Stabling {
     /// Only a wake-up makes something of it.
     pub fn can_wake(&self) -> bool {
         matches!(self.stage, Stage::PutAway | Stage::Failed)
-    }
-
-    /// No run may begin.
-    pub fn bars_run(&self) -> bool {
-        self.sleeps()
     }
 
     /// State of the order; `None` = the train is awake, and none of these concerns it.
@@ -129,7 +124,7 @@ impl Stabling {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::with::with;
+    use crate::for_tests::with;
 
     const ASLEEP: StablingInputs = StablingInputs {
         driverless: Some(true),

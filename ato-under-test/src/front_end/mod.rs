@@ -92,12 +92,8 @@ impl FrontEnd {
         let mut train_pulses = pulses;
         for (i, sensor) in self.sensors.iter_mut().enumerate() {
             let place = [Place::SpeedSensor1, Place::SpeedSensor2][i];
-            let sensed = sensor.read(
-                input.map(|(frame, at)| raw_pulses(frame, at, i, image.clock_rate)),
-                place,
-                faults,
-            );
-            train_pulses[i] = sensed;
+            let raw = input.map(|(frame, at)| raw_pulses(frame, at, i, image.clock_rate));
+            train_pulses[i] = sensor.read(raw, place, faults);
             if !image.alive {
                 train_pulses[i].sampled_at = now;
             }
@@ -105,21 +101,15 @@ impl FrontEnd {
         }
         let turned = self.sensors.iter().map(|sensor| sensor.turned).max();
         faults.roll(f64::from(turned.unwrap_or(0)) * self.metres_per_pulse);
-        let frame = input
-            .filter(|_| image.alive)
-            .map(|(frame, _)| *frame)
-            .unwrap_or_default();
+        let alive = input.filter(|_| image.alive);
+        let frame = alive.map(|(frame, _)| *frame).unwrap_or_default();
         let mut own = in_antenna(frame.carrier_hz, frame.code_rate_chz, frame.level_mv);
         if let Some(sampled) = image.sampled.as_ref() {
             (own.heard_for, own.lags) = (sampled.heard_for, sampled.lags);
         }
-        let track = self.separate(
-            own,
-            image
-                .crosstalk()
-                .map(|second| in_antenna(second.carrier_hz, second.code_rate_chz, second.level_mv)),
-            faults,
-        );
+        let second = image.crosstalk();
+        let second = second.map(|it| in_antenna(it.carrier_hz, it.code_rate_chz, it.level_mv));
+        let track = self.separate(own, second, faults);
         let is_wave = image.sampled.as_ref().is_some();
         let received = self.receive((track, is_wave), board.code(), built_in, faults);
         let marker_age = image.sampled.as_ref().map(|sampled| sampled.marker_age);

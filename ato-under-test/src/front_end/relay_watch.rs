@@ -12,7 +12,7 @@ const FALLS: Duration = Duration::from_ms(50);
 
 /// The line must die with the relay, and live with it as long as it is fed: a button, the master controller,
 /// low air or an empty cab opens it before the relay.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct RelayWatch {
     welded: OnDelay,
     open: OnDelay,
@@ -24,28 +24,21 @@ pub struct RelayWatch {
     fell: OnDelay,
     /// The line has followed the relay, which is energised still, and is dead now.
     pub line_fell: bool,
-    sound: bool,
+    failed: bool,
     feedback: Duration,
 }
 
 impl RelayWatch {
     /// The relay has followed ever since power-up; one failure is not forgotten before the next.
     pub fn sound(&self) -> bool {
-        self.sound
+        !self.failed
     }
 
     /// The brake line must follow the relay within `feedback`.
     pub fn new(feedback: Duration) -> Self {
         Self {
-            welded: OnDelay::default(),
-            open: OnDelay::default(),
-            due: OnDelay::default(),
-            line_due: false,
-            followed: false,
-            fell: OnDelay::default(),
-            line_fell: false,
-            sound: true,
             feedback,
+            ..Self::default()
         }
     }
 
@@ -68,8 +61,8 @@ impl RelayWatch {
         self.line_fell = self.fell.update(now, fell, FALLS);
         let welded = self.welded.update(now, welded, self.feedback);
         let open = self.open.update(now, open, self.feedback);
-        if (welded || open) && self.sound {
-            self.sound = false;
+        if (welded || open) && !self.failed {
+            self.failed = true;
             let event = if welded {
                 Event::EbRelayWelded
             } else {

@@ -1,38 +1,36 @@
 //! The event log: a bounded ring whose indices are never reused, each entry with a freeze frame.
 
+use protocol::Instant;
 use protocol::event::Event;
-use protocol::message::{EbCause, LogEntry, Mode};
-use protocol::{Instant, Speed};
+use protocol::message::LogEntry;
 
 use super::Ring;
 
 /// Entries kept; older ones fall off and their indices stay used.
 pub const LOG_CAPACITY: usize = protocol::event::LOG_ENTRIES;
 
-/// State of the unit that each entry freezes.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct FreezeFrame {
-    pub speed: Speed,
-    /// Speed limit in force.
-    pub limit: Speed,
-    /// Position in the section, m.
-    pub position_m: f64,
-    pub mode: Mode,
-    /// Emergency brake's cause.
-    pub eb_cause: EbCause,
+/// Parameter of an event in hundredths of its unit.
+pub fn hundredths(value: f64) -> i32 {
+    libm::round(value * 100.0) as i32
+}
+
+/// Parameter of an event in hundredths of a percent.
+pub fn hundredths_of_percent(share: f64) -> i32 {
+    libm::round(share * 1e4) as i32
 }
 
 #[derive(Debug, Default)]
 pub struct EventLog {
     entries: Ring<LogEntry, LOG_CAPACITY>,
-    frame: FreezeFrame,
+    /// State of the unit that each entry freezes.
+    frame: LogEntry,
     /// Events that were logged from this index on are not logged again.
     once_since: Option<u32>,
 }
 
 impl EventLog {
-    /// Sets the state the next entries freeze.
-    pub fn freeze(&mut self, frame: FreezeFrame) {
+    /// Sets the state the next entries freeze; index, event and time of each are its own.
+    pub fn freeze(&mut self, frame: LogEntry) {
         self.frame = frame;
     }
 
@@ -51,11 +49,7 @@ impl EventLog {
             code: event.definition().code,
             at_ms: now.stamp_ms(),
             parameter,
-            speed_cms: self.frame.speed.to_cms(),
-            limit_cms: self.frame.limit.to_cms(),
-            position_cm: libm::round(self.frame.position_m * 100.0) as i32,
-            mode: self.frame.mode,
-            eb_cause: self.frame.eb_cause,
+            ..self.frame
         });
     }
 

@@ -6,8 +6,8 @@ mod run_record;
 mod self_test;
 mod watchdog;
 
-pub use log::{EventLog, FreezeFrame, LOG_CAPACITY};
+pub use log::{EventLog, LOG_CAPACITY, hundredths, hundredths_of_percent};
 pub use ring::Ring;
-pub use run_record::{RUN_ROWS, RunCycle, RunRecord};
+pub use run_record::{RUN_ROWS, RunRecord};
 pub use self_test::{SelfTestInputs, SelfTester};
 pub use watchdog::Watchdog;

@@ -8,22 +8,6 @@ use super::Ring;
 /// Rows kept, 4 min of driving; older ones fall off and their indices stay used.
 pub const RUN_ROWS: usize = 4800;
 
-/// One cycle as it is recorded.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct RunCycle {
-    /// Position in the section, m.
-    pub position_m: f64,
-    /// Speed ATO goes by, cm/s.
-    pub speed_cms: u16,
-    /// Target speed, cm/s.
-    pub target_cms: u16,
-    /// Effort, -1024..1023.
-    pub effort: i16,
-    /// Marker detected last, and how many so far.
-    pub marker: (u8, u8),
-    pub state: AtoState,
-}
-
 #[derive(Debug, Default)]
 pub struct RunRecord {
     pub rows: Ring<RunRow, RUN_ROWS>,
@@ -33,12 +17,12 @@ pub struct RunRecord {
 }
 
 impl RunRecord {
-    /// One cycle; `running` while ATP has set Automatic Run. Rows that would only repeat that the
-    /// train stands are left out.
-    pub fn step(&mut self, now: Instant, running: bool, cycle: RunCycle) {
-        let before = core::mem::replace(&mut self.state, cycle.state);
-        let passed = cycle.marker.1 != core::mem::replace(&mut self.markers, cycle.marker.1);
-        if cycle.state == AtoState::Start && before != AtoState::Start {
+    /// One cycle: what is recorded of it, with the marker detected last and how many there were so far. `running` while
+    /// ATP has set Automatic Run. Rows that would only repeat that the train stands are left out.
+    pub fn step(&mut self, now: Instant, running: bool, (cycle, markers): (RunRow, u8)) {
+        let before = core::mem::replace(&mut self.state, cycle.ato_state);
+        let passed = markers != core::mem::replace(&mut self.markers, markers);
+        if cycle.ato_state == AtoState::Start && before != AtoState::Start {
             self.run = self.run.wrapping_add(1);
         }
         if !running || self.run == 0 {
@@ -48,12 +32,8 @@ impl RunRecord {
             index: self.rows.next_index(),
             run: self.run,
             at_ms: now.stamp_ms(),
-            position_cm: libm::round(cycle.position_m * 100.0) as i32,
-            speed_cms: cycle.speed_cms,
-            target_cms: cycle.target_cms,
-            effort: cycle.effort,
-            marker: if passed { cycle.marker.0 } else { 0 },
-            ato_state: cycle.state,
+            marker: if passed { cycle.marker } else { 0 },
+            ..cycle
         };
         if self.rows.newest().is_some_and(|last| repeats(last, &row)) {
             return;
@@ -76,12 +56,13 @@ fn repeats(last: &RunRow, row: &RunRow) -> bool {
 mod tests {
     use super::*;
 
-    fn cycle(speed_cms: u16, state: AtoState) -> RunCycle {
-        RunCycle {
+    fn cycle(speed_cms: u16, ato_state: AtoState) -> (RunRow, u8) {
+        let row = RunRow {
             speed_cms,
-            state,
-            ..RunCycle::default()
-        }
+            ato_state,
+            ..RunRow::default()
+        };
+        (row, 0)
     }
 
     #[test]
@@ -110,7 +91,7 @@ mod tests {
         }
         assert_eq!(record.rows.next_index(), 1);
         let mut moving = cycle(500, AtoState::Run);
-        moving.marker = (2, 1);
+        (moving.0.marker, moving.1) = (2, 1);
         record.step(Instant::ZERO, true, moving);
         record.step(Instant::ZERO, true, moving);
         let markers = [1, 2].map(|i| record.rows.at_or_after(i).map(|row| row.marker));

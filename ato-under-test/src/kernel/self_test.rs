@@ -11,7 +11,7 @@ use protocol::line::Line;
 use protocol::message::{MeasureUnit, Message, SelfTest, SelfTestEnd, SelfTestItem};
 use protocol::{Duration, Instant, SCAN};
 
-use crate::timer::OnDelay;
+use crate::timer::{OnDelay, ms};
 
 /// Greatest time for which the brake line may be energised with the relay off, ms.
 const LINE_ENERGISED_MS: i32 = 190;
@@ -49,7 +49,7 @@ pub struct SelfTestInputs {
 }
 
 /// A self-test under way.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Run {
     /// Sequence number of the request; `None` at start-up.
     request: Option<u16>,
@@ -142,7 +142,7 @@ impl SelfTester {
     ) -> Option<SelfTest> {
         let tests = self.tests();
         let run = self.run.as_mut()?;
-        let detect = Duration::from_ms(u64::from(config.receiver.detect_ms));
+        let detect = ms(config.receiver.detect_ms);
         if run.decoding.update(now, inputs.code_heard, detect) && run.decoded_after.is_none() {
             run.decoded_after = Some(now.since(run.begun));
         }
@@ -219,18 +219,8 @@ impl Run {
             request,
             begun: now,
             ends,
-            decoding: OnDelay::default(),
-            decoded_after: None,
-            tests: 0,
-            tra_answers: 0,
-            modem_frames: 0,
-            board_answers: 0,
-            twc_cpu_frames: 0,
-            tcms_link_frames: 0,
-            energised_since: None,
-            energised: Duration::ZERO,
-            line_due: false,
             relay_off: true,
+            ..Self::default()
         }
     }
 

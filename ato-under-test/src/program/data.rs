@@ -3,8 +3,8 @@
 use std::fmt;
 use std::path::Path;
 
+use ato_under_test::Setup;
 use ato_under_test::flash::{BlockDevice, FileFlash};
-use ato_under_test::{Setup, serve};
 use protocol::config::UnitConfig;
 use protocol::injection::{FaultCatalogue, FaultMode};
 use protocol::line::Line;
@@ -17,7 +17,7 @@ const LONGEST_FILE: u64 = 4 << 20;
 
 /// The user asked for something that is not there.
 #[derive(Debug)]
-pub struct UsageError(String);
+pub struct UsageError(pub String);
 
 impl fmt::Display for UsageError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -44,11 +44,6 @@ pub fn setup(arguments: &Arguments) -> Result<Setup, Failure> {
         seed: arguments.seed,
         faults: faults(&scripts, &arguments.inject)?,
     })
-}
-
-/// Refuses an address that other computers reach, unless that is asked for.
-pub fn check_exposed(address: &str, expose: bool) -> Result<(), UsageError> {
-    serve::check_exposed(address, expose).map_err(UsageError)
 }
 
 /// The memory that the unit had before.

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use ato_under_test::serve::{
-    Listener, NO_AUTHENTICATION, PortAddress, ServeError, Served, Wire, in_real_time,
+    Listener, NO_AUTHENTICATION, PortAddress, ServeError, Served, Wire, check_exposed, in_real_time,
 };
 use ato_under_test::{Port, Unit};
 use clap::{ArgGroup, Parser};
@@ -91,7 +91,7 @@ type Failure = Box<dyn Error>;
 /// Serves until the process is ended.
 pub fn serve(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(address) = &arguments.tcp {
-        data::check_exposed(address, arguments.expose)?;
+        check_exposed(address, arguments.expose).map_err(UsageError)?;
         stdio::note(NO_AUTHENTICATION);
     }
     let setup = data::setup(arguments)?;

@@ -10,6 +10,7 @@ use protocol::{Duration, Instant};
 
 use crate::kernel::EventLog;
 use crate::signals::MarkerPulse;
+use crate::timer::ms;
 
 /// Markers of a section.
 const MARKERS: usize = 4;
@@ -45,7 +46,6 @@ impl Debounce {
             return Some(pulse);
         };
         let at = now.back(Duration::from_us(u64::from(pulse.age_us)));
-        let ms = |ms: u32| Duration::from_ms(u64::from(ms));
         let Some(known) = contact
             .as_mut()
             .filter(|known| at.since(known.last) <= ms(config.bounce_ms))
@@ -71,14 +71,12 @@ impl Debounce {
 mod tests {
     use alloc::vec::Vec;
 
-    use protocol::config::UnitConfig;
-
     use super::*;
+    use crate::for_tests::{parameters, sg100};
 
     /// Edges as (time in ms, marker), those that count, and the parameters of what is blamed on TRA.
     fn counted(edges: &[(u64, u8)]) -> (Vec<(u64, u8)>, Vec<i32>) {
-        let text = include_str!("../../../scripts/units/sg100.toml");
-        let config = UnitConfig::from_toml(text).unwrap().marker;
+        let config = sg100().marker;
         let (mut debounce, mut log) = (Debounce::default(), EventLog::default());
         let take = |&&(ms, marker): &&(u64, u8)| {
             let pulse = Some(MarkerPulse { marker, age_us: 0 });
@@ -86,8 +84,7 @@ mod tests {
             debounce.take(now, pulse, true, &config, &mut log).is_some()
         };
         let first = edges.iter().filter(take).copied().collect();
-        let entries = (0..).map_while(|index| log.entries().at_or_after(index));
-        (first, entries.map(|entry| entry.parameter).collect())
+        (first, parameters(&log, Event::TraBounces))
     }
 
     #[test]

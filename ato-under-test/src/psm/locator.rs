@@ -22,7 +22,7 @@ use super::marker_check::{
 };
 use super::ways::Ways;
 use super::{MarkerSpan, Movement, Odometer, WheelCalibration};
-use crate::kernel::EventLog;
+use crate::kernel::{EventLog, hundredths, hundredths_of_percent};
 use crate::signals::MarkerPulse;
 
 /// Markers of a section.
@@ -97,11 +97,7 @@ impl Locator {
             config: marker,
             aligned_m: config.doors.aligned_m,
             section: None,
-            fix: PositionFix {
-                place_m: 0.0,
-                distance_m: 0.0,
-                marker: 0,
-            },
+            fix: PositionFix::default(),
             expected: 1,
             pending: None,
             slid_m: 0.0,
@@ -227,8 +223,7 @@ impl Locator {
                 log.push(now, Event::MarkerOrder, i32::from(detection.marker));
             }
             MarkerCheck::Away(error_m) => {
-                let error_cm = libm::round(error_m * 100.0) as i32;
-                log.push(now, Event::MarkerPosition, error_cm);
+                log.push(now, Event::MarkerPosition, hundredths(error_m));
                 let further_m = further_m(&self.fix, detection, error_m, &wheels, config);
                 self.early_m = self.early_m.max(further_m);
                 self.pending = Some(detection);
@@ -284,7 +279,7 @@ impl Locator {
         };
         if !self.wheel_reported {
             self.wheel_reported = true;
-            log.push(now, Event::WheelDiameter, libm::round(share * 1e4) as i32);
+            log.push(now, Event::WheelDiameter, hundredths_of_percent(share));
         }
     }
 

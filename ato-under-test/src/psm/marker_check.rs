@@ -14,7 +14,7 @@ const WRONG_WHEEL: f64 = 0.15;
 const REMEMBERED_M: f64 = 600.0;
 
 /// A place at which the train is known to have been.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PositionFix {
     /// Where, m from the section's start.
     pub place_m: f64,
@@ -164,54 +164,63 @@ pub fn place_m(section: &Section, marker: u8) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use protocol::config::UnitConfig;
-    use protocol::line::Line;
-
     use super::*;
-    use crate::with::with;
+    use crate::for_tests::{line8, sg100, with};
+
+    const WHEELS: Wheels = Wheels {
+        scale: 1.0,
+        uncertainty: 0.004,
+        slid_m: 0.0,
+    };
+
+    /// What is made of a marker after one that was believed to be at a place, from which the way is counted.
+    fn judged(
+        section: &Section,
+        (place_m, marker): (f64, u8),
+        detection: MarkerDetection,
+        pending: PendingDetection,
+        wheels: Wheels,
+    ) -> MarkerCheck {
+        let fix = PositionFix {
+            place_m,
+            distance_m: 0.0,
+            marker,
+        };
+        judge(section, &fix, detection, pending, &wheels, &sg100().marker)
+    }
+
+    fn heard(marker: u8, distance_m: f64) -> MarkerDetection {
+        MarkerDetection {
+            marker,
+            distance_m,
+            slid_m: 0.0,
+        }
+    }
 
     /// After PSM2 of section 61 (741.53 m): marker, position by the wheel, what is made of it.
     #[test]
     fn a_marker_is_believed_near_its_place_and_in_its_turn() {
-        let text = include_str!("../../../scripts/units/sg100.toml");
-        let config = UnitConfig::from_toml(text).unwrap().marker;
-        let line = include_str!("../../../scripts/lines/line8.toml");
-        let line = Line::from_toml(line).unwrap();
-        let section = line.section(61).unwrap();
+        let section = line8().section(61).unwrap();
         let [_, second, third, fourth] = section.markers_m;
-        let fix = PositionFix {
-            place_m: second,
-            distance_m: 0.0,
-            marker: 2,
-        };
-        let at = |marker, position_m: f64| MarkerDetection {
-            marker,
-            distance_m: position_m - second,
-            slid_m: 0.0,
-        };
+        let at = |marker, position_m: f64| heard(marker, position_m - second);
         let judged_with = |wheels, detection| {
             let pending = PendingDetection::default();
-            judge(section, &fix, detection, pending, &wheels, &config)
-        };
-        let wheels = Wheels {
-            scale: 1.0,
-            uncertainty: 0.004,
-            slid_m: 0.0,
+            judged(section, (second, 2), detection, pending, wheels)
         };
         let judged = |detection, pending| {
             let pending = PendingDetection {
                 detection: pending,
                 unsure: false,
             };
-            judge(section, &fix, detection, pending, &wheels, &config)
+            judged(section, (second, 2), detection, pending, WHEELS)
         };
         assert_eq!(judged(at(3, third + 0.8), None), MarkerCheck::Accepted);
         // Wheels that nothing has calibrated can be wrong by more, and so can those that slid.
         let late = at(3, third + 2.0);
         assert_eq!(judged(late, None), MarkerCheck::Away(2.0));
-        let worn = with(wheels, |it| it.uncertainty = 0.03);
+        let worn = with(WHEELS, |it| it.uncertainty = 0.03);
         assert_eq!(judged_with(worn, late), MarkerCheck::Accepted);
-        let slid = with(wheels, |it| it.slid_m = 2.0);
+        let slid = with(WHEELS, |it| it.slid_m = 2.0);
         assert_eq!(judged_with(slid, at(3, third - 2.9)), MarkerCheck::Accepted);
         assert_eq!(judged(at(4, fourth - 0.8), None), MarkerCheck::Accepted);
         assert_eq!(judged(at(2, second + 0.5), None), MarkerCheck::OutOfOrder);
@@ -238,34 +247,15 @@ mod tests {
     /// PSM1 and PSM2 heard in order after PSM3 was believed, and in one that lies 600 m back.
     #[test]
     fn a_pair_takes_no_fix_back_and_is_not_remembered_for_ever() {
-        let text = include_str!("../../../scripts/units/sg100.toml");
-        let config = UnitConfig::from_toml(text).unwrap().marker;
-        let line = include_str!("../../../scripts/lines/line8.toml");
-        let line = Line::from_toml(line).unwrap();
-        let section = line.section(61).unwrap();
-        let wheels = Wheels {
-            scale: 1.0,
-            uncertainty: 0.004,
-            slid_m: 0.0,
-        };
-        let at = |marker, distance_m| MarkerDetection {
-            marker,
-            distance_m,
-            slid_m: 0.0,
-        };
+        let section = line8().section(61).unwrap();
         let judged = |section: &Section, believed: u8, unsure| {
-            let [first, second, ..] = section.markers_m;
-            let fix = PositionFix {
-                place_m: section.markers_m[2],
-                distance_m: 0.0,
-                marker: believed,
-            };
+            let [first, second, third, _] = section.markers_m;
             let pending = PendingDetection {
-                detection: Some(at(1, 40.0)),
+                detection: Some(heard(1, 40.0)),
                 unsure,
             };
-            let pair = at(2, 40.0 + second - first);
-            judge(section, &fix, pair, pending, &wheels, &config)
+            let pair = heard(2, 40.0 + second - first);
+            judged(section, (third, believed), pair, pending, WHEELS)
         };
         assert!(matches!(judged(section, 3, false), MarkerCheck::Away(_)));
         assert_eq!(judged(section, 3, true), MarkerCheck::Accepted);

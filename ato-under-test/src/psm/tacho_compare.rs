@@ -12,7 +12,7 @@ use protocol::config::TachoConfig;
 use protocol::event::Event;
 use protocol::{Duration, Instant, Speed};
 
-use crate::kernel::EventLog;
+use crate::kernel::{EventLog, hundredths, hundredths_of_percent};
 use crate::timer::Edge;
 
 /// Speed of both wheels from which on they are compared [default].
@@ -87,7 +87,7 @@ impl TachoCompare {
         if self.loose.rises(loose) {
             self.total.loosened = self.total.loosened.wrapping_add(1);
             if let Some(mps2) = motion.loose_mps2.filter(|_| fast) {
-                log.push(now, Event::WheelSlip, libm::round(mps2 * 100.0) as i32);
+                log.push(now, Event::WheelSlip, hundredths(mps2));
             }
         }
         if loose || !fast {
@@ -170,8 +170,4 @@ impl TachoCompare {
     fn ways_since(&self, begin: &Count) -> [f64; 2] {
         [0, 1].map(|i| libm::fabs(self.total.way_m[i] - begin.way_m[i]))
     }
-}
-
-fn hundredths_of_percent(share: f64) -> i32 {
-    libm::round(share * 1e4) as i32
 }

@@ -25,7 +25,7 @@ const LEVEL_MAX_MV: u16 = 3000;
 /// Greatest speed of the speed generator, cm/s.
 const SPEED_MAX_CMS: u16 = 3000;
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct TestBoard {
     metres_per_pulse: f64,
     code: Option<AntennaSignal>,
@@ -44,13 +44,7 @@ impl TestBoard {
     pub fn new(metres_per_pulse: f64) -> Self {
         Self {
             metres_per_pulse,
-            code: None,
-            speed: None,
-            marker: None,
-            modem: TestModem::default(),
-            defects: Defects::default(),
-            pulses: 0,
-            markers: 0,
+            ..Self::default()
         }
     }
 

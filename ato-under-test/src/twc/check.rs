@@ -77,17 +77,13 @@ fn lies_within(side: DoorSide, platform: DoorSide) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use alloc::vec::Vec;
 
     use protocol::message::RunningMode;
 
     use super::*;
-    use crate::with::with;
-
-    fn line() -> Line {
-        Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap()
-    }
+    use crate::for_tests::{line8, with};
 
     fn arrival(line: &Line, at: usize) -> TwcWayside {
         let section = &line.sections[at];
@@ -104,7 +100,8 @@ mod tests {
         }
     }
 
-    fn departure(line: &Line, at: usize) -> TwcWayside {
+    /// Data of the departure into a section, by its place in the line.
+    pub fn departure(line: &Line, at: usize) -> TwcWayside {
         let section = &line.sections[at];
         TwcWayside {
             station: section.from_station,
@@ -121,17 +118,17 @@ mod tests {
 
     #[test]
     fn every_station_of_the_line_agrees_with_it() {
-        let line = line();
+        let line = line8();
         for at in 0..line.sections.len() {
-            assert_eq!(found(departure(&line, at), &line), None, "{at}");
-            assert_eq!(found(arrival(&line, at), &line), None, "{at}");
+            assert_eq!(found(departure(line, at), line), None, "{at}");
+            assert_eq!(found(arrival(line, at), line), None, "{at}");
         }
     }
 
     #[test]
     fn each_wrong_number_has_its_event() {
-        let line = line();
-        let good = arrival(&line, 0);
+        let line = line8();
+        let good = arrival(line, 0);
         for (data, event) in [
             (with(good, |it| it.station = 999), Event::TwcStationInvalid),
             (with(good, |it| it.section = 999), Event::TwcStationInvalid),
@@ -144,7 +141,7 @@ mod tests {
             (
                 TwcWayside {
                     next_station: 999,
-                    ..departure(&line, 3)
+                    ..departure(line, 3)
                 },
                 Event::TwcWrongNext,
             ),
@@ -153,14 +150,14 @@ mod tests {
                 Event::TwcWrongMode,
             ),
         ] {
-            assert_eq!(found(data, &line), Some(event), "{data:?}");
+            assert_eq!(found(data, line), Some(event), "{data:?}");
         }
     }
 
     /// At a platform on one side no other side agrees; where a platform lies on both, each does.
     #[test]
     fn doors_may_open_where_a_platform_is() {
-        let mut line = line();
+        let mut line = line8().clone();
         for (platform, allowed) in [
             ("left", [true, true, false, false, false]),
             ("right", [true, false, true, false, false]),

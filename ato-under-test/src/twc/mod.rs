@@ -7,24 +7,22 @@ mod orders;
 
 use protocol::event::Event;
 use protocol::line::Line;
-use protocol::message::{Mode, TwcTrain, TwcTrainBits, TwcWayside};
-use protocol::{Duration, Instant, Speed};
+use protocol::message::{TrainOrder, TwcOrders, TwcTrain, TwcTrainBits, TwcWayside};
+use protocol::{Duration, Instant};
 
 use crate::guards::Guards;
 use crate::kernel::EventLog;
 use check::contradiction;
-use orders::Ordered;
 
 pub use check::departs;
 pub use number::OwnNumber;
 
-#[derive(Clone, Copy, Debug, Default)]
-pub struct TrainState {
-    pub mode: Mode,
-    pub doors_closed: bool,
-    pub aligned: bool,
-    pub standstill: bool,
-    pub speed: Speed,
+/// Data that came through the TWC antenna.
+#[derive(Clone, Copy, Debug)]
+pub enum FromWayside {
+    Station(StationSender, TwcWayside),
+    /// With the sequence number of their frame.
+    Orders(u16, TwcOrders),
 }
 
 /// Sender of station data into the TWC antenna, which hears the answer, with the sequence number of its
@@ -47,10 +45,18 @@ impl StationSender {
     }
 }
 
+/// The last orders that were not refused.
+#[derive(Clone, Copy, Debug)]
+struct Ordered {
+    destination: u16,
+    order: TrainOrder,
+    heard: Instant,
+}
+
 /// The number of the unit's own train; 0 = none: data for any train are for this one.
 pub type TrainNumber = u16;
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Twc {
     timeout: Duration,
     heard: Option<Instant>,
@@ -78,18 +84,7 @@ impl Twc {
     pub fn new(timeout: Duration) -> Self {
         Self {
             timeout,
-            heard: None,
-            up: false,
-            data: None,
-            valid: false,
-            refusal_reported: None,
-            ordered: None,
-            orders_refusal: None,
-            other_train: None,
-            received: 0,
-            others: 0,
-            refused: 0,
-            answers: 0,
+            ..Self::default()
         }
     }
 
@@ -177,29 +172,25 @@ impl Twc {
         self.data = None;
     }
 
-    /// The answer to a frame of `sender`, with the unit's own train number.
+    /// The answer to a frame of `sender`, with the unit's own train number and the state of the train.
     pub fn answer(
         &mut self,
         sender: StationSender,
         data: &TwcWayside,
         own: TrainNumber,
-        train: TrainState,
+        train: TwcTrain,
     ) -> TwcTrain {
         if !sender.is_test() {
             self.answers = self.answers.wrapping_add(1);
         }
-        let mut bits = TwcTrainBits::empty();
-        bits.set(TwcTrainBits::DOORS_CLOSED, train.doors_closed);
-        bits.set(TwcTrainBits::ALIGNED, train.aligned);
+        let mut bits = train.bits;
         bits.set(TwcTrainBits::STATION_VALID, self.valid);
-        bits.set(TwcTrainBits::STANDSTILL, train.standstill);
         TwcTrain {
             answered_seq: sender.seq(),
             station: data.station,
             train_number: if own == 0 { data.train_number } else { own },
-            mode: train.mode,
             bits,
-            speed_cms: train.speed.to_cms(),
+            ..train
         }
     }
 }
@@ -207,22 +198,20 @@ impl Twc {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::for_tests::{line8, parameters};
 
     const OWN: TrainNumber = 8001;
 
     struct Bench {
         twc: Twc,
-        line: Line,
         log: EventLog,
         now: Instant,
     }
 
     impl Bench {
         fn new() -> Self {
-            let line = include_str!("../../../scripts/lines/line8.toml");
             Self {
                 twc: Twc::new(Duration::from_ms(1000)),
-                line: Line::from_toml(line).unwrap(),
                 log: EventLog::default(),
                 now: Instant::ZERO,
             }
@@ -230,31 +219,21 @@ mod tests {
 
         /// Data of the first section's departure, for a train of this number.
         fn data(&self, train_number: u16) -> TwcWayside {
-            let section = &self.line.sections[0];
             TwcWayside {
-                route: section.route,
-                section: section.section,
-                station: section.from_station,
-                next_station: section.to_station,
-                loop_id: section.from_loop,
                 train_number,
-                ..TwcWayside::default()
+                ..check::tests::departure(line8(), 0)
             }
         }
 
         fn take(&mut self, data: TwcWayside, own: TrainNumber) {
-            let line = &self.line;
             self.twc
-                .take(self.now, data, own, line, Guards::ALL, &mut self.log);
+                .take(self.now, data, own, line8(), Guards::ALL, &mut self.log);
             self.now += Duration::from_ms(250);
             self.twc.step(self.now, false, &mut self.log);
         }
 
         fn logged(&self, event: Event) -> usize {
-            let code = event.definition().code;
-            let entries = self.log.entries();
-            let entries = (0..self.log.next_index()).filter_map(|at| entries.at_or_after(at));
-            entries.filter(|entry| entry.code == code).count()
+            parameters(&self.log, event).len()
         }
     }
 
@@ -282,7 +261,7 @@ mod tests {
         let data = bench.data(9999);
         let mut number = |own| {
             let sender = StationSender::Loop(3);
-            let answer = bench.twc.answer(sender, &data, own, TrainState::default());
+            let answer = bench.twc.answer(sender, &data, own, TwcTrain::default());
             answer.train_number
         };
         assert_eq!(number(OWN), OWN);

@@ -73,6 +73,7 @@ mod tests {
     use protocol::Duration;
 
     use super::*;
+    use crate::for_tests::parameters;
     use crate::keyed::ENTRY_OVER;
 
     const FRAMES: u8 = 3;
@@ -102,11 +103,7 @@ mod tests {
         }
 
         fn logged(&self, event: Event) -> usize {
-            let entries = self.log.entries();
-            (0..self.log.next_index())
-                .filter_map(|at| entries.at_or_after(at))
-                .filter(|entry| entry.code == event.definition().code)
-                .count()
+            parameters(&self.log, event).len()
         }
     }
 

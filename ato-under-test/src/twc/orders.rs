@@ -7,20 +7,12 @@ use protocol::event::Event;
 use protocol::line::Line;
 use protocol::message::{TrainOrder, TwcOrders};
 
-use super::{TrainNumber, Twc};
+use super::{Ordered, TrainNumber, Twc};
 use crate::guards::Guards;
 use crate::kernel::EventLog;
 
 /// Metres of the wire's unit of length.
 const DECIMETRE_M: f64 = 0.1;
-
-/// The last orders that were not refused.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ordered {
-    destination: u16,
-    order: TrainOrder,
-    heard: Instant,
-}
 
 impl Twc {
     /// Takes orders unless they are for another train or contradict the track database; the order, if they give a new one.
@@ -114,13 +106,9 @@ mod tests {
     use protocol::Duration;
 
     use super::*;
-    use crate::with::with;
+    use crate::for_tests::{line8, with};
 
     const OWN: TrainNumber = 8001;
-
-    fn line() -> Line {
-        Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap()
-    }
 
     fn good(line: &Line) -> TwcOrders {
         let section = &line.sections[0];
@@ -135,8 +123,8 @@ mod tests {
 
     #[test]
     fn each_wrong_number_has_its_event() {
-        let line = line();
-        let good = good(&line);
+        let line = line8();
+        let good = good(line);
         let config = OrdersConfig::default();
         let long = |by_m: f64| TwcOrders {
             section_length_dm: ((line.sections[0].length_m + by_m) * 10.0) as u32,
@@ -163,17 +151,17 @@ mod tests {
         ];
         for (orders, expected) in cases {
             for route in [None, Some(line.sections[0].route)] {
-                let found = contradiction(&orders, route, &line, &config, Guards::ALL);
+                let found = contradiction(&orders, route, line, &config, Guards::ALL);
                 assert_eq!(found.map(|(event, _)| event), expected, "{orders:?}");
             }
         }
-        let other_route = contradiction(&good, Some(99), &line, &config, Guards::ALL);
+        let other_route = contradiction(&good, Some(99), line, &config, Guards::ALL);
         assert!(matches!(other_route, Some((Event::TwcWrongDestination, _))));
     }
 
     #[test]
     fn an_order_is_given_once_for_as_long_as_it_is_sent() {
-        let (line, config) = (line(), OrdersConfig::default());
+        let (line, config) = (line8(), OrdersConfig::default());
         let mut log = EventLog::default();
         let mut twc = Twc::new(Duration::from_ms(1000));
         let mut at_ms = 0;
@@ -182,10 +170,10 @@ mod tests {
             let orders = TwcOrders {
                 order,
                 train_number,
-                ..good(&line)
+                ..good(line)
             };
             let now = Instant::from_ms(at_ms);
-            twc.take_orders(now, &orders, OWN, (&line, &config), Guards::ALL, &mut log)
+            twc.take_orders(now, &orders, OWN, (line, &config), Guards::ALL, &mut log)
         };
         use TrainOrder::{None, PutAway, TurnBack, Unknown};
         let cases = [

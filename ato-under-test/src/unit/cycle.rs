@@ -7,9 +7,8 @@ use protocol::event::{COUNTER_STANDS, Event};
 use protocol::injection::Place;
 use protocol::message::Mode;
 
-use super::frames::FromWayside;
 use super::{Unit, report};
-use crate::twc::StationSender;
+use crate::twc::{FromWayside, StationSender};
 
 impl Unit {
     pub(super) fn cycle(&mut self, now: Instant, out: &mut Vec<u8>) {

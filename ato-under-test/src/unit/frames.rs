@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use protocol::injection::{Effect, Place};
 use protocol::link::Received;
 use protocol::message::{
-    COIL_SAMPLES, Channel, DoorSide, Message, TcmsToAtc, TrainLines, TwcOrders, TwcWayside,
+    COIL_SAMPLES, Channel, DoorSide, Message, TcmsToAtc, TrainLines, TwcWayside,
 };
 use protocol::{Duration, Instant};
 
@@ -16,15 +16,7 @@ use super::{Unit, report};
 use crate::com::{ArmConditions, Port};
 use crate::receivers::Coils;
 use crate::setup::Setup;
-use crate::twc::StationSender;
-
-/// Data that came through the TWC antenna.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum FromWayside {
-    Station(StationSender, TwcWayside),
-    /// With the sequence number of their frame.
-    Orders(u16, TwcOrders),
-}
+use crate::twc::{FromWayside, StationSender};
 
 /// Bits that a damaged frame has wrong, in one byte.
 const DAMAGE: u8 = 0x12;

@@ -5,11 +5,13 @@
 
 mod operation;
 
+use protocol::Instant;
 use protocol::config::{TachoConfig, UnitConfig};
 use protocol::event::Event;
 use protocol::injection::{Effect, Place};
-use protocol::message::{DoorSide, Mode, ModeSwitch, Refusals, TrainLines, TwcWayside};
-use protocol::{Duration, Instant};
+use protocol::message::{
+    DoorSide, LogEntry, Mode, ModeSwitch, Refusals, TrainLines, TwcTrain, TwcTrainBits, TwcWayside,
+};
 
 use crate::ato::{Ato, AtoOutputs};
 use crate::atp::{Atp, Code, ModeInputs, ScanContext};
@@ -18,12 +20,12 @@ use crate::driverless::{Cabs, Stabling, Station, StationInputs};
 use crate::faults::Faults;
 use crate::front_end::EffortOutput;
 use crate::guards::Guards;
-use crate::kernel::{EventLog, FreezeFrame, SelfTester, Watchdog};
+use crate::kernel::{EventLog, SelfTester, Watchdog, hundredths};
 use crate::psm::{Debounce, Locator, Movement, TachoCompare, Tra, WheelMotion};
 use crate::setup::Setup;
 use crate::signals::{Inputs, MarkerPulse};
-use crate::timer::Edge;
-use crate::twc::{TrainState, Twc};
+use crate::timer::{Edge, ms};
+use crate::twc::Twc;
 
 /// Data that the functions need beside their inputs.
 pub struct Surroundings<'a> {
@@ -71,7 +73,7 @@ impl Functions {
         Self {
             inputs: Inputs::default(),
             atp: Atp::new(config),
-            twc: Twc::new(Duration::from_ms(u64::from(config.link.twc_timeout_ms))),
+            twc: Twc::new(ms(config.link.twc_timeout_ms)),
             locator: Locator::new(config),
             debounce: Debounce::default(),
             elsewhere: Edge::default(),
@@ -162,12 +164,13 @@ impl Functions {
                 .filter(|_| self.locator.knows_stop_point())
                 .map(|to_stop_m| -to_stop_m),
         };
-        log.freeze(FreezeFrame {
-            speed: self.atp.tachometers().speed(),
-            limit: self.atp.limit(),
-            position_m: self.locator.position_m(),
+        log.freeze(LogEntry {
+            speed_cms: self.atp.tachometers().speed().to_cms(),
+            limit_cms: self.atp.limit().to_cms(),
+            position_cm: hundredths(self.locator.position_m()),
             mode: self.atp.sequence().mode(),
             eb_cause: self.atp.brake().cause(),
+            ..LogEntry::default()
         });
         self.atp
             .scan(now, &self.inputs, context, &around.setup.config, log);
@@ -240,14 +243,17 @@ impl Functions {
     }
 
     /// State of the train, as told to the wayside.
-    pub fn train_state(&self) -> TrainState {
+    pub fn train_state(&self) -> TwcTrain {
         let tachometers = self.atp.tachometers();
-        TrainState {
+        let mut bits = TwcTrainBits::empty();
+        bits.set(TwcTrainBits::DOORS_CLOSED, self.atp.doors_closed());
+        bits.set(TwcTrainBits::ALIGNED, self.aligned());
+        bits.set(TwcTrainBits::STANDSTILL, tachometers.standstill());
+        TwcTrain {
             mode: self.atp.sequence().mode(),
-            doors_closed: self.atp.doors_closed(),
-            aligned: self.aligned(),
-            standstill: tachometers.standstill(),
-            speed: tachometers.speed(),
+            bits,
+            speed_cms: tachometers.speed().to_cms(),
+            ..TwcTrain::default()
         }
     }
 
@@ -324,7 +330,7 @@ impl Functions {
             Refusals::CAB_INACTIVE,
             !lines.contains(TrainLines::HCR) || around.tcms.reads_cab_unmanned() || self.turned(),
         );
-        lacking.set(Refusals::MODE_SWITCH, !Atp::switch_automatic(switch));
+        lacking.set(Refusals::MODE_SWITCH, !switch.is_automatic());
         lacking.set(
             Refusals::CONTROLLER_NOT_NEUTRAL,
             self.inputs.controller != 0,

@@ -15,10 +15,10 @@ mod train_state;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
+use protocol::Instant;
 use protocol::event::Event;
 use protocol::injection::Place;
 use protocol::message::{IoOutput, Message, Outputs};
-use protocol::{Duration, Instant};
 
 use crate::com::{IoImage, Maintenance, Port, Ports, RejectWatch, TcmsLink};
 use crate::driverless::Stabling;
@@ -35,8 +35,8 @@ use crate::psm::Tra;
 use crate::receivers::Coils;
 use crate::setup::Setup;
 use crate::test_board::TestBoard;
-use crate::twc::OwnNumber;
-use frames::FromWayside;
+use crate::timer::ms;
+use crate::twc::{FromWayside, OwnNumber};
 use functions::{Functions, Surroundings};
 use test_mode::TestMode;
 use train_state::StateReport;
@@ -109,7 +109,6 @@ impl Unit {
     fn powered_up(setup: Setup, faults: Faults, flash: Box<dyn BlockDevice>) -> Self {
         let config = &setup.config;
         let link = &config.link;
-        let ms = |ms: u32| Duration::from_ms(u64::from(ms));
         let mut log = EventLog::default();
         log.push(Instant::ZERO, Event::PowerUp, 0);
         let memory = Memory::power_up(flash);

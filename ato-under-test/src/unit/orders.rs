@@ -2,19 +2,19 @@
 
 use alloc::vec::Vec;
 
-use protocol::config::OrdersConfig;
+use protocol::Instant;
 use protocol::event::Event;
 use protocol::injection::Place;
 use protocol::message::{
     CabEntries, Mode, ModeSwitch, OrderLacks, OrderState, TrainLines, TrainOrder, TwcOrders,
     TwcReport, WheelEntry,
 };
-use protocol::{Duration, Instant};
 
 use super::Unit;
 use super::functions::{Functions, Surroundings};
 use crate::driverless::{CabInputs, StablingInputs};
 use crate::kernel::EventLog;
+use crate::timer::ms;
 use crate::twc::departs;
 
 impl Unit {
@@ -186,7 +186,7 @@ impl Functions {
             departure,
         };
         self.cabs
-            .step(now, cabs, change_time(&setup.config.orders), log);
+            .step(now, cabs, ms(setup.config.orders.cab_change_ms), log);
         let tester = around.self_tester;
         let stabling = StablingInputs {
             driverless: self.inputs.alive.then_some(self.driverless()),
@@ -211,10 +211,6 @@ impl Functions {
 
     /// An order holds the train: no run may begin.
     pub(super) fn ordered_to_stay(&self) -> bool {
-        self.cabs.bars_run() || self.stabling.bars_run()
+        self.cabs.bars_run() || self.stabling.sleeps()
     }
-}
-
-fn change_time(config: &OrdersConfig) -> Duration {
-    Duration::from_ms(u64::from(config.cab_change_ms))
 }

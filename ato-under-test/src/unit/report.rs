@@ -1,5 +1,7 @@
 //! Messages in which the unit reports its identity and state to the tester and TCMS.
 
+use alloc::vec::Vec;
+
 use protocol::Instant;
 use protocol::injection::{Effect, Place};
 use protocol::message::{
@@ -7,7 +9,9 @@ use protocol::message::{
 };
 
 use super::Unit;
+use super::train_state::{StateReport, dated};
 use crate::atp::{Code, shown_cause};
+use crate::kernel::hundredths;
 
 /// Software version in the identity.
 const SOFTWARE: [u8; 3] = [0, 1, 0];
@@ -44,7 +48,7 @@ pub fn status(unit: &Unit) -> Message {
         speed2_cms: tachometers.channel(1).to_cms(),
         target_cms: tested.ato_outputs.target.to_cms(),
         effort: tested.ato_outputs.effort,
-        position_cm: libm::round(tested.locator.position_m() * 100.0) as i32,
+        position_cm: hundredths(tested.locator.position_m()),
         events: unit.log.next_index(),
         rejected_frames: unit.ports.rejected_total() as u16,
         twc_received: tested.twc.received,
@@ -111,6 +115,25 @@ pub fn train_state(unit: &Unit, now: Instant) -> TrainState {
         test_answer_train: test_answer.train_number,
         test_pulses: unit.board.pulses,
         test_markers: unit.board.markers,
+    }
+}
+
+impl Unit {
+    /// Sends the state at the end of a scan if it is due; `cycle`: `Status` is sent in this scan.
+    pub(super) fn tell_train_state(&mut self, now: Instant, cycle: bool, out: &mut Vec<u8>) {
+        if self.tested().locator.count != self.marker_at.0 {
+            self.marker_at = (self.tested().locator.count, now.stamp_ms());
+        }
+        let Some(changes) = self.maintenance.subscribed(now) else {
+            self.state_report = StateReport::default();
+            return;
+        };
+        let mut state = train_state(self, now);
+        let dated = (dated(&state), self.tested().twc.received);
+        if let Some(held) = self.state_report.step(dated, changes, cycle) {
+            state.held = held;
+            self.ports.send(now, &Message::from(state), out);
+        }
     }
 }
 

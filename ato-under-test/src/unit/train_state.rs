@@ -1,43 +1,30 @@
 //! `TrainState` for a subscribed tester: with each `Status`, and at once in the scan of a change, so that
 //! the frame's stamp dates the change.
 
-use alloc::vec::Vec;
-
-use protocol::Instant;
-use protocol::message::{EbCause, FsbCause, Message, Mode, Outputs, TrainLines, TrainState};
-
-use super::{Unit, report};
+use protocol::message::TrainState;
 
 /// Scans in which no second frame is sent for changes, so that the bytes of the line suffice.
 const SPACING: u8 = 3;
 
-/// Values that a frame dates to its scan.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Dated {
-    outputs: Outputs,
-    asked: Outputs,
-    lines: TrainLines,
-    modes: [Mode; 2],
-    causes: (EbCause, FsbCause),
-    code_index: u8,
-    limit_cms: u16,
-    marker_count: u8,
-    twc_counts: [u16; 3],
-}
+/// The values of a state that a frame dates to its scan, and the number of frames received through TWC.
+type Dated = (TrainState, u16);
 
-impl Dated {
-    fn of(state: &TrainState, twc_received: u16) -> Self {
-        Self {
-            outputs: state.outputs,
-            asked: state.asked,
-            lines: state.lines,
-            modes: [state.mode, state.asked_mode],
-            causes: (state.eb_cause, state.fsb_cause),
-            code_index: state.code_index,
-            limit_cms: state.limit_cms,
-            marker_count: state.marker_count,
-            twc_counts: [twc_received, state.twc_answers, state.test_answers],
-        }
+/// What of a state is dated; the rest, which differs from scan to scan, is left out.
+pub fn dated(state: &TrainState) -> TrainState {
+    TrainState {
+        outputs: state.outputs,
+        asked: state.asked,
+        lines: state.lines,
+        mode: state.mode,
+        asked_mode: state.asked_mode,
+        eb_cause: state.eb_cause,
+        fsb_cause: state.fsb_cause,
+        code_index: state.code_index,
+        limit_cms: state.limit_cms,
+        marker_count: state.marker_count,
+        twc_answers: state.twc_answers,
+        test_answers: state.test_answers,
+        ..TrainState::default()
     }
 }
 
@@ -55,7 +42,7 @@ pub struct StateReport {
 impl StateReport {
     /// One scan with a subscribed tester, and the state at its end; `changes`: it wants changes at once. The age of
     /// what a frame sent now shows, in scans.
-    fn step(&mut self, state: Dated, changes: bool, cycle: bool) -> Option<u8> {
+    pub fn step(&mut self, state: Dated, changes: bool, cycle: bool) -> Option<u8> {
         self.wait = self.wait.saturating_sub(1);
         self.unsent = self.unsent.map(|age| age.saturating_add(1));
         if self.last.replace(state).is_some_and(|last| last != state) {
@@ -72,34 +59,18 @@ impl StateReport {
     }
 }
 
-impl Unit {
-    /// Sends the state at the end of a scan if it is due; `cycle`: `Status` is sent in this scan.
-    pub(super) fn tell_train_state(&mut self, now: Instant, cycle: bool, out: &mut Vec<u8>) {
-        if self.tested().locator.count != self.marker_at.0 {
-            self.marker_at = (self.tested().locator.count, now.stamp_ms());
-        }
-        let Some(changes) = self.maintenance.subscribed(now) else {
-            self.state_report = StateReport::default();
-            return;
-        };
-        let mut state = report::train_state(self, now);
-        let dated = Dated::of(&state, self.tested().twc.received);
-        if let Some(held) = self.state_report.step(dated, changes, cycle) {
-            state.held = held;
-            self.ports.send(now, &Message::from(state), out);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use alloc::vec::Vec;
+
     use super::*;
 
     fn state(code_index: u8) -> Dated {
-        Dated {
+        let state = TrainState {
             code_index,
-            ..Dated::default()
-        }
+            ..TrainState::default()
+        };
+        (state, 0)
     }
 
     /// Codes scan by scan from the first of a cycle, and the age reported in each scan.

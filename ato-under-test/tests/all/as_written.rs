@@ -3,18 +3,18 @@
 
 use std::path::Path;
 
-use crate::common::{Bench, config};
+use crate::common::{Bench, config, confirm};
+use crate::maintenance::{SESSION, answer_to, armed_with};
+use ato_under_test::flash::RamFlash;
 use ato_under_test::{LOG_CAPACITY, RUN_ROWS};
-use ato_under_test::{Setup, Unit};
 use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, CoilSamples, ENUMS, FieldSpec,
-    IoInput, IoOutput, KeepAlive, Message, MessageSpec, ModeSwitch, Outputs, ReadStored, Status,
-    StatusBits, StimulusAnswer, Subscribe, TcmsToAtc, TcmsToAtcBits, TrainLines, TwcOrders,
+    IoOutput, Message, MessageSpec, ModeSwitch, ReadStored, Status, StatusBits, Subscribe,
+    TcmsToAtcBits, TrainLines, TwcOrders, TwcReport,
 };
-use protocol::{CYCLE, Duration, Instant, SCAN};
+use protocol::{Duration, Instant};
 
-const SESSION: u32 = 0xCAFE;
 /// A row of the table begins like this one's head.
 const TABLE: &str = "| Field | Takes | Any other value |";
 
@@ -188,43 +188,15 @@ fn requests() -> Vec<Message> {
     }
     unit.retain(|m| matches!(m.spec().code, 0x10..=0x14));
     assert_eq!(unit.len(), 5);
-    unit
+    // Each begins with its session.
+    let of_session = |message: Message| set(message.spec(), 1, 4, message, SESSION.into());
+    unit.into_iter().map(of_session).collect()
 }
 
 fn bytes(hex: &str) -> Vec<u8> {
     hex.split_whitespace()
         .map(|pair| u8::from_str_radix(pair, 16).expect("two digits"))
         .collect()
-}
-
-fn armed() -> Bench {
-    let mut bench = Bench::new(&[]);
-    bench.input.lines.insert(TrainLines::MAINTENANCE_KEY);
-    bench.run(0.1);
-    bench.send(ArmRequest { session: SESSION });
-    bench.run(0.1);
-    let challenge = bench.answers.iter().find_map(|answer| match answer {
-        Message::ArmChallenge(challenge) => Some(challenge.challenge),
-        _ => None,
-    });
-    let answer = !challenge.expect("a challenge") ^ SESSION;
-    bench.send(ArmConfirm {
-        session: SESSION,
-        answer,
-    });
-    bench.session = SESSION;
-    bench.run(0.1);
-    bench
-}
-
-fn answer_to(bench: &mut Bench, request: Message) -> Answer {
-    bench.answers.clear();
-    bench.send(request);
-    bench.run(0.02);
-    match bench.answers[..] {
-        [Message::StimulusAnswer(StimulusAnswer { answer, .. })] => answer,
-        ref other => panic!("{request:?}: {other:?}"),
-    }
 }
 
 /// Goal: no request is carried out with a value that has no meaning, and none with a meaning is refused.
@@ -249,11 +221,11 @@ fn the_test_board_refuses_what_it_cannot_make_and_nothing_else() {
                 _ => (vec![least, 1, most], vec![]),
             };
             for value in good.into_iter().filter(|_| field.name != "session") {
-                let answer = answer_to(&mut armed(), at(value));
+                let answer = answer_to(&mut armed_with(&[]), at(value));
                 assert_eq!(answer, Answer::Accepted, "{:?}", at(value));
             }
             for value in refused {
-                let mut bench = armed();
+                let mut bench = armed_with(&[]);
                 let answer = answer_to(&mut bench, at(value));
                 assert_eq!(answer, Answer::OutOfRange, "{:?}", at(value));
                 bench.run(0.1);
@@ -390,9 +362,7 @@ fn refuses_orders(orders: Message, name: &str) {
         ..orders
     });
     bench.run(0.1);
-    let [Message::TwcReport(report)] = bench.answers[..] else {
-        panic!("{:?}", bench.answers)
-    };
+    let report: TwcReport = bench.last().expect("a report");
     assert_eq!(report.refused, 1, "{name}");
 }
 
@@ -430,11 +400,8 @@ fn beside(rule: &Rule, bits: i64) -> Act {
         }
         "TcmsToAtc.bits" => {
             let frame = bench.tcms.as_mut().expect("TCMS speaks");
-            frame.bits = frame
-                .bits
-                .union(protocol::message::TcmsToAtcBits::from_bits_retain(
-                    bits as u16,
-                ));
+            let unknown = TcmsToAtcBits::from_bits_retain(bits as u16);
+            frame.bits = frame.bits.union(unknown);
         }
         other => panic!("{other}"),
     })
@@ -455,117 +422,69 @@ const VARIES: [&str; 9] = [
 
 /// A tester that plays the requests of a worked session to a unit, and keeps the line going in between.
 struct Player {
-    unit: Unit,
+    bench: Bench,
     link: Link,
-    now: Instant,
-    input: Option<IoInput>,
-    tcms: Option<TcmsToAtc>,
-    session: u32,
-    challenge: u32,
     heard: Vec<(Instant, Message)>,
 }
 
 impl Player {
     fn new() -> Self {
+        let mut bench = Bench::alone(Box::new(RamFlash::default()));
+        (bench.keep_alive, bench.tcms_obeys) = (false, true);
         let mut player = Self {
-            unit: Unit::new(Setup {
-                serial: "SG-0042".into(),
-                config: crate::common::config(),
-                config_crc: 1,
-                line: crate::common::line(),
-                tdb_crc: 2,
-                seed: 7,
-                faults: Vec::new(),
-            }),
+            bench,
             link: Link::new(End::Bench),
-            now: Instant::ZERO,
-            input: None,
-            tcms: None,
-            session: 0,
-            challenge: 0,
             heard: Vec::new(),
         };
         player.run_until(Instant::from_ms(2000));
         player
     }
 
-    fn send(&mut self, message: Message) {
-        let mut frame = Vec::new();
-        self.link.send(self.now, &message, &mut frame);
-        self.unit.receive(&frame);
-    }
-
     /// Takes a request of the session; the challenge is the unit's own.
     fn request(&mut self, message: Message) {
+        let bench = &mut self.bench;
         match message {
-            Message::IoInput(input) => self.input = Some(input),
-            Message::TcmsToAtc(frame) => self.tcms = Some(frame),
+            Message::IoInput(input) => {
+                bench.input = input;
+                (bench.io, bench.keep_alive) = (true, true);
+            }
+            Message::TcmsToAtc(mut frame) => {
+                // What it says of brakes follows the unit's outputs.
+                frame.bits.remove(
+                    TcmsToAtcBits::FULL_SERVICE_BRAKE
+                        | TcmsToAtcBits::SERVICE_BRAKE_APPLIED
+                        | TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED,
+                );
+                bench.tcms = Some(frame);
+            }
             Message::KeepAlive(alive) => {
-                self.session = alive.session;
-                self.send(message);
+                bench.session = alive.session;
+                bench.send(message);
             }
             Message::ArmConfirm(ArmConfirm { session, .. }) => {
-                self.session = session;
-                let answer = !self.challenge ^ session;
-                self.send(ArmConfirm { session, answer }.into());
+                bench.session = session;
+                bench.send(confirm(bench.last().expect("a challenge"), session));
             }
-            other => self.send(other),
+            other => bench.send(other),
         }
     }
 
     /// Messages of this name within the last cycles.
     fn said(&self, name: &str) -> Vec<Message> {
-        let lately = |at: Instant| self.now.since(at) < Duration::from_ms(100);
-        let heard = self.heard.iter().rev().take_while(|(at, _)| lately(*at));
-        let mut said: Vec<_> = heard.map(|(_, message)| *message).collect();
-        said.retain(|message| message.name() == name);
-        said.reverse();
-        said
+        let lately = |at: Instant| self.bench.now.since(at) < Duration::from_ms(100);
+        let heard = self.heard.iter().filter(|(at, _)| lately(*at));
+        let said = heard.map(|(_, message)| *message);
+        said.filter(|message| message.name() == name).collect()
     }
 
     fn run_until(&mut self, at: Instant) {
-        while self.now < at {
-            self.now += SCAN;
-            if let Some(input) = self.input {
-                self.send(input.into());
-                if self.now.as_us().is_multiple_of(200_000) {
-                    let session = self.session;
-                    self.send(KeepAlive { session }.into());
-                }
-            }
-            if let Some(frame) = &mut self.tcms
-                && self.now.as_us().is_multiple_of(CYCLE.as_us())
-            {
-                frame.alive = frame.alive.wrapping_add(1);
-                let frame = *frame;
-                self.send(frame.into());
-            }
-            let mut out = Vec::new();
-            self.unit.step(self.now, &mut out);
-            self.link.push(&out);
-            while let Some(received) = self.link.poll(self.now) {
-                if let (Message::IoOutput(output), Some(frame)) = (received.message, &mut self.tcms)
-                {
-                    let asked = output.outputs.contains(Outputs::FSB);
-                    let braked =
-                        TcmsToAtcBits::FULL_SERVICE_BRAKE | TcmsToAtcBits::SERVICE_BRAKE_APPLIED;
-                    frame.bits.set(braked, asked);
-                }
-                if let Message::ArmChallenge(asked) = received.message {
-                    self.challenge = asked.challenge;
-                }
-                if let (Message::IoOutput(output), Some(input)) =
-                    (received.message, &mut self.input)
-                {
-                    let released = output.outputs.contains(Outputs::EB_RELAY);
-                    input.lines.set(TrainLines::EB_LOOP, released);
-                    if let Some(frame) = &mut self.tcms {
-                        let bits = &mut frame.bits;
-                        bits.set(TcmsToAtcBits::EMERGENCY_BRAKE_APPLIED, !released);
-                    }
-                }
-                self.heard.push((self.now, received.message));
-            }
+        while self.bench.now < at {
+            self.bench.scan();
+            let now = self.bench.now;
+            self.link.push(&self.bench.sent);
+            let heard = std::iter::from_fn(|| self.link.poll(now));
+            self.heard
+                .extend(heard.map(|received| (now, received.message)));
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Whatever ATO is given: the effort stays within its 10 bits and sign, nothing powers that must
 //! not, and what cannot be believed brakes.
 
+use crate::common::config;
 use ato_under_test::ato::{Ato, AtoInputs, AtoOutputs, Checks, TrainReport};
 use proptest::prelude::*;
 use protocol::Speed;
 use protocol::config::{ControllerKind, UnitConfig};
-use protocol::line::{Curve, Gradient, Line, Section};
+use protocol::line::{Curve, Gradient, Section};
 use protocol::message::{AtoFailure, AtoState, Mode, RunningMode};
 
 /// One cycle's inputs as drawn; the section is the printed one or made of drawn numbers.
@@ -25,13 +26,8 @@ struct Drawn {
     checks: Checks,
 }
 
-fn config() -> UnitConfig {
-    UnitConfig::from_toml(include_str!("../../../scripts/units/sg100.toml")).unwrap()
-}
-
 fn printed() -> Section {
-    let line = Line::from_toml(include_str!("../../../scripts/lines/line8.toml")).unwrap();
-    line.section(61).unwrap().clone()
+    crate::common::line().section(61).unwrap().clone()
 }
 
 /// Mostly a value a train could have, now and then anything a float can be.

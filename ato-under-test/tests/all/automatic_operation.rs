@@ -1,12 +1,13 @@
 //! Automatic operation from station to station through the wire: position by markers and wheels,
 //! what ATO does with inputs it cannot believe, and the record of the run.
 
-use crate::common::{Bench, fault, fault_from};
+use crate::common::{Bench, all, fault, fault_from};
 use crate::journey::Journey;
+use crate::maintenance::stays_within_its_bytes;
 use protocol::SCAN;
 use protocol::injection::{Effect, Place};
 use protocol::message::{
-    AtoFailure, AtoState, Message, Mode, ModeSwitch, Outputs, ReadRun, Refusals, RunRow, StatusBits,
+    AtoFailure, AtoState, Mode, ModeSwitch, Outputs, ReadRun, Refusals, RunEnd, RunRow, StatusBits,
 };
 
 /// Distance of one tachometer pulse, m: at rest no position is known better.
@@ -44,9 +45,8 @@ fn a_marker_gives_the_position_to_a_centimetre() {
 /// Wheels worn by 2 % beyond what the unit is set to: found between PSM1 and PSM2, then corrected.
 #[test]
 fn worn_wheels_are_calibrated_between_markers() {
-    let mut journey = Journey::new(&[]);
-    journey.wheels_tell = 1.0 / 0.98;
-    let journey = journey.until_position(828.0);
+    let worn = Journey::new(&[]).with(|journey| journey.wheels_tell = 1.0 / 0.98);
+    let journey = worn.until_position(828.0);
     let correction = f64::from(journey.bench.status.wheel_correction_10ppm) / 1e5;
     assert!((correction + 0.02).abs() < 5e-4, "{correction}");
     journey.knows_its_place_within(0.1);
@@ -56,13 +56,13 @@ fn worn_wheels_are_calibrated_between_markers() {
     assert_eq!(journey.faults(), [""; 0]);
 }
 
+/// No sensor is named: both tell the same, and it is the diameter set in the unit that is wrong.
 #[test]
 fn wheels_that_no_service_wears_are_told_once() {
-    let mut journey = Journey::new(&[]);
-    journey.wheels_tell = 1.04;
-    let mut journey = journey.run();
+    let wide = Journey::new(&[]).with(|journey| journey.wheels_tell = 1.04);
+    let mut journey = wide.run();
     assert_eq!(journey.faults(), ["wheel_diameter"]);
-    let found = journey.parameters("wheel_diameter")[0];
+    let found = journey.bench.parameters("wheel_diameter")[0];
     assert!(
         (-395..=-375).contains(&found),
         "1/1.04 is -385 in 0.01 %: {found}"
@@ -75,9 +75,8 @@ fn wheels_that_no_service_wears_are_told_once() {
 #[test]
 fn wheels_of_quite_another_size_do_not_run_past_the_platform() {
     for rolls in [0.92, 1.08] {
-        let mut journey = Journey::new(&[]);
-        journey.wheels_tell = 1.0 / rolls;
-        let mut journey = journey.run();
+        let other = Journey::new(&[]).with(|journey| journey.wheels_tell = 1.0 / rolls);
+        let mut journey = other.run();
         let error_m = journey.stop_error_m();
         assert!(error_m.abs() < 0.3, "{rolls}: {error_m}");
         let faults = journey.faults();
@@ -95,8 +94,8 @@ fn a_missing_marker_costs_no_centimetre_once_the_next_has_come() {
     journey.knows_its_place_within(0.025);
     journey.stops_within(0.3);
     assert_eq!(journey.faults(), ["position_unsure", "marker_missing"]);
-    assert_eq!(journey.parameters("position_unsure"), [2]);
-    assert_eq!(journey.parameters("marker_missing"), [2]);
+    assert_eq!(journey.bench.parameters("position_unsure"), [2]);
+    assert_eq!(journey.bench.parameters("marker_missing"), [2]);
 }
 
 /// A pulse of another coil between two places: reported, and neither position nor order follow it.
@@ -108,9 +107,8 @@ fn an_extra_marker_is_reported_and_ignored() {
         (2, 765.0, "marker_position"),
         (4, 836.5, "marker_position"),
     ] {
-        let mut journey = Journey::new(&[]);
-        journey.markers.push((extra, at_m));
-        let mut journey = journey.run();
+        let with_extra = Journey::new(&[]).with(|journey| journey.markers.push((extra, at_m)));
+        let mut journey = with_extra.run();
         let error_m = journey.stop_error_m();
         assert!(error_m.abs() < 0.3, "PSM{extra} at {at_m}: {error_m}");
         assert_eq!(journey.faults(), [event], "PSM{extra} at {at_m}");
@@ -147,9 +145,8 @@ fn a_marker_that_bounces_counts_once_and_leaves_the_position_right() {
 /// PSM4 a second late, as from a hanging relay: the train has passed its place, or stands.
 #[test]
 fn a_late_psm4_is_not_believed() {
-    let mut journey = Journey::new(&[]);
-    journey.markers[3].1 += 2.5;
-    let mut journey = journey.run();
+    let late = Journey::new(&[]).with(|journey| journey.markers[3].1 += 2.5);
+    let mut journey = late.run();
     journey.stops_within(0.3);
     let faults = journey.faults();
     assert!(faults.contains(&"marker_position"), "{faults:?}");
@@ -179,9 +176,9 @@ fn swapped_markers_are_out_of_order_and_correct_nothing() {
 fn with_a_dead_tra_the_train_stops_short_of_the_platforms_end() {
     for wheels_tell in [0.985, 1.0] {
         let dead = fault_from(Place::Tra, Effect::Dead, 10.0);
-        let mut journey = Journey::new(&[dead]);
-        journey.wheels_tell = wheels_tell;
-        let mut journey = journey.run();
+        let mut journey = Journey::new(&[dead])
+            .with(|journey| journey.wheels_tell = wheels_tell)
+            .run();
         let error_m = journey.stop_error_m();
         assert!((-30.0..0.5).contains(&error_m), "{error_m}");
         let faults = journey.faults();
@@ -194,13 +191,12 @@ fn with_a_dead_tra_the_train_stops_short_of_the_platforms_end() {
 
 #[test]
 fn a_train_that_does_not_answer_its_brake_is_noticed_and_atp_brakes() {
-    let mut journey = Journey::new(&[]).until_position(400.0);
-    journey.follows = 0.1;
-    let mut journey = journey.run();
+    let running = Journey::new(&[]).until_position(400.0);
+    let mut journey = running.with(|journey| journey.follows = 0.1).run();
     let faults = journey.faults();
     assert!(faults.contains(&"ato_not_following"), "{faults:?}");
     assert_eq!(
-        journey.parameters("ato_failed"),
+        journey.bench.parameters("ato_failed"),
         [i32::from(AtoFailure::NotFollowing.code())]
     );
 }
@@ -231,9 +227,8 @@ fn a_processor_that_stops_on_the_way_is_noticed_by_the_watchdog() {
     assert_eq!((status.effort, status.ato_state), (0, AtoState::Inspection));
     assert!(journey.bench.has(Outputs::FSB));
     let mut journey = journey.run();
-    journey.faults();
     let processor = i32::from(AtoFailure::Processor.code());
-    assert_eq!(journey.parameters("ato_failed"), [processor]);
+    assert_eq!(journey.bench.parameters("ato_failed"), [processor]);
 }
 
 /// Tachometers that both keep their value while ATO powers are frozen.
@@ -269,35 +264,19 @@ fn a_frozen_speed_stops_the_train() {
     );
     let expected = ["ato_input_absurd", "ato_failed", "door_enable_refused"];
     assert_eq!(journey.faults(), expected);
-    assert_eq!(journey.parameters("ato_input_absurd"), [1 << 2]);
+    assert_eq!(journey.bench.parameters("ato_input_absurd"), [1 << 2]);
 }
 
 #[test]
 fn the_run_can_be_read_back() {
     let mut journey = Journey::new(&[]).run();
     journey.bench.send(ReadRun { from_index: 0 });
-    for _ in 0..100 {
-        let mut bytes = Vec::new();
-        for _ in 0..5 {
-            journey.bench.scan();
-            journey.bench.now += SCAN;
-            journey.bench.unit.step(journey.bench.now, &mut bytes);
-        }
-        assert!(bytes.len() < 400, "{} bytes in 50 ms", bytes.len());
-    }
+    stays_within_its_bytes(&mut journey.bench);
     journey.bench.answers.clear();
     journey.bench.send(ReadRun { from_index: 0 });
     journey.bench.run(60.0);
-    let mut rows: Vec<RunRow> = Vec::new();
-    let mut end = None;
-    for answer in &journey.bench.answers {
-        match answer {
-            Message::RunRow(row) => rows.push(*row),
-            Message::RunEnd(message) => end = Some(*message),
-            _ => {}
-        }
-    }
-    let end = end.expect("an end");
+    let rows: Vec<RunRow> = all(&journey.bench.answers);
+    let end: RunEnd = journey.bench.last().expect("an end");
     assert_eq!((end.oldest_index, end.next_index as usize), (0, rows.len()));
     assert!(
         (1200..2400).contains(&rows.len()),

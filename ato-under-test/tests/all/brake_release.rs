@@ -1,55 +1,33 @@
 //! Release of the emergency brake: no person as long as its cause holds, and an attempt is answered with what holds.
 
 use crate::common::{Bench, fault};
-use protocol::event::Event;
 use protocol::injection::{Effect, Place};
 use protocol::message::{EbCause, Outputs, TrainLines};
 
 /// Parameters of the refusals logged so far.
 fn refusals(bench: &mut Bench) -> Vec<i32> {
-    bench.events();
-    let code = Event::EbReleaseRefused.definition().code;
-    let refused = bench.log.iter().filter(|entry| entry.code == code);
-    refused.map(|entry| entry.parameter).collect()
-}
-
-fn moving(kmh: f64) -> Bench {
-    let mut bench = Bench::under("25", 0.0);
-    bench.speed_kmh(kmh);
-    bench
+    bench.parameters("eb_release_refused")
 }
 
 fn overspeed() -> Bench {
-    moving(33.0)
-}
-
-fn ineffective() -> Bench {
-    moving(30.0)
-}
-
-fn one_tachometer() -> Bench {
-    let mut bench = moving(20.0);
-    bench.speeds[1] = 0.0;
-    bench
-}
-
-fn rolling_back() -> Bench {
-    let mut bench = moving(0.0);
-    bench.speeds = [-0.5; 2];
-    bench
+    Bench::under("25", 33.0)
 }
 
 fn door_open() -> Bench {
-    let mut bench = moving(20.0);
+    let mut bench = Bench::under("25", 20.0);
     bench.input.lines.remove(TrainLines::DOORS_CLOSED);
     bench
 }
 
-fn failed_self_test() -> Bench {
-    let mut bench = Bench::new(&[fault(Place::Memory, Effect::StuckOn)]);
-    bench.code("25");
-    bench.run(0.6);
+/// At this speed, and then the wheels turn so, m/s.
+fn turning(kmh: f64, turn: impl FnOnce(&mut [f64; 2])) -> Bench {
+    let mut bench = Bench::under("25", kmh);
+    turn(&mut bench.speeds);
     bench
+}
+
+fn failed_self_test() -> Bench {
+    Bench::hearing("25", &[fault(Place::Memory, Effect::StuckOn)])
 }
 
 /// Cause, how it is brought about, and whether it is over once the train stands.
@@ -57,9 +35,21 @@ type Case = (EbCause, fn() -> Bench, bool);
 
 const CAUSES: [Case; 6] = [
     (EbCause::Overspeed, overspeed, true),
-    (EbCause::ServiceBrakeIneffective, ineffective, true),
-    (EbCause::Tachometer, one_tachometer, true),
-    (EbCause::Rollback, rolling_back, true),
+    (
+        EbCause::ServiceBrakeIneffective,
+        || Bench::under("25", 30.0),
+        true,
+    ),
+    (
+        EbCause::Tachometer,
+        || turning(20.0, |speeds| speeds[1] = 0.0),
+        true,
+    ),
+    (
+        EbCause::Rollback,
+        || turning(0.0, |speeds| *speeds = [-0.5; 2]),
+        true,
+    ),
     (EbCause::DoorOpen, door_open, false),
     (EbCause::SelfTest, failed_self_test, false),
 ];
@@ -134,8 +124,7 @@ fn doors_that_opened_on_the_way_are_closed_first() {
 /// Slower than what counts as moving, and yet it rolls: the brake comes after half a metre, and stays.
 #[test]
 fn a_slow_roll_back_is_braked_and_not_released_before_it_ends() {
-    let mut bench = moving(0.0);
-    bench.speeds = [-0.2; 2];
+    let mut bench = turning(0.0, |speeds| *speeds = [-0.2; 2]);
     let ms = bench.until(5.0, Bench::braking).expect("the brake");
     assert!(
         (2_400..2_800).contains(&ms),
@@ -152,9 +141,7 @@ fn a_slow_roll_back_is_braked_and_not_released_before_it_ends() {
 
 #[test]
 fn a_dead_guard_releases_with_the_doors_open() {
-    let mut bench = Bench::new(&[fault(Place::ReleaseGuard, Effect::Dead)]);
-    bench.code("25");
-    bench.run(0.6);
+    let mut bench = Bench::hearing("25", &[fault(Place::ReleaseGuard, Effect::Dead)]);
     bench.speed_kmh(5.0);
     bench.input.lines.remove(TrainLines::DOORS_CLOSED);
     assert!(bench.until(1.0, Bench::braking).is_some());

@@ -5,9 +5,10 @@ use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
 use protocol::message::{
-    ArmRequest, Identify, IoInput, KeepAlive, Message, ModeSwitch, Taken, TrainLines,
+    ArmChallenge, ArmRequest, Identify, IoInput, KeepAlive, Message, ModeSwitch, TrainLines,
 };
 
+use crate::common::all;
 use crate::served::{Client, Unit};
 
 /// A client of which nothing is heard is let go after this time, and what a busy machine may add.
@@ -15,13 +16,6 @@ const SILENT: Duration = Duration::from_secs(10);
 const SLACK: Duration = Duration::from_secs(3);
 /// Interval at which a client acts.
 const EVERY: Duration = Duration::from_millis(100);
-
-fn taken(heard: &[Message]) -> Option<Taken> {
-    heard.iter().find_map(|message| match message {
-        Message::Taken(taken) => Some(*taken),
-        _ => None,
-    })
-}
 
 #[test]
 fn who_comes_second_is_told_who_has_the_unit_and_is_never_heard() {
@@ -33,8 +27,9 @@ fn who_comes_second_is_told_who_has_the_unit_and_is_never_heard() {
     second.send(ArmRequest { session: 7 });
     second.send(KeepAlive { session: 7 });
     let heard = second.hear_for(Duration::from_secs(2));
-    let taken = taken(&heard).unwrap_or_else(|| panic!("{heard:?}"));
-    assert_eq!(heard.len(), 1, "{heard:?}");
+    let [Message::Taken(taken)] = heard[..] else {
+        panic!("{heard:?}")
+    };
     let own = first.stream.local_addr().expect("its address");
     let ip = std::net::Ipv6Addr::from(taken.address).to_canonical();
     assert_eq!(SocketAddr::new(ip, taken.port), own);
@@ -134,10 +129,9 @@ fn the_challenge_of_another_start_is_another() {
                 ..IoInput::default()
             });
             client.send(ArmRequest { session: 7 });
-            for heard in client.hear_for(EVERY) {
-                if let Message::ArmChallenge(challenge) = heard {
-                    return challenge.challenge;
-                }
+            let challenges: Vec<ArmChallenge> = all(&client.hear_for(EVERY));
+            if let [challenge, ..] = challenges[..] {
+                return challenge.challenge;
             }
             assert!(began.elapsed() < Duration::from_secs(60), "no challenge");
         }

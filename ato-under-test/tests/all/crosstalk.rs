@@ -3,7 +3,7 @@
 use protocol::injection::{Effect, Place};
 use protocol::message::Crosstalk;
 
-use crate::common::{Bench, config, fault};
+use crate::common::{Bench, fault, signal_of};
 
 /// Limit under code 25 at 500 mV with code 75 beside it for 2 s, km/h.
 fn limit_kmh(bench: &mut Bench, second_mv: u16) -> f64 {
@@ -19,21 +19,12 @@ fn shown_kmh(bench: &Bench) -> f64 {
 }
 
 fn beside(bench: &mut Bench, level_mv: u16) {
-    let config = config();
-    let code = config.codes.iter().find(|code| code.name == "75");
-    let code = code.expect("in the table");
+    let (carrier_hz, code_rate_chz) = signal_of("75");
     bench.send(Crosstalk {
-        carrier_hz: code.carrier_hz as u16,
-        code_rate_chz: (code.rate_hz * 100.0) as u16,
+        carrier_hz,
+        code_rate_chz,
         level_mv,
     });
-}
-
-fn under_code_25(faults: &[protocol::injection::FaultMode]) -> Bench {
-    let mut bench = Bench::new(faults);
-    bench.code("25");
-    bench.run(1.0);
-    bench
 }
 
 /// 4 dB are a factor of 1.585: 500 mV are so much above 315 mV, and 793 mV above 500 mV.
@@ -48,14 +39,14 @@ fn the_stronger_counts_while_the_other_stays_4_db_below_it() {
         (791, 0.0),
         (794, 75.0),
     ] {
-        let mut bench = under_code_25(&[]);
+        let mut bench = Bench::hearing("25", &[]);
         assert_eq!(limit_kmh(&mut bench, second_mv), expected, "{second_mv} mV");
     }
 }
 
 #[test]
 fn what_is_no_longer_told_is_gone() {
-    let mut bench = under_code_25(&[]);
+    let mut bench = Bench::hearing("25", &[]);
     assert_eq!(limit_kmh(&mut bench, 500), 0.0);
     bench.run(0.8);
     assert_eq!(shown_kmh(&bench), 25.0);
@@ -63,7 +54,7 @@ fn what_is_no_longer_told_is_gone() {
 
 #[test]
 fn a_receiver_without_separation_takes_the_weaker() {
-    let mut bench = under_code_25(&[fault(Place::CodeSeparation, Effect::Dead)]);
+    let mut bench = Bench::hearing("25", &[fault(Place::CodeSeparation, Effect::Dead)]);
     assert_eq!(limit_kmh(&mut bench, 0), 25.0);
     assert_eq!(limit_kmh(&mut bench, 250), 75.0);
 }

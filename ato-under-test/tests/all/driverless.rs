@@ -113,5 +113,5 @@ fn an_order_to_open_on_the_other_side_does_not_leave_the_unit() {
         assert!(!bench.has(Outputs::OPEN_LEFT) && !bench.has(Outputs::OPEN_RIGHT));
     }
     assert_eq!(journey.faults()[..1], ["door_order_refused"]);
-    assert_eq!(journey.parameters("door_order_refused"), [1]);
+    assert_eq!(journey.bench.parameters("door_order_refused"), [1]);
 }

@@ -3,34 +3,36 @@
 use ato_under_test::Port;
 use protocol::link::{End, Link};
 use protocol::message::{
-    ArmConfirm, ArmRefusal, ArmRequest, Channel, Identify, IoInput, KeepAlive, Message, ModeSwitch,
-    TcmsToAtc, TrainLines,
+    ArmRefusal, ArmRequest, ArmState, Channel, Identify, IoInput, KeepAlive, LogEntry, Message,
+    ModeSwitch, TcmsToAtc, TrainLines,
 };
 
-use crate::common::{Bench, departure, line};
+use crate::common::{Bench, all, confirm, departure, line};
 
 /// A tester on the maintenance port of a bench's unit.
-struct Laptop {
+pub struct Laptop {
     link: Link,
-    heard: Vec<Message>,
+    pub heard: Vec<Message>,
 }
 
 impl Laptop {
-    fn new() -> Self {
+    pub fn new() -> Self {
         Self {
             link: Link::new(End::Bench),
             heard: Vec::new(),
         }
     }
 
-    fn send(&mut self, bench: &mut Bench, message: impl Into<Message>) {
+    /// Sends a message; its bytes.
+    pub fn send(&mut self, bench: &mut Bench, message: impl Into<Message>) -> usize {
         let mut bytes = Vec::new();
         self.link.send(bench.now, &message.into(), &mut bytes);
         bench.unit.receive_at(Port::Maintenance, &bytes);
+        bytes.len()
     }
 
     /// One scan of all; what came at the maintenance port.
-    fn scan(&mut self, bench: &mut Bench) -> usize {
+    pub fn scan(&mut self, bench: &mut Bench) -> usize {
         bench.scan();
         let mut bytes = Vec::new();
         bench.unit.take_maintenance(&mut bytes);
@@ -58,11 +60,9 @@ impl Laptop {
     }
 
     fn arm_states(&mut self) -> Vec<(u8, ArmRefusal)> {
-        let states = self.heard.drain(..).filter_map(|message| match message {
-            Message::ArmState(state) => Some((state.armed, state.refusal)),
-            _ => None,
-        });
-        states.collect()
+        let states = all::<ArmState>(&std::mem::take(&mut self.heard));
+        let told = states.iter().map(|state| (state.armed, state.refusal));
+        told.collect()
     }
 }
 
@@ -80,12 +80,8 @@ fn aboard() -> (Bench, Laptop) {
 fn arm(laptop: &mut Laptop, bench: &mut Bench, session: u32) {
     laptop.send(bench, ArmRequest { session });
     laptop.run(bench, 2);
-    let challenge = laptop.heard.iter().find_map(|message| match message {
-        Message::ArmChallenge(challenge) => Some(challenge.challenge),
-        _ => None,
-    });
-    let answer = !challenge.expect("a challenge") ^ session;
-    laptop.send(bench, ArmConfirm { session, answer });
+    let challenge = all(&laptop.heard).pop().expect("a challenge");
+    laptop.send(bench, confirm(challenge, session));
     laptop.run(bench, 2);
     assert_eq!(laptop.arm_states(), [(1, ArmRefusal::None)]);
 }
@@ -201,9 +197,6 @@ fn rejected_frames_of_both_ports_are_watched_together() {
     bench.run(0.1);
     bench.keep_alive = true;
     assert!(bench.events().contains(&"frames_rejected"));
-    let logged = bench
-        .log
-        .iter()
-        .find(|entry| (entry.code, entry.parameter) == (112, 1));
-    assert!(logged.is_some(), "{:?}", bench.log);
+    let of_maintenance = |entry: &LogEntry| (entry.code, entry.parameter) == (112, 1);
+    assert!(bench.log.iter().any(of_maintenance), "{:?}", bench.log);
 }

@@ -12,11 +12,12 @@ mod watch;
 
 use std::time::{Duration, Instant};
 
-use protocol::message::{IoInput, TestSpeed};
+use protocol::message::IoInput;
 
+use crate::maintenance::{SESSION, test_speed};
 use crate::served::Unit;
 use damage::{Damager, Kind};
-use tester::{SESSION, Tester};
+use tester::Tester;
 
 /// Damaged frames on one connection, at most.
 const ROUND: u64 = 100_000;
@@ -185,14 +186,7 @@ fn damaged_frames_are_never_acted_on() {
 fn a_frame_that_is_acted_on_is_noticed() {
     let unit = Unit::serve();
     let mut tester = Tester::begin(&unit, true);
-    let request = TestSpeed {
-        session: SESSION,
-        channels: 3,
-        backward: 0,
-        speed_cms: 500,
-        accel_mms2: 0,
-    };
-    tester.scan(|tester, out| tester.pass_for_damaged(request, out));
+    tester.scan(|tester, out| tester.pass_for_damaged(test_speed(500), out));
     tester.scan(|tester, out| tester.pass_for_damaged(IoInput::default(), out));
     let faults = tester.end().faults;
     for part in [

@@ -1,15 +1,15 @@
 //! Orders of the wayside, and the train number keyed in at the cab, as frames.
 
-use ato_under_test::{Setup, Unit};
+use ato_under_test::Unit;
 use protocol::event::Event;
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::message::{
-    AtcToTcmsBits, CabEntries, Disarm, DoorSide, LogEntry, Message, Mode, ModeSwitch, NumberState,
-    OrderLacks, OrderState, Outputs, ReadLog, SelfTest, StatusBits, TrainLines, TrainOrder,
-    TwcOrders, TwcReport, TwcWayside,
+    AtcToTcmsBits, CabEntries, Disarm, DoorSide, Mode, ModeSwitch, NumberState, OrderLacks,
+    OrderState, Outputs, SelfTest, StatusBits, TrainLines, TrainOrder, TwcOrders, TwcReport,
+    TwcWayside,
 };
 
-use super::common::{Bench, config, departure, fault_from, line};
+use super::common::{Bench, departure, fault_from, line, setup};
 use super::maintenance::{SESSION, arm};
 
 const OWN: u16 = 8001;
@@ -72,11 +72,7 @@ impl Wayside {
             }
             self.bench.scan();
         }
-        let reports = self.bench.answers.iter().rev();
-        self.report = reports.into_iter().find_map(|answer| match answer {
-            Message::TwcReport(report) => Some(*report),
-            _ => None,
-        });
+        self.report = self.bench.last();
     }
 
     /// Gives an order for a second, and returns its state then.
@@ -90,18 +86,8 @@ impl Wayside {
         self.report.expect("orders are answered").order_state
     }
 
-    fn events(&mut self) -> Vec<LogEntry> {
-        self.bench.log.clear();
-        self.bench.send(ReadLog { from_index: 0 });
-        self.bench.run(2.0);
-        self.bench.log.clone()
-    }
-
     fn parameters(&mut self, event: Event) -> Vec<i32> {
-        let code = event.definition().code;
-        let entries = self.events();
-        let of_event = entries.iter().filter(|entry| entry.code == code);
-        of_event.map(|entry| entry.parameter).collect()
+        self.bench.parameters(event.definition().name)
     }
 
     fn hcr(&mut self, on: bool) {
@@ -141,8 +127,7 @@ fn onward(departure_given: bool) -> TwcWayside {
 fn a_wayside_that_gives_no_orders_hears_no_report() {
     let mut bench = Bench::new(&[]);
     bench.run(2.0);
-    let reports = |message: &&Message| matches!(message, Message::TwcReport(_));
-    assert_eq!(bench.answers.iter().filter(reports).count(), 0);
+    assert_eq!(bench.last::<TwcReport>(), None);
 }
 
 #[test]
@@ -381,18 +366,8 @@ fn who_was_put_away_is_put_away_after_a_power_up() {
         wayside.order(TrainOrder::PutAway);
         wayside.order(order);
         wayside.run(3.0);
-        let setup = Setup {
-            serial: "T-1".into(),
-            config: config(),
-            config_crc: 1,
-            line: line(),
-            tdb_crc: 2,
-            seed: 7,
-            faults: Vec::new(),
-        };
         let mut fresh = Wayside::new(&[]);
-        let before = std::mem::replace(&mut wayside.bench.unit, Unit::new(setup.clone()));
-        fresh.bench.unit = Unit::with_flash(setup, before.power_off());
+        fresh.bench.unit = Unit::with_flash(setup(&[]), wayside.bench.unit.power_off());
         fresh.bench.now = protocol::Instant::ZERO;
         fresh.bench.link = protocol::link::Link::new(protocol::link::End::Bench);
         fresh.bench.input.mode_switch = ModeSwitch::Driverless;

@@ -127,18 +127,12 @@ fn the_emergency_brake_is_released_only_by_a_press_while_it_may_be() {
     assert!(!bench.braking(), "by itself");
 }
 
-/// The parameter of an event in the log.
-fn parameter(bench: &mut Bench, name: &str) -> i32 {
-    let place = bench.events().iter().position(|event| *event == name);
-    bench.log[place.unwrap_or_else(|| panic!("no {name}"))].parameter
-}
-
 /// 55 km/h are 1528 cm/s, 63 are 1750.
 #[test]
 fn what_brought_the_emergency_brake_is_logged_with_its_size() {
     let mut bench = Bench::under("55", 63.0);
     assert!(bench.until(1.0, Bench::braking).is_some());
-    let excess_cms = parameter(&mut bench, "overspeed_eb");
+    let excess_cms = bench.parameters("overspeed_eb")[0];
     assert!((170..=222).contains(&excess_cms), "{excess_cms} cm/s");
 
     let mut bench = Bench::under("55", 60.0);
@@ -148,7 +142,7 @@ fn what_brought_the_emergency_brake_is_logged_with_its_size() {
     }
     bench.run(0.1);
     assert_eq!(bench.status.eb_cause, EbCause::ServiceBrakeIneffective);
-    let decel_mms2 = parameter(&mut bench, "service_brake_ineffective");
+    let decel_mms2 = bench.parameters("service_brake_ineffective")[0];
     assert!((90..=110).contains(&decel_mms2), "{decel_mms2} mm/s²");
 }
 
@@ -361,9 +355,7 @@ fn doors_are_enabled_only_aligned_on_the_right_side() {
 #[test]
 fn a_dead_tachometer_hides_no_rollback() {
     for speeds in [[0.0, -0.2], [-0.2, 0.0], [-0.2, -0.2]] {
-        let mut bench = Bench::new(&[]);
-        bench.code("25");
-        bench.run(1.0);
+        let mut bench = Bench::hearing("25", &[]);
         bench.rest();
         assert!(!bench.braking(), "{speeds:?}");
         bench.speeds = speeds;

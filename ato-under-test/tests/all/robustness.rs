@@ -2,16 +2,12 @@
 
 use crate::common::Bench;
 use proptest::prelude::*;
-use protocol::message::{DoorSide, ModeSwitch, Outputs, TrainLines};
+use protocol::message::{DoorSide, ModeSwitch, Outputs, TrainLines, TwcWayside};
 
 /// Something a careless or broken bench does.
 #[derive(Clone, Debug)]
 enum Act {
-    Code {
-        carrier_hz: u16,
-        rate_chz: u16,
-        level_mv: u16,
-    },
+    Code(u16, u16, u16),
     TableCode(usize),
     Speed([f64; 2]),
     Line(u16),
@@ -19,21 +15,25 @@ enum Act {
     Controller(i8),
     Marker(u8),
     Counts(u16, u16),
-    Station {
-        station: u16,
-        loop_id: u16,
-        side: u8,
-        departure: u8,
-    },
-    NoStation,
+    Station(Option<TwcWayside>),
     Io(bool),
     Bytes(Vec<u8>),
+}
+
+fn any_station((station, loop_id, side, departure): (u16, u16, u8, u8)) -> Act {
+    Act::Station(Some(TwcWayside {
+        station,
+        loop_id,
+        door_side: DoorSide::from_code(side),
+        departure,
+        ..crate::common::departure(&crate::common::line().sections[0])
+    }))
 }
 
 fn act() -> impl Strategy<Value = Act> {
     prop_oneof![
         1 => (any::<u16>(), any::<u16>(), any::<u16>())
-            .prop_map(|(carrier_hz, rate_chz, level_mv)| Act::Code { carrier_hz, rate_chz, level_mv }),
+            .prop_map(|(a, b, c)| Act::Code(a, b, c)),
         3 => (0usize..7).prop_map(Act::TableCode),
         3 => (-5.0f64..30.0).prop_map(|v| Act::Speed([v; 2])),
         1 => (-5.0f64..30.0, -5.0f64..30.0).prop_map(|(a, b)| Act::Speed([a, b])),
@@ -42,10 +42,8 @@ fn act() -> impl Strategy<Value = Act> {
         1 => any::<i8>().prop_map(Act::Controller),
         1 => any::<u8>().prop_map(Act::Marker),
         1 => (any::<u16>(), any::<u16>()).prop_map(|(a, b)| Act::Counts(a, b)),
-        1 => (820u16..826, 8230u16..8242, 0u8..5, 0u8..3).prop_map(
-            |(station, loop_id, side, departure)| Act::Station { station, loop_id, side, departure }
-        ),
-        1 => Just(Act::NoStation),
+        1 => (820u16..826, 8230u16..8242, 0u8..5, 0u8..3).prop_map(any_station),
+        1 => Just(Act::Station(None)),
         1 => any::<bool>().prop_map(Act::Io),
         1 => prop::collection::vec(any::<u8>(), 0..300).prop_map(Act::Bytes),
     ]
@@ -53,11 +51,7 @@ fn act() -> impl Strategy<Value = Act> {
 
 fn perform(bench: &mut Bench, act: &Act) {
     match act {
-        Act::Code {
-            carrier_hz,
-            rate_chz,
-            level_mv,
-        } => {
+        Act::Code(carrier_hz, rate_chz, level_mv) => {
             bench.input.carrier_hz = *carrier_hz;
             bench.input.code_rate_chz = *rate_chz;
             bench.input.level_mv = *level_mv;
@@ -75,22 +69,7 @@ fn perform(bench: &mut Bench, act: &Act) {
         Act::Controller(notch) => bench.input.controller = *notch,
         Act::Marker(marker) => bench.marker(*marker),
         Act::Counts(one, two) => bench.jump_counts(*one, *two),
-        Act::Station {
-            station,
-            loop_id,
-            side,
-            departure,
-        } => {
-            let section = &crate::common::line().sections[0];
-            bench.station = Some(protocol::message::TwcWayside {
-                station: *station,
-                loop_id: *loop_id,
-                door_side: DoorSide::from_code(*side),
-                departure: *departure,
-                ..crate::common::departure(section)
-            });
-        }
-        Act::NoStation => bench.station = None,
+        Act::Station(station) => bench.station = *station,
         Act::Io(on) => bench.io = *on,
         Act::Bytes(bytes) => bench.unit.receive(bytes),
     }

@@ -1,12 +1,11 @@
 //! The self-test that an armed tester asks for.
 
-use crate::common::{Bench, fault, fault_from};
-use crate::maintenance::{SESSION, answer_to, armed_with};
+use crate::common::{Bench, all, fault, fault_from};
+use crate::maintenance::{CODE_75, SESSION, answer_to, armed_with};
 use protocol::Instant;
 use protocol::injection::{Effect, FaultMode, Occurrence, Place};
 use protocol::message::{
-    Answer, ArmRefusal, Disarm, Message, Outputs, RunSelfTest, SelfTest, SelfTestEnd, SelfTestItem,
-    TestCode,
+    Answer, ArmRefusal, ArmState, Disarm, Outputs, RunSelfTest, SelfTest, SelfTestEnd, SelfTestItem,
 };
 
 const REQUEST: RunSelfTest = RunSelfTest { session: SESSION };
@@ -23,20 +22,14 @@ fn held(faults: &[FaultMode]) -> Bench {
 /// Asks for a self-test and waits for its end.
 fn tested(bench: &mut Bench) -> (Vec<SelfTestItem>, SelfTestEnd) {
     assert_eq!(answer_to(bench, REQUEST), Answer::Accepted);
-    let ended = |bench: &Bench| matches!(bench.answers.last(), Some(Message::SelfTestEnd(_)));
+    let ended = |bench: &Bench| bench.last::<SelfTestEnd>().is_some();
     bench.until(2.0, ended).expect("an end");
-    let items = bench.answers.iter().filter_map(|answer| match answer {
-        Message::SelfTestItem(item) => Some(*item),
-        _ => None,
-    });
-    let items: Vec<_> = items.collect();
-    let Some(Message::SelfTestEnd(end)) = bench.answers.last() else {
-        panic!("{:?}", bench.answers);
-    };
+    let items: Vec<SelfTestItem> = all(&bench.answers);
+    let end: SelfTestEnd = bench.last().expect("its end");
     let failed = items.iter().filter(|item| item.passed == 0);
     let failed = failed.fold(SelfTest::empty(), |all, item| all | item.item);
     assert_eq!(failed, end.failed);
-    (items, *end)
+    (items, end)
 }
 
 /// A fault that sets in when the tester is armed.
@@ -47,13 +40,7 @@ fn later(place: Place, effect: Effect) -> FaultMode {
 #[test]
 fn a_sound_unit_passes_each_item_by_name_with_its_value_as_often_as_asked() {
     let mut bench = held(&[]);
-    let code = TestCode {
-        session: SESSION,
-        carrier_hz: 3000,
-        code_rate_chz: 1000,
-        level_mv: 500,
-    };
-    answer_to(&mut bench, code);
+    answer_to(&mut bench, CODE_75);
     bench.run(1.0);
     let events = bench.events();
     for _ in 0..5 {
@@ -198,12 +185,8 @@ fn it_needs_an_armed_session_and_ends_with_it() {
     assert_eq!(answer_to(&mut bench, REQUEST), Answer::Accepted);
     bench.send(Disarm { session: SESSION });
     bench.run(2.0);
-    let lapsed = |answer: &Message| match answer {
-        Message::ArmState(state) => state.refusal == ArmRefusal::Disarmed,
-        _ => false,
-    };
-    assert!(bench.answers.iter().any(lapsed));
-    let results = |answer: &Message| matches!(answer, Message::SelfTestItem(_));
-    assert!(!bench.answers.iter().any(results), "{:?}", bench.answers);
+    let lapsed: ArmState = bench.last().expect("the notice");
+    assert_eq!(lapsed.refusal, ArmRefusal::Disarmed);
+    assert_eq!(bench.last::<SelfTestItem>(), None, "{:?}", bench.answers);
     assert!(bench.has(Outputs::EB_RELAY), "the relay is not kept off");
 }

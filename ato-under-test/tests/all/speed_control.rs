@@ -30,9 +30,15 @@ fn as_printed(unit: GainUnit) -> AtoConfig {
     config
 }
 
+fn with_controller(controller: ControllerKind) -> AtoConfig {
+    AtoConfig {
+        controller,
+        ..config()
+    }
+}
+
 fn run(kind: ControllerKind, run: Run, seconds: f64, cruise: impl Fn(f64) -> f64) -> Vec<Row> {
-    let mut config = config();
-    config.controller = kind;
+    let config = with_controller(kind);
     drive(&mut *controller(&config), &config, run, seconds, cruise)
 }
 
@@ -277,8 +283,7 @@ proptest! {
     #[test]
     fn any_input_gives_a_force(situations in prop::collection::vec(any_situation(), 1..40)) {
         for kind in ControllerKind::ALL {
-            let mut config = config();
-            config.controller = kind;
+            let config = with_controller(kind);
             let mut tried = controller(&config);
             for input in &situations {
                 let demand = tried.step(input);
@@ -308,8 +313,7 @@ proptest! {
             _ => bad.cruise_mps = 1e12,
         }
         for kind in ControllerKind::ALL {
-            let mut config = config();
-            config.controller = kind;
+            let config = with_controller(kind);
             let (mut with, mut without) = (controller(&config), controller(&config));
             with.step(&sound());
             without.step(&sound());

@@ -31,9 +31,7 @@ fn say(bench: &mut Bench, stop: Stop) {
 
 /// Standing under a stop that a code has given way to.
 fn standing_under(stop: Stop, faults: &[FaultMode]) -> Bench {
-    let mut bench = Bench::new(faults);
-    bench.code("55");
-    bench.run(0.6);
+    let mut bench = Bench::hearing("55", faults);
     say(&mut bench, stop);
     bench.run(1.5);
     bench
@@ -137,10 +135,6 @@ fn a_dead_guard_lets_a_train_creep() {
 /// A run in which the service brake has been asked for.
 type Brought = (FsbCause, fn() -> Bench);
 
-fn manual_overspeed() -> Bench {
-    Bench::under("45", 49.0)
-}
-
 fn stopped_by_code_0() -> Bench {
     let mut bench = Bench::under("25", 5.0);
     bench.code("0");
@@ -181,10 +175,6 @@ fn silence_between_loops_brakes_nobody_and_in_the_next_loop_it_does() {
     assert_eq!(journey.bench.status.fsb_cause, FsbCause::TwcLost);
 }
 
-fn tcms_lost() -> Bench {
-    on_the_way(&[], |bench| bench.tcms = None)
-}
-
 fn not_permitted() -> Bench {
     on_the_way(&[], |bench| {
         let tcms = bench.tcms.as_mut().expect("TCMS speaks");
@@ -197,11 +187,13 @@ fn ato_failed() -> Bench {
 }
 
 const CAUSES: [Brought; 7] = [
-    (FsbCause::Overspeed, manual_overspeed),
+    (FsbCause::Overspeed, || Bench::under("45", 49.0)),
     (FsbCause::StopCode, stopped_by_code_0),
     (FsbCause::NoCode, code_lost),
     (FsbCause::TwcLost, twc_lost),
-    (FsbCause::TcmsLost, tcms_lost),
+    (FsbCause::TcmsLost, || {
+        on_the_way(&[], |bench| bench.tcms = None)
+    }),
     (FsbCause::AtoFailed, ato_failed),
     (FsbCause::NotPermitted, not_permitted),
 ];
@@ -288,15 +280,11 @@ fn an_automatic_run_goes_on_after_a_stop() {
     for (stop, _) in STOPS {
         let mut journey = Journey::new(&[]).until_position(300.0);
         say(&mut journey.bench, stop);
-        for _ in 0..4_000 {
-            journey.step();
-        }
+        (0..4_000).for_each(|_| journey.step());
         assert_eq!(journey.v_mps, 0.0, "{stop:?}");
         assert!(journey.bench.has(Outputs::FSB) && !journey.bench.braking());
         journey.bench.code("65");
-        for _ in 0..500 {
-            journey.step();
-        }
+        (0..500).for_each(|_| journey.step());
         assert!(journey.v_mps > 1.0, "{stop:?}: it stands");
         let mut journey = journey.run();
         let error_m = journey.stop_error_m();

@@ -1,16 +1,16 @@
 //! Promises of the unit while a tester is armed: the train stands and stays braked, whatever test signals say, and
 //! no test signal is left afterwards.
 
-use crate::common::{Bench, departure, fault, line, test_station};
-use crate::maintenance::{SESSION, arm};
+use crate::common::{Bench, all, confirm, departure, fault, line, signal_of, test_station};
+use crate::maintenance::{CODE_75, SESSION, arm, test_speed};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::message::{
-    ArmConfirm, ArmRefusal, ArmRequest, AtcToTcmsBits, Disarm, DoorSide, EbCause, Message, Mode,
+    ArmRefusal, ArmRequest, ArmState, AtcToTcmsBits, Disarm, DoorSide, EbCause, Message, Mode,
     ModeSwitch, Outputs, Status, StatusBits, Subscribe, TestCode, TestMarker, TestRelease,
-    TestSignals, TestSpeed, TestTwc, TrainLines, TwcWayside,
+    TestSignals, TestSpeed, TestTwc, TrainLines, TrainState, TwcWayside,
 };
 
 const DOORS: Outputs = Outputs::DOOR_ENABLE_LEFT.union(Outputs::DOOR_ENABLE_RIGHT);
@@ -31,23 +31,11 @@ fn armed(faults: &[FaultMode]) -> Bench {
 }
 
 fn test_code(name: &str) -> TestCode {
-    let config = crate::common::config();
-    let code = config.codes.iter().find(|code| code.name == name).unwrap();
+    let (carrier_hz, code_rate_chz) = signal_of(name);
     TestCode {
-        session: SESSION,
-        carrier_hz: code.carrier_hz as u16,
-        code_rate_chz: (code.rate_hz * 100.0) as u16,
-        level_mv: 500,
-    }
-}
-
-fn test_speed(speed_cms: u16) -> TestSpeed {
-    TestSpeed {
-        session: SESSION,
-        channels: 3,
-        backward: 0,
-        speed_cms,
-        accel_mms2: 0,
+        carrier_hz,
+        code_rate_chz,
+        ..CODE_75
     }
 }
 
@@ -111,11 +99,6 @@ fn arming_is_refused_with_its_reason() {
     released.run(0.3);
     released.welded = true;
     assert_eq!(arm(&mut released), Some(ArmRefusal::BrakesReleased));
-
-    let mut unkeyed = keyed(&[]);
-    unkeyed.input.lines.remove(TrainLines::MAINTENANCE_KEY);
-    unkeyed.run(0.1);
-    assert_eq!(arm(&mut unkeyed), Some(ArmRefusal::KeyOff));
 }
 
 /// An open line proves nothing on a train whose emergency brake is cut out, and TCMS that is there says so.
@@ -218,11 +201,8 @@ fn motion_code_mode_and_key_end_it_with_the_emergency_brake() {
         bench.speeds = [0.0; 2];
         bench.run(0.1);
         assert_eq!(bench.status.eb_cause, EbCause::TestMode, "{refusal:?}");
-        let lapsed = bench.answers.iter().rev().find_map(|answer| match answer {
-            Message::ArmState(state) => Some(state.refusal),
-            _ => None,
-        });
-        assert_eq!(lapsed, Some(refusal));
+        let lapsed: ArmState = bench.last().expect("the notice");
+        assert_eq!(lapsed.refusal, refusal);
         assert!(bench.events().contains(&"test_mode_broken"), "{refusal:?}");
         bench.run(1.0);
         assert!(bench.braking(), "until it is acknowledged");
@@ -276,75 +256,81 @@ fn a_disarmed_unit_knows_what_it_knew_before() {
 /// Something a tester, a cab or a shunter does.
 #[derive(Clone, Debug)]
 enum Act {
-    Code(u16, u16, u16),
-    TableCode(usize),
-    Speed(u8, u8, u16),
-    Station(u16, u16, u8, u8),
-    Marker(u8),
-    Release(u16),
+    Ask(Message),
     Line(u8),
     Switch(u8),
     Lever(i8),
     Wheels(f64, f64),
     RailCode(usize),
     Tcms(bool),
-    Arm,
-    Disarm,
     Silence(bool),
     Wait(u8),
 }
 
+fn ask(message: impl Into<Message>) -> Act {
+    Act::Ask(message.into())
+}
+
+fn code_name(index: usize) -> String {
+    crate::common::config().codes[index].name.clone()
+}
+
+fn any_code((carrier_hz, code_rate_chz, level_mv): (u16, u16, u16)) -> Act {
+    ask(TestCode {
+        session: SESSION,
+        carrier_hz,
+        code_rate_chz,
+        level_mv,
+    })
+}
+
+fn any_speed((channels, backward, speed_cms): (u8, u8, u16)) -> Act {
+    ask(TestSpeed {
+        channels,
+        backward,
+        ..test_speed(speed_cms)
+    })
+}
+
+fn any_station((station, loop_id, side, departure): (u16, u16, u8, u8)) -> Act {
+    ask(TestTwc {
+        station,
+        loop_id,
+        door_side: DoorSide::from_code(side),
+        departure,
+        ..test_departure()
+    })
+}
+
 fn act() -> impl Strategy<Value = Act> {
+    let session = SESSION;
+    let release = move |bits| {
+        let signals = TestSignals::from_bits_retain(bits);
+        ask(TestRelease { session, signals })
+    };
     prop_oneof![
-        1 => (any::<u16>(), any::<u16>(), any::<u16>()).prop_map(|(a, b, c)| Act::Code(a, b, c)),
-        3 => (0usize..7).prop_map(Act::TableCode),
-        3 => (0u8..5, 0u8..3, 0u16..3200).prop_map(|(a, b, c)| Act::Speed(a, b, c)),
-        3 => (820u16..826, 8230u16..8242, 0u8..5, 0u8..3).prop_map(|(a, b, c, d)| Act::Station(a, b, c, d)),
-        1 => (0u8..6).prop_map(Act::Marker),
-        1 => (0u16..16).prop_map(Act::Release),
+        1 => (any::<u16>(), any::<u16>(), any::<u16>()).prop_map(any_code),
+        3 => (0usize..7).prop_map(|index| ask(test_code(&code_name(index)))),
+        3 => (0u8..5, 0u8..3, 0u16..3200).prop_map(any_speed),
+        3 => (820u16..826, 8230u16..8242, 0u8..5, 0u8..3).prop_map(any_station),
+        1 => (0u8..6).prop_map(move |marker| ask(TestMarker { session, marker })),
+        1 => (0u16..16).prop_map(release),
         2 => (0u8..9).prop_map(Act::Line),
         1 => (0u8..7).prop_map(Act::Switch),
         1 => (-8i8..5).prop_map(Act::Lever),
         1 => (-3.0f64..3.0, -3.0f64..3.0).prop_map(|(a, b)| Act::Wheels(a, b)),
         1 => (0usize..7).prop_map(Act::RailCode),
         1 => any::<bool>().prop_map(Act::Tcms),
-        2 => Just(Act::Arm),
-        1 => Just(Act::Disarm),
+        2 => Just(ask(ArmRequest { session })),
+        1 => Just(ask(Disarm { session })),
         1 => any::<bool>().prop_map(Act::Silence),
         4 => (1u8..40).prop_map(Act::Wait),
     ]
 }
 
 fn perform(bench: &mut Bench, act: &Act) {
-    let config = crate::common::config;
     match *act {
-        Act::Code(carrier_hz, code_rate_chz, level_mv) => bench.send(TestCode {
-            session: SESSION,
-            carrier_hz,
-            code_rate_chz,
-            level_mv,
-        }),
-        Act::TableCode(index) => bench.send(test_code(&config().codes[index].name)),
-        Act::Speed(channels, backward, speed_cms) => bench.send(TestSpeed {
-            channels,
-            backward,
-            ..test_speed(speed_cms)
-        }),
-        Act::Station(station, loop_id, side, departure) => bench.send(TestTwc {
-            station,
-            loop_id,
-            door_side: DoorSide::from_code(side),
-            departure,
-            ..test_departure()
-        }),
-        Act::Marker(marker) => bench.send(TestMarker {
-            session: SESSION,
-            marker,
-        }),
-        Act::Release(bits) => bench.send(TestRelease {
-            session: SESSION,
-            signals: TestSignals::from_bits_retain(bits),
-        }),
+        Act::Ask(message) => bench.send(message),
         Act::Line(bit) => bench
             .input
             .lines
@@ -352,10 +338,8 @@ fn perform(bench: &mut Bench, act: &Act) {
         Act::Switch(code) => bench.input.mode_switch = ModeSwitch::from_code(code),
         Act::Lever(notch) => bench.input.controller = notch,
         Act::Wheels(one, two) => bench.speeds = [one, two],
-        Act::RailCode(index) => bench.code(&config().codes[index].name),
+        Act::RailCode(index) => bench.code(&code_name(index)),
         Act::Tcms(obeys) => bench.tcms_obeys = obeys,
-        Act::Arm => bench.send(ArmRequest { session: SESSION }),
-        Act::Disarm => bench.send(Disarm { session: SESSION }),
         Act::Silence(on) => bench.keep_alive = !on,
         Act::Wait(_) => {}
     }
@@ -371,15 +355,8 @@ fn stays_held(bench: &mut Bench, acts: &[Act]) -> Result<(), String> {
         };
         for _ in 0..scans {
             bench.scan();
-            let challenges: Vec<_> = bench.answers.drain(..).collect();
-            for answer in challenges {
-                if let Message::ArmChallenge(asked) = answer {
-                    let answer = !asked.challenge ^ SESSION;
-                    bench.send(ArmConfirm {
-                        session: SESSION,
-                        answer,
-                    });
-                }
+            for asked in all(&std::mem::take(&mut bench.answers)) {
+                bench.send(confirm(asked, SESSION));
             }
             if bench.armed {
                 held(bench).map_err(|what| format!("{what} after {act:?}"))?;
@@ -516,7 +493,7 @@ fn doors_are_enabled_for_the_tester_and_not_for_the_train() {
         bench.send(Subscribe { changes: 0 });
         bench.run(0.1);
         assert!(bench.status.bits.contains(StatusBits::ALIGNED));
-        let state = bench.train_state().expect("TrainState");
+        let state: TrainState = bench.last().expect("TrainState");
         assert!(state.asked.contains(Outputs::DOOR_ENABLE_RIGHT));
         assert_eq!(bench.output.outputs.intersects(DOORS), for_train);
     }

@@ -1,11 +1,10 @@
 //! Signals that leave the TEST board, and answers to its TEST modem through the TWC antenna.
 
 use crate::common::{Bench, departure, fault, line, test_station};
-use crate::maintenance::{SESSION, answer_to, armed_with};
+use crate::maintenance::{CODE_75, SESSION, answer_to, armed_with, test_speed};
 use protocol::injection::{Effect, FaultMode, Place};
 use protocol::message::{
-    Answer, Message, Subscribe, TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, TestTwc,
-    TrainState,
+    Answer, Subscribe, TestMarker, TestRelease, TestSignals, TestTwc, TrainState,
 };
 
 /// Armed, with these faults, the loop silent, subscribed to `TrainState`.
@@ -20,11 +19,7 @@ fn train_state(bench: &mut Bench) -> TrainState {
     bench.answers.clear();
     bench.send(Subscribe { changes: 0 });
     bench.run(0.1);
-    let mut states = bench.answers.iter().filter_map(|answer| match answer {
-        Message::TrainState(state) => Some(*state),
-        _ => None,
-    });
-    states.next_back().expect("a state in 100 ms")
+    bench.last().expect("a state in 100 ms")
 }
 
 fn station() -> TestTwc {
@@ -85,12 +80,6 @@ fn a_late_frame_of_a_test_that_is_over_is_dropped() {
 
 #[test]
 fn carrier_rate_and_level_are_measured_where_they_leave() {
-    let asked = TestCode {
-        session: SESSION,
-        carrier_hz: 3000,
-        code_rate_chz: 1000,
-        level_mv: 500,
-    };
     let cases = [
         (None, (3000, 1000, 500)),
         (
@@ -108,11 +97,11 @@ fn carrier_rate_and_level_are_measured_where_they_leave() {
     ];
     for (wrong, measured) in cases {
         let faults: Vec<_> = wrong
-            .iter()
-            .map(|(place, effect)| fault(*place, *effect))
+            .map(|(place, effect)| fault(place, effect))
+            .into_iter()
             .collect();
         let mut bench = bench(&faults);
-        assert_eq!(answer_to(&mut bench, asked), Answer::Accepted);
+        assert_eq!(answer_to(&mut bench, CODE_75), Answer::Accepted);
         let seen = &bench.status;
         let seen = (
             seen.test_carrier_hz,
@@ -127,13 +116,7 @@ fn carrier_rate_and_level_are_measured_where_they_leave() {
 fn speed_is_that_of_the_pulses_which_leave() {
     for (factor, cms) in [(1.0, 1000), (1.05, 1050), (0.5, 500)] {
         let mut bench = bench(&[fault(Place::TestSpeed, Effect::Gain { factor })]);
-        let speed = TestSpeed {
-            session: SESSION,
-            channels: 3,
-            speed_cms: 1000,
-            ..TestSpeed::default()
-        };
-        answer_to(&mut bench, speed);
+        answer_to(&mut bench, test_speed(1000));
         bench.run(4.0);
         assert!(
             bench.status.test_speed_cms.abs_diff(cms) <= 1,

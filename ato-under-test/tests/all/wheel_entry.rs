@@ -22,13 +22,6 @@ fn at_20_kmh(bench: &mut Bench) -> f64 {
     f64::from(bench.output.speed_cms) * 0.036
 }
 
-fn standing() -> Bench {
-    let mut bench = Bench::new(&[]);
-    bench.code("75");
-    bench.run(1.0);
-    bench
-}
-
 #[test]
 fn the_same_pulses_are_another_speed_from_a_wheel_of_another_diameter() {
     for (diameter_mm, expected_kmh) in [
@@ -38,7 +31,7 @@ fn the_same_pulses_are_another_speed_from_a_wheel_of_another_diameter() {
         (866, 20.0),
         (0, 20.0),
     ] {
-        let mut bench = standing();
+        let mut bench = Bench::hearing("75", &[]);
         key_in(&mut bench, diameter_mm);
         let shown = at_20_kmh(&mut bench);
         assert!(
@@ -50,7 +43,7 @@ fn the_same_pulses_are_another_speed_from_a_wheel_of_another_diameter() {
 
 #[test]
 fn one_frame_and_one_keyed_in_under_way_change_nothing() {
-    let mut bench = standing();
+    let mut bench = Bench::hearing("75", &[]);
     bench.send(WheelEntry {
         diameter_01mm: 8000,
     });
@@ -66,9 +59,7 @@ fn one_frame_and_one_keyed_in_under_way_change_nothing() {
 
 #[test]
 fn without_its_guard_a_unit_takes_any() {
-    let mut bench = Bench::new(&[fault(Place::WheelGuard, Effect::Dead)]);
-    bench.code("75");
-    bench.run(1.0);
+    let mut bench = Bench::hearing("75", &[fault(Place::WheelGuard, Effect::Dead)]);
     key_in(&mut bench, 430);
     let shown = at_20_kmh(&mut bench);
     assert!((shown - 10.0).abs() < 0.2, "{shown}");

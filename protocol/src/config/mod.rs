@@ -63,7 +63,7 @@ pub struct ReceiverConfig {
     /// Nominal level, mV.
     pub level_nominal_mv: f64,
     /// A code is taken while no other in the antenna comes nearer to its level than this, dB.
-    #[serde(default = "apart_db")]
+    #[serde(default = "way::thousandths::<4000>")]
     pub apart_db: f64,
     /// By how much the code shifts the carrier up and down, Hz; 0 = it keys the carrier on and off.
     #[serde(default)]
@@ -121,18 +121,8 @@ pub struct OverspeedConfig {
     /// Limit in emergency mode, km/h.
     pub emergency_kmh: f64,
     /// Speed above which a jog to the stop point is braked, km/h.
-    #[serde(default = "jog_kmh")]
+    #[serde(default = "way::thousandths::<5000>")]
     pub jog_kmh: f64,
-}
-
-/// Value of `sg100`, for configurations without the key.
-const fn apart_db() -> f64 {
-    4.0
-}
-
-/// Value of `sg100`, for configurations without the key.
-const fn jog_kmh() -> f64 {
-    5.0
 }
 
 /// Supervision of the doors.
@@ -144,13 +134,8 @@ pub struct DoorConfig {
     /// How long doors must be seen open while moving, or on a side that is not enabled, ms.
     pub open_moving_ms: u32,
     /// How long the lines of the doors must contradict each other, ms.
-    #[serde(default = "lines_ms")]
+    #[serde(default = "way::whole::<500>")]
     pub lines_ms: u32,
-}
-
-/// Value of `sg100`, for configurations without the key.
-const fn lines_ms() -> u32 {
-    500
 }
 
 /// The train that the unit is in.

@@ -100,12 +100,12 @@ pub struct MarkerConfig {
 }
 
 /// Value of a key that a configuration may go without, as `sg100` has it: so many thousandths.
-const fn thousandths<const N: u32>() -> f64 {
+pub(super) const fn thousandths<const N: u32>() -> f64 {
     N as f64 / 1000.0
 }
 
 /// Value of a key that a configuration may go without, as `sg100` has it: a whole number.
-const fn whole<const N: u32>() -> u32 {
+pub(super) const fn whole<const N: u32>() -> u32 {
     N
 }
 

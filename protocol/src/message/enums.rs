@@ -116,6 +116,13 @@ wire_enum! {
     }
 }
 
+impl ModeSwitch {
+    /// A position at which ATO may drive: automatic or driverless.
+    pub const fn is_automatic(self) -> bool {
+        matches!(self, Self::Automatic | Self::Driverless)
+    }
+}
+
 wire_enum! {
     /// Running mode ordered by the wayside [S0 §3.1.1].
     RunningMode {

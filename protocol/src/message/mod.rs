@@ -62,12 +62,7 @@ impl Channel {
 
     /// Number on the wire, 1 to 4.
     pub const fn code(self) -> u8 {
-        match self {
-            Self::Ptu => 1,
-            Self::Io => 2,
-            Self::Tcms => 3,
-            Self::Twc => 4,
-        }
+        self as u8 + 1
     }
 
     /// The channel of a wire number.
@@ -183,6 +178,17 @@ macro_rules! messages {
 
         $( impl From<$name> for Message {
             fn from(message: $name) -> Self { Self::$name(message) }
+        }
+
+        impl TryFrom<Message> for $name {
+            type Error = ();
+
+            fn try_from(message: Message) -> Result<Self, ()> {
+                match message {
+                    Message::$name(message) => Ok(message),
+                    _ => Err(()),
+                }
+            }
         } )*
 
         /// Every message.

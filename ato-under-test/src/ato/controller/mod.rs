@@ -6,6 +6,7 @@
 //! granted.
 
 mod fuzzy;
+mod input;
 mod integral;
 mod pi;
 mod plausibility;
@@ -18,57 +19,15 @@ use core::fmt::Debug;
 
 use protocol::config::{AtoConfig, ControllerKind};
 
-use super::profile::{Reference, ReferenceGenerator, ReferenceInputs, Setpoint};
+use super::profile::{Reference, ReferenceGenerator, Setpoint};
 use plausibility::PlausibilityCheck;
 
 pub use fuzzy::Fuzzy;
+pub use input::{ControllerInput, Demand};
 pub use pi::Pi;
 pub use pole_placement::{Gains, place};
 pub use pss::Pss;
 pub use servo::Servo;
-
-/// Inputs of a controller in each 50 ms cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ControllerInput {
-    /// Speed to run at: the most restrictive of limit and order, m/s.
-    pub cruise_mps: f64,
-    /// Speed at which the coming effort will meet the train, m/s.
-    pub speed_mps: f64,
-    /// Acceleration then, m/s².
-    pub accel_mps2: f64,
-    /// Distance to the stop point then, m; `None` = not known.
-    pub to_stop_m: Option<f64>,
-    /// Distance from each marker to the stop point, m.
-    pub markers_to_stop_m: [f64; 4],
-    /// Mass to be accelerated, kg.
-    pub mass_kg: f64,
-    /// Deceleration the full brake has on the steepest descent of the approach, m/s².
-    pub brake_mps2: f64,
-    /// Force granted for the last demand, N, feed-forward taken off again.
-    pub granted_n: f64,
-}
-
-impl From<&ControllerInput> for ReferenceInputs {
-    fn from(input: &ControllerInput) -> Self {
-        Self {
-            cruise_mps: input.cruise_mps,
-            train: Setpoint {
-                speed_mps: input.speed_mps,
-                accel_mps2: input.accel_mps2,
-            },
-            to_stop_m: input.to_stop_m,
-        }
-    }
-}
-
-/// Demand of a controller.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Demand {
-    /// Target speed now, m/s.
-    pub target_mps: f64,
-    /// Force on the train, powering positive, N.
-    pub force_n: f64,
-}
 
 /// Turns a situation into a demand.
 pub trait SpeedController: Debug + Send + CloneBoxed {
@@ -119,7 +78,13 @@ impl ProfileFollower {
     fn reference(&mut self, input: &ControllerInput) -> Result<Reference, Demand> {
         match self.plausibility.brake(input) {
             Some(brake) => Err(brake),
-            None => Ok(self.generator.step(input.into())),
+            None => {
+                let train = Setpoint {
+                    speed_mps: input.speed_mps,
+                    accel_mps2: input.accel_mps2,
+                };
+                Ok((self.generator).step(input.cruise_mps, train, input.to_stop_m))
+            }
         }
     }
 

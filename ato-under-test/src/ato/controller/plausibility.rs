@@ -2,7 +2,7 @@
 
 use protocol::config::AtoConfig;
 
-use super::{ControllerInput, Demand};
+use super::input::{ControllerInput, Demand};
 
 /// Speed of sound, m/s: no train is faster, and no sum of such speeds leaves the range of numbers.
 const FASTEST_MPS: f64 = 340.0;

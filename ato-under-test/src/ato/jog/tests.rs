@@ -3,10 +3,19 @@
 use protocol::Random;
 
 use super::*;
-use crate::ato::tests::config;
-use crate::with::with;
+use crate::for_tests::{sg100, with};
 
 const MASS_KG: f64 = 300e3;
+/// A train that stands 1 m past its stop point and may go back.
+const PAST: JogInputs = JogInputs {
+    drives: true,
+    stands: true,
+    may_go: true,
+    to_stop_m: Some(-1.0),
+    aligned_m: 0.3,
+    last_marker: true,
+    jogs: true,
+};
 
 /// A train whose effort follows with a lag, brakes that give more or less, and a gradient that ATO does not know.
 struct Train {
@@ -27,7 +36,7 @@ impl Train {
     fn new(to_stop_m: f64) -> Self {
         Self {
             jog: Jog::default(),
-            config: config().jog,
+            config: sg100().ato.jog,
             to_stop_m,
             speed_mps: 0.0,
             accel_mps2: 0.0,
@@ -44,13 +53,10 @@ impl Train {
         let dt = CYCLE.as_secs();
         let outcome = self.jog.step(
             &JogInputs {
-                drives: true,
                 stands: self.stood_s >= 0.5,
                 may_go: self.may_go,
                 to_stop_m: Some(self.to_stop_m),
-                aligned_m: 0.3,
-                last_marker: true,
-                jogs: true,
+                ..PAST
             },
             &self.config,
         );
@@ -148,27 +154,18 @@ fn it_waits_until_the_train_may_go() {
 
 #[test]
 fn what_it_cannot_reach_it_gives_up_at_once() {
-    let near = JogInputs {
-        drives: true,
-        stands: true,
-        may_go: true,
-        to_stop_m: Some(-1.0),
-        aligned_m: 0.3,
-        last_marker: true,
-        jogs: true,
-    };
-    let far = with(near, |it| it.to_stop_m = Some(-5.1));
-    let unproved = with(near, |it| it.last_marker = false);
-    let dead = with(near, |it| it.jogs = false);
+    let far = with(PAST, |it| it.to_stop_m = Some(-5.1));
+    let unproved = with(PAST, |it| it.last_marker = false);
+    let dead = with(PAST, |it| it.jogs = false);
     for (inputs, failed_m) in [(far, Some(-5.1)), (unproved, None), (dead, Some(-1.0))] {
         let mut jog = Jog::default();
-        let outcome = jog.step(&inputs, &config().jog);
+        let outcome = jog.step(&inputs, &sg100().ato.jog);
         assert_eq!(outcome.failed_m, failed_m, "{inputs:?}");
         assert!(outcome.ended && jog.gave_up);
     }
     // Before the stop point an ordinary run leads on.
-    let short = with(near, |it| it.to_stop_m = Some(5.1));
+    let short = with(PAST, |it| it.to_stop_m = Some(5.1));
     let mut jog = Jog::default();
-    assert_eq!(jog.step(&short, &config().jog), JogOutcome::default());
+    assert_eq!(jog.step(&short, &sg100().ato.jog), JogOutcome::default());
     assert!(!jog.acts());
 }

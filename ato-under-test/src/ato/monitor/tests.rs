@@ -2,16 +2,14 @@
 
 use alloc::vec::Vec;
 
-use protocol::line::Line;
 use protocol::message::{Mode, RunningMode};
 
 use super::*;
-use crate::ato::{Checks, tests::config};
+use crate::ato::{Checks, TrainReport};
+use crate::for_tests::{line8, sg100};
 
 /// A cycle of a run at 10 m/s in section 61, and the monitor's own inputs.
-fn with_run(then: impl FnOnce(AtoInputs<'_>, MonitorInputs)) {
-    let line = include_str!("../../../../scripts/lines/line8.toml");
-    let line = Line::from_toml(line).unwrap();
+fn run() -> (AtoInputs<'static>, MonitorInputs) {
     let inputs = AtoInputs {
         mode: Mode::AutomaticRun,
         limit: Speed::from_mps(18.0),
@@ -19,7 +17,7 @@ fn with_run(then: impl FnOnce(AtoInputs<'_>, MonitorInputs)) {
         heard_within_s: 1.0,
         fixed_speed: None,
         running_mode: RunningMode::Normal,
-        section: line.section(61),
+        section: line8().section(61),
         position_m: 100.0,
         ahead_m: 0.0,
         aligned_m: 0.3,
@@ -39,20 +37,18 @@ fn with_run(then: impl FnOnce(AtoInputs<'_>, MonitorInputs)) {
         stands: false,
         arrived: false,
     };
-    then(inputs, on);
+    (inputs, on)
 }
 
 /// Time after which a speed that stays the same is found absurd, within 30 s.
 fn frozen_after_s(asked_mps2: f64) -> Option<f64> {
-    let mut found = None;
-    with_run(|inputs, on| {
-        let on = MonitorInputs { asked_mps2, ..on };
-        let mut monitor = Monitor::default();
-        found = (1..=600).find(|_| {
-            let findings = monitor.step(&inputs, on, &config());
-            assert_eq!(findings.not_following_mps, None);
-            findings.absurd == AbsurdInputs::FROZEN_SPEED
-        });
+    let (inputs, on) = run();
+    let on = MonitorInputs { asked_mps2, ..on };
+    let mut monitor = Monitor::default();
+    let found = (1..=600).find(|_| {
+        let findings = monitor.step(&inputs, on, &sg100().ato);
+        assert_eq!(findings.not_following_mps, None);
+        findings.absurd == AbsurdInputs::FROZEN_SPEED
     });
     found.map(|step| f64::from(step) * CYCLE.as_secs())
 }
@@ -60,16 +56,14 @@ fn frozen_after_s(asked_mps2: f64) -> Option<f64> {
 /// Absurd inputs found in a train that inches at 0.3 m/s and then has these speeds, m/s, cycle by
 /// cycle.
 fn found_inching(speeds_mps: &[f64]) -> AbsurdInputs {
-    let mut absurd = AbsurdInputs::empty();
-    with_run(|inputs, on| {
-        let mut monitor = Monitor::default();
-        for &speed_mps in [0.3, 0.3].iter().chain(speeds_mps) {
-            let speed = Speed::from_mps(speed_mps);
-            let findings = monitor.step(&AtoInputs { speed, ..inputs }, on, &config());
-            assert_eq!(findings.not_following_mps, None);
-            absurd |= findings.absurd;
-        }
-    });
+    let (inputs, on) = run();
+    let (mut monitor, mut absurd) = (Monitor::default(), AbsurdInputs::empty());
+    for &speed_mps in [0.3, 0.3].iter().chain(speeds_mps) {
+        let speed = Speed::from_mps(speed_mps);
+        let findings = monitor.step(&AtoInputs { speed, ..inputs }, on, &sg100().ato);
+        assert_eq!(findings.not_following_mps, None);
+        absurd |= findings.absurd;
+    }
     absurd
 }
 
@@ -86,22 +80,20 @@ fn a_speed_that_a_lone_pulse_makes_is_passed_over_and_one_that_stays_is_absurd()
 
 /// Overruns reported in a run that stands at each of these distances past the stop point, m.
 fn overruns_m(past_m: &[f64]) -> Vec<f64> {
-    let mut told = Vec::new();
-    with_run(|inputs, on| {
-        let stop_m = inputs.section.unwrap().stop_m;
-        let mut monitor = Monitor::default();
-        for past_m in past_m {
-            let inputs = AtoInputs {
-                position_m: stop_m + past_m,
-                speed: Speed::ZERO,
-                standstill: true,
-                ..inputs
-            };
-            let on = MonitorInputs { stands: true, ..on };
-            told.extend(monitor.step(&inputs, on, &config()).overrun_m);
-        }
+    let (inputs, on) = run();
+    let on = MonitorInputs { stands: true, ..on };
+    let stop_m = inputs.section.unwrap().stop_m;
+    let mut monitor = Monitor::default();
+    let told = past_m.iter().filter_map(|past_m| {
+        let inputs = AtoInputs {
+            position_m: stop_m + past_m,
+            speed: Speed::ZERO,
+            standstill: true,
+            ..inputs
+        };
+        monitor.step(&inputs, on, &sg100().ato).overrun_m
     });
-    told.into_iter().map(libm::round).collect()
+    told.map(libm::round).collect()
 }
 
 #[test]

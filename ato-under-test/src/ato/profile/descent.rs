@@ -84,7 +84,7 @@ pub fn correction_mps2(gap_mps: f64, gain_per_s: f64, jerk_mps3: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ato::tests::config;
+    use crate::for_tests::sg100;
 
     /// A train that follows exactly, from cruising or still accelerating: never over the curve by more
     /// than a cycle's worth, jerk within the limit, and at rest at the stop point.
@@ -92,7 +92,7 @@ mod tests {
     fn the_curve_is_met_within_the_jerk_limit() {
         let dt = CYCLE.as_secs();
         for (speed_mps, accel_mps2) in [(20.0, 0.0), (11.1, 0.0), (9.0, 0.6), (3.0, 0.0)] {
-            let config = config().pss;
+            let config = sg100().ato.pss;
             let descent = Descent::new(&config);
             let mut now = Setpoint {
                 speed_mps,
@@ -134,7 +134,7 @@ mod tests {
     /// The stop point comes nearer by 30 m at 60 km/h: the curve itself, at once.
     #[test]
     fn a_distance_that_shrinks_too_fast_is_braked_for_at_once() {
-        let descent = Descent::new(&config().pss);
+        let descent = Descent::new(&sg100().ato.pss);
         let from = Setpoint {
             speed_mps: 16.0,
             accel_mps2: 0.0,

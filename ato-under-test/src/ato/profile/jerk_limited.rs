@@ -151,7 +151,7 @@ mod tests {
             accel_mps2: 3.0 * KMH,
             decel_mps2: 3.5 * KMH,
             jerk_mps3: 0.8,
-            ..crate::ato::tests::config().profile
+            ..crate::for_tests::sg100().ato.profile
         }
     }
 

@@ -10,6 +10,6 @@ mod station_stop;
 pub use descent::{Descent, correction_mps2};
 pub use jerk_limited::JerkLimited;
 pub use pss::StopCurve;
-pub use reference::{Reference, ReferenceGenerator, ReferenceInputs};
+pub use reference::{Reference, ReferenceGenerator};
 pub use s_curve::{SCurve, Setpoint};
 pub use station_stop::{FinalStop, FinalStopLimits, MarkerApproach};

@@ -70,7 +70,7 @@ impl StopCurve {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ato::tests::config;
+    use crate::for_tests::sg100;
 
     const KMH: f64 = 1.0 / 3.6;
 
@@ -79,7 +79,7 @@ mod tests {
             brake_rate_mps2: rate,
             offset_m: offset,
             slope_per_s: slope,
-            ..config().pss
+            ..sg100().ato.pss
         })
     }
 
@@ -116,7 +116,7 @@ mod tests {
     /// the 735 m [S2 §3.3].
     #[test]
     fn the_printed_curve_takes_over_at_637_m() {
-        let curve = StopCurve::new(&config().pss);
+        let curve = StopCurve::new(&sg100().ato.pss);
         let takes_over = (0..735)
             .map(f64::from)
             .find(|at_m| curve.at(735.0 - at_m).0 < 40.0 * KMH);
@@ -128,11 +128,11 @@ mod tests {
 
     #[test]
     fn at_and_past_the_stop_point_the_target_is_standstill_and_the_brake_stays() {
-        let curve = StopCurve::new(&config().pss);
+        let curve = StopCurve::new(&sg100().ato.pss);
         for distance_m in [0.0, -0.1, -50.0, f64::NEG_INFINITY] {
             let (speed, accel) = curve.at(distance_m);
             assert_eq!(speed, 0.0);
-            assert_eq!(accel, -config().pss.brake_rate_mps2);
+            assert_eq!(accel, -sg100().ato.pss.brake_rate_mps2);
         }
     }
 }

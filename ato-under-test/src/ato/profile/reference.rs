@@ -11,15 +11,6 @@ use protocol::config::AtoConfig;
 
 use super::{Descent, JerkLimited, Setpoint};
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ReferenceInputs {
-    /// Speed to run at, m/s.
-    pub cruise_mps: f64,
-    pub train: Setpoint,
-    /// Distance to the stop point, m; `None` = not known.
-    pub to_stop_m: Option<f64>,
-}
-
 /// Reference for the controller in one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
@@ -49,18 +40,17 @@ impl ReferenceGenerator {
         }
     }
 
-    pub fn step(&mut self, inputs: ReferenceInputs) -> Reference {
-        let command_mps = inputs.cruise_mps.max(0.0);
-        self.keep_to_the_train(command_mps, inputs.train);
+    /// One cycle: the speed to run at, the train's own, and the distance to the stop point if it is known.
+    pub fn step(&mut self, cruise_mps: f64, train: Setpoint, to_stop_m: Option<f64>) -> Reference {
+        let command_mps = cruise_mps.max(0.0);
+        self.keep_to_the_train(command_mps, train);
         let from = self.ramp.setpoint();
         if self.ramp.step(command_mps, CYCLE.as_secs()).speed_mps < 0.0 {
             // A train that brakes to its last moment would be led backward by the jerk that is left.
             self.ramp.place(Setpoint::default());
         }
         let ramp = self.ramp.setpoint();
-        let stop = inputs
-            .to_stop_m
-            .map(|distance| self.descent.follow(from, distance));
+        let stop = to_stop_m.map(|distance| self.descent.follow(from, distance));
         let lower = stop
             .filter(|stop| stop.accel_mps2 < ramp.accel_mps2 || stop.speed_mps < ramp.speed_mps);
         if let Some(stop) = lower {
@@ -69,7 +59,7 @@ impl ReferenceGenerator {
         Reference {
             setpoint: self.ramp.setpoint(),
             stopping: lower.is_some(),
-            most_mps2: self.descent.most_mps2(inputs.to_stop_m),
+            most_mps2: self.descent.most_mps2(to_stop_m),
         }
     }
 
@@ -104,27 +94,30 @@ impl ReferenceGenerator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ato::tests::config;
+    use crate::for_tests::sg100;
 
-    fn inputs(cruise_mps: f64, speed_mps: f64, accel_mps2: f64) -> ReferenceInputs {
-        ReferenceInputs {
-            cruise_mps,
-            train: Setpoint {
-                speed_mps,
-                accel_mps2,
-            },
-            to_stop_m: None,
-        }
+    /// Speed to which a train at `speed_mps` that gains `accel_mps2` is led in a cycle, m/s.
+    fn led_to(
+        generator: &mut ReferenceGenerator,
+        cruise_mps: f64,
+        speed_mps: f64,
+        accel_mps2: f64,
+    ) -> f64 {
+        let train = Setpoint {
+            speed_mps,
+            accel_mps2,
+        };
+        generator.step(cruise_mps, train, None).setpoint.speed_mps
     }
 
     /// A train with 0.2 m/s² that believes to have 0.8: the ramp stays within its lead, and ends at the
     /// command.
     #[test]
     fn the_ramp_waits_for_a_slow_train() {
-        let mut generator = ReferenceGenerator::new(&config());
+        let mut generator = ReferenceGenerator::new(&sg100().ato);
         let mut speed = 0.0_f64;
         for _ in 0..2400 {
-            let ramp = generator.step(inputs(15.0, speed, 0.8)).setpoint.speed_mps;
+            let ramp = led_to(&mut generator, 15.0, speed, 0.8);
             assert!(ramp <= 15.0 + 1e-9, "{ramp} m/s");
             assert!(
                 ramp <= speed + generator.lead_mps + 0.05,
@@ -138,20 +131,20 @@ mod tests {
     /// A train at 0.01 m/s that brakes with 0.8 m/s²: without jerk above the limit it cannot end there.
     #[test]
     fn the_reference_is_never_below_standstill() {
-        let mut generator = ReferenceGenerator::new(&config());
+        let mut generator = ReferenceGenerator::new(&sg100().ato);
         for _ in 0..40 {
-            let ramp = generator.step(inputs(0.0, 0.01, -0.8)).setpoint.speed_mps;
+            let ramp = led_to(&mut generator, 0.0, 0.01, -0.8);
             assert!(ramp >= 0.0, "{ramp} m/s");
         }
     }
 
     #[test]
     fn a_lower_command_begins_at_the_train() {
-        let mut generator = ReferenceGenerator::new(&config());
+        let mut generator = ReferenceGenerator::new(&sg100().ato);
         for _ in 0..400 {
-            generator.step(inputs(15.0, 9.0, 0.0));
+            led_to(&mut generator, 15.0, 9.0, 0.0);
         }
-        let after = generator.step(inputs(10.0, 9.0, 0.0)).setpoint.speed_mps;
+        let after = led_to(&mut generator, 10.0, 9.0, 0.0);
         assert!((9.0..9.1).contains(&after), "{after} m/s");
     }
 }

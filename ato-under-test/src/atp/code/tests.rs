@@ -3,6 +3,7 @@ use alloc::vec::Vec;
 use protocol::SCAN;
 
 use super::*;
+use crate::for_tests::{logged, seoul34, sg100};
 
 const SILENCE: AntennaSignal = signal(0.0, 0.0, 0.0);
 /// Code 55 of the default table, which is its fifth.
@@ -29,10 +30,9 @@ struct Receiver {
 
 impl Receiver {
     fn new() -> Self {
-        let text = include_str!("../../../../scripts/units/sg100.toml");
         Self {
-            decoder: CodeDecoder::new(),
-            config: UnitConfig::from_toml(text).unwrap(),
+            decoder: CodeDecoder::default(),
+            config: sg100(),
             log: EventLog::default(),
             now: Instant::from_ms(5000),
             confirms: true,
@@ -56,8 +56,7 @@ impl Receiver {
 
     /// Events so far, with their parameters.
     fn events(&self) -> Vec<(u16, i32)> {
-        let entries = (0..).map_while(|index| self.log.entries().at_or_after(index));
-        entries.map(|entry| (entry.code, entry.parameter)).collect()
+        logged(&self.log)
     }
 }
 
@@ -223,8 +222,7 @@ fn level_carrier_and_rate_are_taken_within_their_tolerances() {
 /// the time each.
 #[test]
 fn a_code_of_the_yard_permits_nothing_on_the_line() {
-    let text = include_str!("../../../../scripts/units/seoul34.toml");
-    let config = UnitConfig::from_toml(text).unwrap();
+    let config = seoul34();
     let [yard, low, top] = [3.2, 5.0, 20.4].map(|rate_hz| signal(990.0, rate_hz, 500.0));
     for other in [yard, low, top] {
         let mut receiver = Receiver::new();

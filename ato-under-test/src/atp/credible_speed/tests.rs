@@ -1,6 +1,7 @@
 //! Speeds that are believed, and speeds that are not.
 
 use super::*;
+use crate::for_tests::sg100;
 use protocol::config::UnitConfig;
 
 struct Train {
@@ -13,10 +14,9 @@ struct Train {
 
 impl Train {
     fn at(kmh: f64) -> Self {
-        let text = include_str!("../../../../scripts/units/sg100.toml");
         let mut train = Self {
             credible: CredibleSpeed::default(),
-            config: UnitConfig::from_toml(text).unwrap(),
+            config: sg100(),
             log: EventLog::default(),
             now: Instant::ZERO,
             speed: 0.0,

@@ -3,7 +3,7 @@
 use protocol::Duration;
 
 use super::*;
-use crate::with::with;
+use crate::for_tests::{parameters, with};
 
 const GOOD: ModeInputs = ModeInputs {
     ready: true,
@@ -90,12 +90,8 @@ fn a_line_that_others_open_is_logged_once() {
             ..GOOD
         };
         assert_eq!((after(open), after(open)), (Mode::Manual, Mode::Manual));
-        let code = Event::LineOpened.definition().code;
-        let log = train.log;
-        let entries = (0..log.next_index()).filter_map(|at| log.entries().at_or_after(at));
-        let of_line = entries.filter(|entry| entry.code == code);
-        let parameters = of_line.map(|entry| entry.parameter);
-        assert!(parameters.eq(logged), "{moves} {line_fell}");
+        let told = parameters(&train.log, Event::LineOpened);
+        assert!(told.into_iter().eq(logged), "{moves} {line_fell}");
     }
 }
 

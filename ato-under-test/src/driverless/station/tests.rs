@@ -1,11 +1,9 @@
 //! The sequence as a table, and what holds whatever comes.
 
-use alloc::vec::Vec;
-
 use protocol::Random;
 
 use super::*;
-use crate::with::with;
+use crate::for_tests::{logged, with};
 
 const CONFIG: DriverlessConfig = DriverlessConfig {
     dwell_min_ms: 5000,
@@ -61,12 +59,6 @@ impl Stop {
         let station = &self.station;
         (station.opens, station.closes(), station.waits)
     }
-
-    fn logged(&self) -> Vec<(u16, i32)> {
-        let entries = self.log.entries();
-        let all = (0..self.log.next_index()).filter_map(|at| entries.at_or_after(at));
-        all.map(|entry| (entry.code, entry.parameter)).collect()
-    }
 }
 
 const OPENS: (DoorSide, bool, bool) = (DoorSide::Left, false, true);
@@ -86,7 +78,7 @@ fn doors_open_stay_open_and_close_for_departure() {
     assert_eq!(stop.after(open(departs(HELD)), 3_000), CLOSES);
     assert_eq!(stop.after(departs(HELD), 0), GOES);
     assert_eq!(stop.after(HELD, 10_000), GOES, "served once at a stop");
-    assert_eq!(stop.logged(), []);
+    assert_eq!(logged(&stop.log), []);
 }
 
 #[test]
@@ -129,7 +121,7 @@ fn an_obstacle_opens_the_doors_twice_and_then_refuses_departure() {
         }
         assert_eq!(stop.after(obstacle, 3_800), CLOSES);
         assert_eq!(stop.after(obstacle, 60_000), OPENS, "and stays so");
-        assert_eq!(stop.logged(), [(244, 1)]);
+        assert_eq!(logged(&stop.log), [(244, 1)]);
         assert_eq!(stop.after(goes_on, 0), expected);
         assert_eq!(stop.after(obstacle, 0), CLOSES);
         assert_eq!(stop.after(departs(HELD), 0), GOES);
@@ -141,7 +133,7 @@ fn doors_that_do_not_open_are_told_and_do_not_keep_the_train() {
     let mut stop = Stop::new();
     assert_eq!(stop.after(HELD, 2_900), OPENS);
     assert_eq!(stop.after(departs(HELD), 100), GOES);
-    assert_eq!(stop.logged(), [(246, 1)]);
+    assert_eq!(logged(&stop.log), [(246, 1)]);
 }
 
 #[test]

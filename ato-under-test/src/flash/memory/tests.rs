@@ -3,7 +3,6 @@
 use protocol::event::Event;
 
 use super::*;
-use crate::kernel::RunCycle;
 
 fn events(memory: &Memory, from: u32) -> (Vec<StoredEntry>, Vec<StoredClock>) {
     let (mut next, mut replies) = (from, Vec::new());
@@ -73,16 +72,16 @@ fn a_long_service_does_not_push_the_events_out() {
     log.push(Instant::ZERO, Event::PowerUp, 0);
     let rows = 24_000;
     for i in 0..rows {
-        let state = match i {
+        let ato_state = match i {
             0 => protocol::message::AtoState::Start,
             _ => protocol::message::AtoState::Run,
         };
-        let cycle = RunCycle {
+        let cycle = RunRow {
             speed_cms: 1_000,
-            state,
-            ..RunCycle::default()
+            ato_state,
+            ..RunRow::default()
         };
-        record.step(Instant::from_ms(50 * i), true, cycle);
+        record.step(Instant::from_ms(50 * i), true, (cycle, 0));
         memory.step(&log, &record);
     }
     assert_eq!(events(&memory, 0).0.len(), 1);

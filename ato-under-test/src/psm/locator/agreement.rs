@@ -5,7 +5,7 @@ use protocol::event::Event;
 
 use super::super::marker_check::{MarkerDetection, PositionFix, place_m, window_m};
 use super::{Locator, MARKERS};
-use crate::kernel::EventLog;
+use crate::kernel::{EventLog, hundredths, hundredths_of_percent};
 
 impl Locator {
     /// Notes the way from the marker before; from the section's begin, which is known less well, only where the train
@@ -52,11 +52,7 @@ impl Locator {
         // A speed that is told too high is the safe error: the doors alone lose what was learned.
         self.proved_farther = self.runs_farther();
         self.wheel = self.wheel.of_other_wheels(self.config.wheel_spread);
-        log.push(
-            now,
-            Event::MarkersDisplaced,
-            libm::round(share * 1e4) as i32,
-        );
+        log.push(now, Event::MarkersDisplaced, hundredths_of_percent(share));
     }
 
     /// Holds a marker that is believed against the way from the marker before. Both may be displaced, and then the stop
@@ -86,8 +82,7 @@ impl Locator {
         let wrong_m = self.wheel.uncertainty() * libm::fabs(run_m);
         self.by_way_m = libm::copysign((libm::fabs(error_m) - wrong_m).max(0.0), error_m);
         if detection.marker == MARKERS && libm::fabs(self.by_way_m) > self.aligned_m {
-            let error_cm = libm::round(error_m * 100.0) as i32;
-            log.push(now, Event::MarkerPosition, error_cm);
+            log.push(now, Event::MarkerPosition, hundredths(error_m));
         }
     }
 

@@ -1,20 +1,17 @@
 use super::*;
+use crate::for_tests::{line8, sg100};
 
 /// A train that departs into section 61.
-fn departed() -> (Locator, Section) {
-    let text = include_str!("../../../../scripts/units/sg100.toml");
-    let config = UnitConfig::from_toml(text).unwrap();
-    let line = include_str!("../../../../scripts/lines/line8.toml");
-    let line = Line::from_toml(line).unwrap();
-    let section = line.section(61).unwrap().clone();
-    let mut locator = Locator::new(&config);
+fn departed() -> (Locator, &'static Section) {
+    let section = line8().section(61).unwrap();
+    let mut locator = Locator::new(&sg100());
     locator.keep_place(true);
     let departing = TwcWayside {
         section: section.section,
         loop_id: section.from_loop,
         ..TwcWayside::default()
     };
-    locator.locate(&departing, &line, true);
+    locator.locate(&departing, line8(), true);
     (locator, section)
 }
 
@@ -104,8 +101,7 @@ fn a_contradiction_keeps_what_was_proved_of_the_speed() {
 /// Method: data of section 61 at its end and at its begin, of the next section and of another, at the end of section 61.
 #[test]
 fn data_of_another_place_contradict_the_stop_point() {
-    let line = include_str!("../../../../scripts/lines/line8.toml");
-    let line = Line::from_toml(line).unwrap();
+    let line = line8();
     let here = line.section(61).unwrap();
     let next = line.after(here).unwrap();
     let far = line.section(64).unwrap();
@@ -122,13 +118,13 @@ fn data_of_another_place_contradict_the_stop_point() {
             loop_id,
             ..TwcWayside::default()
         };
-        let found = locator.contradicts(&data, section, &line);
+        let found = locator.contradicts(&data, section, line);
         assert_eq!(found, contradicts, "{} {loop_id}", section.section);
-        let begins = locator.clone().locate(&data, &line, true);
+        let begins = locator.clone().locate(&data, line, true);
         assert_eq!(begins, section.section == next.section);
     }
     locator.keep_place(false);
-    assert!(!locator.contradicts(&TwcWayside::default(), far, &line));
+    assert!(!locator.contradicts(&TwcWayside::default(), far, line));
 }
 
 #[test]

@@ -4,13 +4,13 @@
 use protocol::config::UnitConfig;
 use protocol::event::Event;
 use protocol::injection::Place;
-use protocol::message::{AtoFailure, Mode, RunningMode, SelfTest};
+use protocol::message::{AtoFailure, Mode, RunRow, RunningMode, SelfTest};
 use protocol::{Instant, Speed};
 
 use super::{Functions, Surroundings};
 use crate::ato::{Ato, AtoInputs, AtoOutputs, Checks, Findings, JogOutcome, TrainReport};
 use crate::driverless::Station;
-use crate::kernel::{EventLog, RunCycle};
+use crate::kernel::{EventLog, hundredths};
 
 impl Functions {
     pub(super) fn operate(&mut self, now: Instant, around: &Surroundings<'_>, log: &mut EventLog) {
@@ -88,16 +88,18 @@ impl Functions {
         Speed::from_mps(tachometers.channel(tachometers.distance_channel).mps() * wheel)
     }
 
-    /// This cycle as the run record keeps it.
-    pub fn run_cycle(&self) -> RunCycle {
-        RunCycle {
-            position_m: self.locator.position_m(),
+    /// This cycle for the run record, and how many markers were detected so far.
+    pub fn run_cycle(&self) -> (RunRow, u8) {
+        let row = RunRow {
+            position_cm: hundredths(self.locator.position_m()),
             speed_cms: self.wheel_speed().to_cms(),
             target_cms: self.ato_outputs.target.to_cms(),
             effort: self.ato_outputs.effort,
-            marker: (self.locator.last_marker, self.locator.count),
-            state: self.ato.state,
-        }
+            marker: self.locator.last_marker,
+            ato_state: self.ato.state,
+            ..RunRow::default()
+        };
+        (row, self.locator.count)
     }
 
     /// KRN's checks of what ATO needs [S0 §1, §3.3]; its processor is under the watchdog.
@@ -133,7 +135,6 @@ impl Functions {
     fn report_ato(&self, now: Instant, was_ready: bool, log: &mut EventLog) {
         let outputs = self.ato_outputs;
         let found = outputs.findings;
-        let hundredths = |value: f64| libm::round(value * 100.0) as i32;
         let failed = was_ready && !outputs.ready;
         if failed && !found.absurd.is_empty() {
             let bits = i32::from(found.absurd.bits());

@@ -5,14 +5,16 @@
 
 use std::f64::consts::PI;
 
+use ato_under_test::flash::BlockDevice;
 use ato_under_test::{Setup, Unit};
 use protocol::config::UnitConfig;
 use protocol::injection::{Effect, FaultMode, Occurrence, Place};
 use protocol::line::Line;
 use protocol::link::{End, Link};
 use protocol::message::{
-    AtcToTcms, Channel, IoInput, IoOutput, KeepAlive, LogEntry, Message, ModeSwitch, Outputs,
-    ReadLog, Status, TcmsToAtc, TcmsToAtcBits, TestTwc, TrainLines, TrainState, TwcWayside,
+    ArmChallenge, ArmConfirm, AtcToTcms, Channel, IoInput, IoOutput, KeepAlive, LogEntry, Message,
+    ModeSwitch, Outputs, ReadLog, Status, TcmsToAtc, TcmsToAtcBits, TestTwc, TrainLines,
+    TwcWayside,
 };
 use protocol::{Instant, SCAN};
 
@@ -121,38 +123,84 @@ pub fn test_station(session: u32, data: TwcWayside) -> TestTwc {
     }
 }
 
+/// Carrier, Hz, and code rate, 0.01 Hz, of the code called `name`.
+pub fn signal_of(name: &str) -> (u16, u16) {
+    let config = config();
+    let code = config.codes.iter().find(|code| code.name == name).unwrap();
+    (code.carrier_hz as u16, (code.rate_hz * 100.0) as u16)
+}
+
+pub fn setup(faults: &[FaultMode]) -> Setup {
+    Setup {
+        serial: "T-1".into(),
+        config: config(),
+        config_crc: 1,
+        line: line(),
+        tdb_crc: 2,
+        seed: 7,
+        faults: faults.to_vec(),
+    }
+}
+
+/// All messages of one kind.
+pub fn all<T: TryFrom<Message>>(messages: &[Message]) -> Vec<T> {
+    let of_kind = |message: &Message| T::try_from(*message).ok();
+    messages.iter().filter_map(of_kind).collect()
+}
+
+/// What a tester confirms of a challenge.
+pub fn confirm(challenge: ArmChallenge, session: u32) -> ArmConfirm {
+    ArmConfirm {
+        session,
+        answer: !challenge.challenge ^ session,
+    }
+}
+
 impl Bench {
     pub fn new(faults: &[FaultMode]) -> Self {
-        Self::with_line(faults, false)
+        let mut bench = Self::powered_up(Unit::new(setup(faults)));
+        bench.run(2.0);
+        bench
+    }
+
+    /// A standing train whose unit hears this code.
+    pub fn hearing(code: &str, faults: &[FaultMode]) -> Self {
+        let mut bench = Self::new(faults);
+        bench.code(code);
+        bench.run(0.6);
+        bench
     }
 
     /// A sound unit that hears this code, and a train at this speed from now on.
     pub fn under(code: &str, speed_kmh: f64) -> Self {
-        let mut bench = Self::new(&[]);
-        bench.code(code);
-        bench.run(0.6);
+        let mut bench = Self::hearing(code, &[]);
         bench.speed_kmh(speed_kmh);
         bench
     }
 
     /// Powered up while something else opens the emergency brake line.
     pub fn unfed(faults: &[FaultMode]) -> Self {
-        Self::with_line(faults, true)
+        let mut bench = Self::powered_up(Unit::new(setup(faults)));
+        bench.opens_line = true;
+        bench.run(2.0);
+        bench
     }
 
-    fn with_line(faults: &[FaultMode], opens_line: bool) -> Self {
-        let line = line();
-        let station = Some(departure(&line.sections[0]));
-        let unit = Unit::new(Setup {
-            serial: "T-1".into(),
-            config: config(),
-            config_crc: 1,
-            line,
-            tdb_crc: 2,
-            seed: 7,
-            faults: faults.to_vec(),
-        });
-        let mut bench = Self {
+    /// A unit that is powered up with this flash, and at whose harness there is a tester at most.
+    pub fn alone(flash: Box<dyn BlockDevice>) -> Self {
+        let mut bench = Self::powered_up(Unit::with_flash(setup(&[]), flash));
+        bench.io = false;
+        (bench.station, bench.tcms) = (None, None);
+        bench
+    }
+
+    /// The same after its supply was off.
+    pub fn power_cycle(self) -> Self {
+        Self::alone(self.unit.power_off())
+    }
+
+    fn powered_up(unit: Unit) -> Self {
+        Self {
             unit,
             link: Link::new(End::Bench),
             now: Instant::ZERO,
@@ -162,7 +210,7 @@ impl Bench {
                 ..IoInput::default()
             },
             speeds: [0.0; 2],
-            station,
+            station: Some(departure(&line().sections[0])),
             session: 0,
             io: true,
             keep_alive: true,
@@ -177,7 +225,7 @@ impl Bench {
             tcms_obeys: false,
             welded: false,
             alive_stands: false,
-            opens_line,
+            opens_line: false,
             eb_cut_out: false,
             backward_bits: 0,
             answers: Vec::new(),
@@ -186,17 +234,12 @@ impl Bench {
             turned: [0.0; 2],
             scans: 0,
             alive: 0,
-        };
-        bench.run(2.0);
-        bench
+        }
     }
 
     /// Sends the code called `name`.
     pub fn code(&mut self, name: &str) {
-        let config = config();
-        let code = config.codes.iter().find(|code| code.name == name).unwrap();
-        self.input.carrier_hz = code.carrier_hz as u16;
-        self.input.code_rate_chz = (code.rate_hz * 100.0) as u16;
+        (self.input.carrier_hz, self.input.code_rate_chz) = signal_of(name);
         self.input.level_mv = 500;
     }
 
@@ -315,12 +358,9 @@ impl Bench {
         own.map(|frame| frame.len() + 2).sum()
     }
 
-    /// The last `TrainState`.
-    pub fn train_state(&self) -> Option<TrainState> {
-        self.answers.iter().rev().find_map(|answer| match answer {
-            Message::TrainState(state) => Some(*state),
-            _ => None,
-        })
+    /// The last message of a kind among the answers.
+    pub fn last<T: TryFrom<Message>>(&self) -> Option<T> {
+        all(&self.answers).pop()
     }
 
     fn turn_wheels(&mut self) {
@@ -402,5 +442,13 @@ impl Bench {
                 .name
         };
         self.log.iter().map(name).collect()
+    }
+
+    /// Parameters with which an event is logged.
+    pub fn parameters(&mut self, name: &str) -> Vec<i32> {
+        let events = self.events();
+        let logged = events.iter().zip(&self.log);
+        let of_event = logged.filter(|(event, _)| **event == name);
+        of_event.map(|(_, entry)| entry.parameter).collect()
     }
 }

@@ -65,6 +65,12 @@ impl Journey {
         }
     }
 
+    /// The same journey but for one change.
+    pub fn with(mut self, change: impl FnOnce(&mut Self)) -> Self {
+        change(&mut self);
+        self
+    }
+
     pub fn step(&mut self) {
         let dt = SCAN.as_secs();
         let effort = f64::from(self.bench.status.effort);
@@ -159,13 +165,5 @@ impl Journey {
         let mut events = self.bench.events();
         events.retain(|event| !usual.contains(event));
         events
-    }
-
-    /// Parameters of the logged events called `name`.
-    pub fn parameters(&self, name: &str) -> Vec<i32> {
-        let code = protocol::event::Event::from_name(name).unwrap();
-        let code = code.definition().code;
-        let entries = self.bench.log.iter().filter(|e| e.code == code);
-        entries.map(|e| e.parameter).collect()
     }
 }

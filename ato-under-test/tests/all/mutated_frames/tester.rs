@@ -4,16 +4,16 @@ use std::time::{Duration, Instant};
 
 use protocol::frame::FLAG;
 use protocol::message::{
-    ArmConfirm, ArmRequest, Identify, IoInput, KeepAlive, Message, ModeSwitch, ReadLog, StatusBits,
-    Subscribe, TcmsToAtc, TcmsToAtcBits, TestCode, TrainLines, TwcWayside,
+    ArmRequest, Identify, IoInput, KeepAlive, Message, ModeSwitch, ReadLog, StatusBits, Subscribe,
+    TcmsToAtc, TcmsToAtcBits, TestCode, TrainLines, TwcWayside,
 };
 
 use super::damage::{Damager, Kind};
 use super::watch::Watch;
-use crate::common::{departure, line};
+use crate::common::{all, confirm, departure, line};
+use crate::maintenance::{CODE_75, SESSION};
 use crate::served::{Client, Unit};
 
-pub const SESSION: u32 = 0xBEEF;
 /// The unit scans every 10 ms; one that does not for so long is gone.
 const GONE: Duration = Duration::from_secs(20);
 /// Sound frames that are kept to be said again: the first ones, and the newest.
@@ -88,11 +88,8 @@ impl Tester {
         for _ in 0..100 {
             let heard = self.hear();
             self.speak(|tester, out| {
-                for message in heard {
-                    if let Message::ArmChallenge(asked) = message {
-                        let answer = !asked.challenge ^ session;
-                        tester.add(ArmConfirm { session, answer }, out);
-                    }
+                for challenge in all(&heard) {
+                    tester.add(confirm(challenge, session), out);
                 }
             });
             if self.watch.is(StatusBits::ARMED) {
@@ -182,10 +179,8 @@ impl Tester {
         }
         if tests {
             let code = TestCode {
-                session: SESSION,
-                carrier_hz: 3000,
                 code_rate_chz: 1500,
-                level_mv: 500,
+                ..CODE_75
             };
             let seq = self.say(code, out);
             self.watch.due.stimuli.push(seq);

@@ -1,7 +1,7 @@
 //! Trains of a few lines for the speed controllers: S1's ideal one, and one whose effort comes late.
 
 use ato_under_test::ato::controller::{ControllerInput, Demand, SpeedController};
-use protocol::config::{AtoConfig, UnitConfig};
+use protocol::config::AtoConfig;
 
 /// Control cycle, s.
 pub const CYCLE_S: f64 = 0.05;
@@ -13,8 +13,7 @@ pub const MARKERS_TO_STOP_M: [f64; 4] = [546.0, 108.5, 21.0, 3.5];
 const PULSE_M: f64 = 0.027;
 
 pub fn config() -> AtoConfig {
-    let text = include_str!("../../../../scripts/units/sg100.toml");
-    UnitConfig::from_toml(text).unwrap().ato
+    crate::common::config().ato
 }
 
 /// Conditions of a run.

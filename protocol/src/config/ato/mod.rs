@@ -126,7 +126,7 @@ pub struct AtoConfig {
     /// Further lowering in normal running mode, km/h [S0 §3.1.1]; both together are 5 in S2 §3.3.
     pub normal_lowering_kmh: f64,
     /// Target in slow running at most, km/h.
-    #[serde(default = "slow_kmh")]
+    #[serde(default = "super::way::thousandths::<25_000>")]
     pub slow_kmh: f64,
     /// Acceleration that ATO asks for at most, km/h/s [S0 §4: 3.0].
     pub accel_kmh_per_s: f64,
@@ -153,11 +153,6 @@ pub struct AtoConfig {
     pub jog: JogConfig,
     /// Limits of monitoring.
     pub watch: AtoWatchConfig,
-}
-
-/// Value of `sg100`, for configurations without the key.
-const fn slow_kmh() -> f64 {
-    25.0
 }
 
 impl AtoConfig {

@@ -57,14 +57,6 @@ pub fn receiver(spec: &MessageSpec) -> End {
     }
 }
 
-pub fn sender(spec: &MessageSpec) -> End {
-    if spec.sent_by_unit() {
-        End::Unit
-    } else {
-        End::Bench
-    }
-}
-
 /// The message of a catalogue entry with fields filled from `bytes`, again and again.
 pub fn message_from(spec: &MessageSpec, bytes: &[u8]) -> Message {
     let mut payload = vec![spec.code];

@@ -1,6 +1,0 @@
-//! For unit tests: a value but for one change.
-
-pub fn with<T>(mut value: T, change: impl FnOnce(&mut T)) -> T {
-    change(&mut value);
-    value
-}
