@@ -233,6 +233,15 @@ impl Store {
         }
     }
 
+    /// Asks the file or server, or writes to it in the caller's transaction.
+    pub(crate) fn ask<T>(
+        &self,
+        doing: &'static str,
+        work: impl FnOnce(&Backend) -> SqlResult<T>,
+    ) -> Result<T, StoreError> {
+        work(&self.backend).map_err(|error| self.failed(doing, error))
+    }
+
     /// All rows of a result.
     pub(crate) fn select<T>(
         &self,
@@ -241,8 +250,7 @@ impl Store {
         values: &[Value<'_>],
         read: impl FnMut(Row<'_>) -> SqlResult<T>,
     ) -> Result<Vec<T>, StoreError> {
-        let found = self.backend.select(sql, values, read);
-        found.map_err(|error| self.failed(doing, error))
+        self.ask(doing, |backend| backend.select(sql, values, read))
     }
 
     /// The first row of a result.
@@ -253,8 +261,7 @@ impl Store {
         values: &[Value<'_>],
         read: impl FnMut(Row<'_>) -> SqlResult<T>,
     ) -> Result<Option<T>, StoreError> {
-        let found = self.backend.first(sql, values, read);
-        found.map_err(|error| self.failed(doing, error))
+        self.ask(doing, |backend| backend.first(sql, values, read))
     }
 
     /// Whether a result has a row.
@@ -264,8 +271,7 @@ impl Store {
         sql: &str,
         values: &[Value<'_>],
     ) -> Result<bool, StoreError> {
-        let found = self.backend.has(sql, values);
-        found.map_err(|error| self.failed(doing, error))
+        self.ask(doing, |backend| backend.has(sql, values))
     }
 
     pub(crate) fn failed(&self, doing: &'static str, error: impl Into<SqlError>) -> StoreError {

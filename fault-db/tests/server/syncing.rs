@@ -193,7 +193,7 @@ fn a_file_is_compared_with_the_chain_the_server_knows() {
     .expect("changed");
     file.execute(
         "UPDATE seal SET digest = x'07', hash = x'08' WHERE what = 'run' AND id = ?1",
-        [run],
+        [&run.as_bytes()[..]],
     )
     .expect("sealed again");
     let trigger = include_str!("../../src/schema/triggers.sql");
