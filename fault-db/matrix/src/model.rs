@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use serde::Deserialize;
+
 use super::error::MatrixError;
 
 /// What probabilities may miss 1 by, for each state: they come rounded.
@@ -11,10 +13,11 @@ const SUM_TOLERANCE: f64 = 1e-6;
 const MAX_CELLS: usize = 50_000_000;
 
 /// What the system may be in.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct State {
     pub id: String,
     /// Probability before any test, 0..1.
+    #[serde(rename = "p")]
     pub probability: f64,
 }
 

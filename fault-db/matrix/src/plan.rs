@@ -2,7 +2,7 @@
 
 use super::crisp::CrispSpace;
 use super::error::MatrixError;
-use super::greedy::{Rollout, grow};
+use super::greedy::grow;
 use super::model::Matrix;
 use super::noisy::NoisySpace;
 use super::posterior::Posterior;
@@ -112,7 +112,7 @@ pub fn plan(matrix: &Matrix, known: &Posterior, options: PlanOptions) -> Result<
             ),
         }
     }
-    let grown = grow(&problem, Rollout::On);
+    let grown = grow(&problem);
     if grown.unchecked {
         warnings.push(
             "the work allowed for rollout was used up; some tests are chosen by information gain per cost alone"
@@ -174,7 +174,7 @@ fn searched<S: Space>(
         open.extend(below);
         open[after..].reverse();
     }
-    Ok(Tree::new(nodes))
+    Ok(Tree { nodes })
 }
 
 /// What stands out in a matrix that can be worked with all the same.

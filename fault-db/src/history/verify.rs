@@ -195,8 +195,7 @@ impl Store {
                 body: &note,
                 state: None,
             };
-            insert_event(&self.backend, fault, &event)
-                .map_err(|error| self.failed(DOING, error))?;
+            self.ask(DOING, |file| insert_event(file, fault, &event))?;
         }
         Ok(())
     }
@@ -265,7 +264,7 @@ impl Store {
         let Some(at_us) = finished.flatten() else {
             return Err(StoreError::not_found("finished run", run));
         };
-        self.change(DOING, |backend| {
+        self.change(DOING, |_| {
             let confirm = |fault, note: &str| {
                 let change = Change {
                     action: FaultAction::Verify,
@@ -274,7 +273,7 @@ impl Store {
                     body: note,
                     at_us,
                 };
-                self.apply(backend, fault, &change)
+                self.apply(fault, &change)
             };
             let mut rows = Vec::new();
             for (fault, note) in proven {

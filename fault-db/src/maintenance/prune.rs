@@ -106,8 +106,7 @@ impl Store {
         loop {
             let counts = self.write(DOING, |conn| {
                 let counts = plan(conn, rule).map_err(failed)?;
-                let sealed = seal_deleted(&self.backend, rule.at_us);
-                sealed.map_err(|error| self.failed(DOING, error))?;
+                self.ask(DOING, |file| seal_deleted(file, rule.at_us))?;
                 delete(conn).map_err(failed)?;
                 Ok(counts)
             })?;

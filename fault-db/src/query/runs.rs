@@ -184,8 +184,8 @@ impl Store {
         let row = |row: Row<'_>| Ok((self.summary(row)?, row.get::<i64>(19)?));
         let found = self.first(DOING, &select, &values![id], row)?;
         let (run, seq) = found.ok_or_else(|| StoreError::not_found("run", id))?;
-        let rest = || -> SqlResult<_> {
-            let signed = signatures_of(&self.backend, id)?;
+        self.ask(DOING, |backend| {
+            let signed = signatures_of(backend, id)?;
             let mut notes = self.run_notes(seq)?;
             for note in &mut notes {
                 let of_note = signed.iter().find(|(_, of)| of.is_about("note", note.id));
@@ -198,12 +198,11 @@ impl Store {
                 faults: self.run_faults(seq)?,
                 settled: self.settled_by(id)?,
                 notes,
-                seal: sealed_as(&self.backend, id)?,
+                seal: sealed_as(backend, id)?,
                 signature: (signed.into_iter())
                     .find_map(|(_, of)| of.is_about("run", id).then_some(of)),
             })
-        };
-        rest().map_err(|error| self.failed(DOING, error))
+        })
     }
 
     fn settled_by(&self, run: Id) -> SqlResult<Vec<SettledFault>> {

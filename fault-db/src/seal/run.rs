@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::canonical::{CanonicalHash, columns, take_rows};
-use super::{hex, trace};
+use super::{from_hex, hex, trace};
 use crate::backend::{Backend, SqlResult, Value, values};
 use crate::id::Id;
 use crate::values::record::{RunEnd, RunRecord, ScriptRecord, StepRecord};
@@ -312,24 +312,14 @@ fn brought_by_others(
         .contains("\"entries\"")
         .then(|| RunPayload::of(payload));
     for entry in payload.flatten().unwrap_or_default().entries {
-        if let (Ok(id), Some(digest)) = (entry.id.parse::<Id>(), from_hex(&entry.sha256))
+        let digest = from_hex(&entry.sha256).and_then(|digest| digest.try_into().ok());
+        if let (Ok(id), Some(digest)) = (entry.id.parse::<Id>(), digest)
             && backend.has(BY_OTHER, &values![id, run])?
         {
             brought.insert(id, digest);
         }
     }
     Ok(brought)
-}
-
-fn from_hex(text: &str) -> Option<[u8; 32]> {
-    let mut bytes = [0; 32];
-    if text.len() != 64 || !text.is_ascii() {
-        return None;
-    }
-    for (place, byte) in bytes.iter_mut().enumerate() {
-        *byte = u8::from_str_radix(&text[2 * place..2 * place + 2], 16).ok()?;
-    }
-    Some(bytes)
 }
 
 /// The payload of a stored run that is sealed as found.

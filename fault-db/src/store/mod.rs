@@ -100,8 +100,7 @@ impl Store {
 
     /// The file's id. Without it its chain of seals is lost, and must not be begun again.
     fn name(&self) -> Result<Id, StoreError> {
-        let name = seal::own_file_id(&self.backend);
-        let name = name.map_err(|error| self.failed("reading its name", error))?;
+        let name = self.ask("reading its name", seal::own_file_id)?;
         name.ok_or_else(|| StoreError::Altered {
             path: self.path.clone(),
             what: Box::new(Damage::NoName),
@@ -201,8 +200,7 @@ impl Store {
         };
         let result = work(&transaction)?;
         if let Some(signer) = signer {
-            sign_new_entries(&self.backend, &signer, known)
-                .map_err(|error| self.failed("signing", error))?;
+            self.ask("signing", |file| sign_new_entries(file, &signer, known))?;
         }
         transaction.commit().map_err(failed)?;
         Ok(result)

@@ -23,7 +23,6 @@ pub use damage::{
 };
 pub use signatures::KeyUse;
 pub use verify::Verification;
-pub(crate) use verify::has_its_traces;
 
 const DOING: &str = "checking";
 
