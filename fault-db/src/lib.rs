@@ -6,8 +6,7 @@
 //! 1. `files`, `backend` (SQLite and PostgreSQL), `values` (what is recorded), [`trace`] (samples of named channels,
 //!    compressed column by column), `error`;
 //! 2. `schema` (tables of a file, SQL functions), `seal` (the chain of hashes), `signature` (of persons and benches over
-//!    seals), `store` ([`Store`]: one open file or
-//!    server);
+//!    seals), `store` ([`Store`]: one open file or server);
 //! 3. `history` writes: [`RunWriter`] records a run as it happens, people change the state of faults; `query` reads;
 //! 4. `maintenance` checks, backs up and prunes files; `server` sets up a server; `exchange` brings the rows of one store
 //!    into another: import, export, synchronisation.

@@ -44,10 +44,10 @@ pub enum Method {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanOptions {
-    /// How; without it the cheapest tree if that can be found, else a greedy one.
+    /// The method; without one, the cheapest tree if it can be found, else a greedy one.
     pub method: Option<Method>,
-    /// Probability that an answer must have, above 0.5 and at most 1; of use in noisy matrices only,
-    /// where tests are certain answers are.
+    /// Probability that an answer must have, above 0.5 and at most 1. Only noisy matrices need it: certain tests
+    /// give certain answers.
     pub confidence: f64,
 }
 
@@ -68,7 +68,7 @@ pub struct Plan {
     pub expected_cost: f64,
     /// Whether no tree costs less.
     pub optimal: bool,
-    /// What a user of it should know.
+    /// Warnings for whoever follows the plan.
     pub warnings: Vec<String>,
 }
 
@@ -177,7 +177,7 @@ fn searched<S: Space>(
     Ok(Tree { nodes })
 }
 
-/// What stands out in a matrix that can be worked with all the same.
+/// Warnings about a matrix that can be planned for nevertheless.
 fn remarks(matrix: &Matrix) -> Vec<String> {
     const SHOWN: usize = 8;
     let some = |names: Vec<&str>| {

@@ -225,7 +225,7 @@ fn index<'a>(ids: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, usize> {
     ids.enumerate().map(|(i, id)| (id, i)).collect()
 }
 
-/// An object as a list, so that a key that is there twice is seen.
+/// A JSON object as a list, so that a key that occurs twice is noticed.
 struct Pairs<'a, V>(Vec<(Name<'a>, V)>);
 
 impl<'de: 'a, 'a, V: Deserialize<'de>> Deserialize<'de> for Pairs<'a, V> {

@@ -16,7 +16,7 @@ use crate::seal::covered::{Covered, seal_as_found};
 /// A file to which change sets are applied, in the caller's transaction.
 pub(super) struct FileApplier<'a> {
     file: &'a Backend,
-    /// `file` again, as a connection.
+    /// The SQLite connection of `file`.
     conn: &'a Connection,
     /// The file may be older than the faults of the change sets: rows of those it does not have are skipped.
     pub is_older: bool,

@@ -40,7 +40,7 @@ macro_rules! sealed_runs {
     };
 }
 
-/// A time of such a run by which they are in order: within one chain as the chain says, between two by their times.
+/// The time by which such runs are sorted: runs of one chain in the order of the chain, others by their own times.
 macro_rules! time_in_order {
     () => {
         "min(r.started_at_us) OVER (PARTITION BY coalesce(s.origin, r.id) ORDER BY s.ordinal

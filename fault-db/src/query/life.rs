@@ -31,7 +31,7 @@ text_enum! {
     }
 }
 
-/// The life of what has a serial number.
+/// The life of a thing with a serial number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Life {
     /// Kind of the thing.

@@ -13,7 +13,7 @@ use crate::id::Id;
 use crate::seal::{SealHead, hash_of, hex, sealed_as};
 use crate::store::atomic_file::AtomicFile;
 
-/// The whole file is looked at for as long as this; the rows of the run are read whatever it takes.
+/// Time limit of looking through the whole file; the rows of the run are read without one.
 const LOOK: Duration = Duration::from_millis(200);
 
 impl Store {

@@ -68,7 +68,7 @@ pub struct CopyOf {
 struct Merge<'a> {
     theirs: &'a Backend,
     ours: &'a Backend,
-    /// `ours` again, as a connection.
+    /// The SQLite connection of `ours`.
     conn: &'a Connection,
     applier: FileApplier<'a>,
     counts: MergeCounts,
@@ -76,7 +76,7 @@ struct Merge<'a> {
     of_nothing: BTreeSet<i64>,
     /// Runs of theirs that are refused, with all that belongs to them.
     refused_runs: BTreeSet<i64>,
-    /// State here of the other file's faults.
+    /// What became here of each fault of the other file.
     faults_here: BTreeMap<i64, LocalFault>,
     /// Ids of their runs, events and notes that are left out.
     left_out: BTreeSet<Vec<u8>>,
