@@ -162,10 +162,7 @@ impl Store {
         let mut conditions = Conditions::default();
         conditions.add("u.serial = ?", filter.unit.clone());
         conditions.add("r.line = ?", filter.line.clone());
-        conditions.add(
-            "r.verdict = ?",
-            filter.verdict.map(|verdict| verdict.to_string()),
-        );
+        conditions.add("r.verdict = ?", filter.verdict);
         conditions.add("r.operator = ?", filter.operator.clone());
         conditions.add("r.started_at_us >= ?", filter.since_us);
         conditions.add("r.started_at_us < ?", filter.until_us);
@@ -217,16 +214,10 @@ impl Store {
     }
 
     fn scripts(&self, run: i64) -> SqlResult<Vec<ScriptRecord>> {
-        self.backend.select(
-            "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path",
-            &values![run],
-            |row| {
-                Ok(ScriptRecord {
-                    path: row.get(0)?,
-                    sha256: row.get(1)?,
-                })
-            },
-        )
+        let sql = "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path";
+        self.backend.select(sql, &values![run], |row| {
+            Ok(from_row!(row => ScriptRecord: path, sha256))
+        })
     }
 
     fn steps(&self, run: i64) -> SqlResult<Vec<StepRecord>> {
