@@ -3,8 +3,8 @@
 
 use super::{copied_from, hash_of};
 use crate::backend::{Backend, SqlResult, from_row, values};
+use crate::error::Damage;
 use crate::id::Id;
-use crate::maintenance::Damage;
 
 /// An entry of a chain as it was seen.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,8 +5,8 @@ use sha2::{Digest as _, Sha256};
 use super::run::RunPayload;
 use super::{PRUNED, PrunedPayload, hex, trace};
 use crate::backend::{Backend, SqlResult, values};
+use crate::error::{Damage, Samples};
 use crate::id::Id;
-use crate::maintenance::{Damage, Samples};
 
 /// Differences between the traces and recordings of a run and those that its seal names.
 pub(crate) struct SamplesHeld {

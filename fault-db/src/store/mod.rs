@@ -18,10 +18,9 @@ use std::sync::Arc;
 use rusqlite::{Connection, Transaction, TransactionBehavior};
 
 use crate::backend::{Backend, Row, Server, SqlError, SqlResult, Value};
-use crate::error::StoreError;
+use crate::error::{Damage, StoreError};
 use crate::files::platform::Identity;
 use crate::id::{Id, IdSource};
-use crate::maintenance::Damage;
 use crate::schema::SCHEMA_VERSION;
 use crate::schema::guard;
 use crate::seal;

@@ -2,7 +2,6 @@
 
 mod chain;
 mod counted;
-mod damage;
 mod derived;
 mod seal_entry;
 mod server;
@@ -14,13 +13,10 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::backend::Backend;
-use crate::error::StoreError;
+use crate::error::{Advice, Damage, Derived, ProblemKind, Samples, StoreError};
 use crate::history::recording::check_recordings;
 use crate::seal::SealHead;
 use crate::store::Store;
-pub use damage::{
-    Advice, Damage, Derived, ProblemKind, Samples, SchemaObject, SealPlace, WrongSignature,
-};
 pub use signatures::KeyUse;
 pub use verify::Verification;
 

@@ -1,7 +1,7 @@
 //! Reads the entries of the chains in order, and checks each one's position and hash.
 
-use super::damage::{Damage, SealPlace, time};
 use crate::backend::{Backend, Row, SqlResult, from_row, values};
+use crate::error::{Damage, SealPlace, time};
 use crate::id::Id;
 use crate::seal::chained;
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use chrono::DateTime;
 use serde::{Serialize, Serializer};
 
-use crate::error::StoreError;
+use super::StoreError;
 use crate::id::Id;
 use crate::signature::SignatureError;
 use crate::values::text_enum::text_enum;
@@ -284,7 +284,7 @@ fn row(number: Option<i64>) -> String {
 }
 
 /// A time of this many µs since 1970.
-pub(super) fn time(at_us: i64) -> String {
+pub(crate) fn time(at_us: i64) -> String {
     let at = DateTime::from_timestamp_micros(at_us).unwrap_or_default();
     at.format("%Y-%m-%d %H:%M:%S UTC").to_string()
 }
