@@ -4,10 +4,9 @@
 //! Each folder uses only those before it:
 //!
 //! 1. `files`, `backend` (SQLite and PostgreSQL), `values` (what is recorded), [`trace`] (samples of named channels,
-//!    compressed column by column), `error`;
+//!    compressed column by column), `error` (errors, and what a check finds);
 //! 2. `schema` (tables of a file, SQL functions), `seal` (the chain of hashes), `signature` (of persons and benches over
-//!    seals), `store` ([`Store`]: one open file or
-//!    server);
+//!    seals), `store` ([`Store`]: one open file or server);
 //! 3. `history` writes: [`RunWriter`] records a run as it happens, people change the state of faults; `query` reads;
 //! 4. `maintenance` checks, backs up and prunes files; `server` sets up a server; `exchange` brings the rows of one store
 //!    into another: import, export, synchronisation.
@@ -38,7 +37,10 @@ mod store;
 pub mod trace;
 mod values;
 
-pub use error::{FileChange, MOST_RESULT_BYTES, QueryLimit, ServerReason, StoreError};
+pub use error::{
+    Advice, Damage, Derived, FileChange, MOST_RESULT_BYTES, ProblemKind, QueryLimit, Samples,
+    SchemaObject, SealPlace, ServerReason, StoreError, WrongSignature,
+};
 pub use exchange::domain::{Refusals, Refused};
 pub use exchange::{
     CopyOf, Difference, LastSync, MergeCounts, SyncOptions, SyncOutcome, SyncPhase, SyncProgress,
@@ -57,10 +59,7 @@ pub use history::run_writer::RunWriter;
 pub use history::verify::{RepairToProve, SettledFault};
 pub use history::withdrawal::{ToWithdraw, Withdrawn};
 pub use id::{Id, IdSource};
-pub use maintenance::{
-    Advice, CheckReport, Damage, Derived, KeyUse, Problem, ProblemKind, PruneCounts, PruneRule,
-    Samples, SchemaObject, SealPlace, Verification, WrongSignature,
-};
+pub use maintenance::{CheckReport, KeyUse, Problem, PruneCounts, PruneRule, Verification};
 pub use query::{
     ConfirmedCase, ConfirmedRepairs, FaultDetail, FaultFilter, FaultStat, FaultSummary, Life,
     LifeEvent, LifeFault, LifeOf, LifeRun, LifeWhat, NamedFault, Occurrence, PartHistory,

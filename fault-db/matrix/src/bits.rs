@@ -5,7 +5,7 @@
 pub(super) struct Bits(Vec<u64>);
 
 impl Bits {
-    /// None of `length` numbers.
+    /// An empty set, for numbers below `length`.
     pub(super) fn none(length: usize) -> Self {
         Self(vec![0; length.div_ceil(64)])
     }
@@ -22,28 +22,28 @@ impl Bits {
             .is_some_and(|word| word >> (index % 64) & 1 == 1)
     }
 
-    /// Adds those of another.
+    /// Adds the numbers of another set.
     pub(super) fn unite(&mut self, other: &Self) {
         for (word, more) in self.0.iter_mut().zip(&other.0) {
             *word |= more;
         }
     }
 
-    /// Keeps those that another has, too.
+    /// Removes the numbers that another set does not have.
     pub(super) fn intersect(&mut self, other: &Self) {
         for (word, mask) in self.0.iter_mut().zip(&other.0) {
             *word &= mask;
         }
     }
 
-    /// Takes away those of another.
+    /// Removes the numbers that another set has.
     pub(super) fn remove(&mut self, other: &Self) {
         for (word, mask) in self.0.iter_mut().zip(&other.0) {
             *word &= !mask;
         }
     }
 
-    /// Its numbers, rising.
+    /// The numbers in the set, in rising order.
     pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
         self.0
             .iter()

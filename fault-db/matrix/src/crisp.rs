@@ -107,7 +107,7 @@ impl CrispSpace {
         length
     }
 
-    /// Cost of so many different tests, at least; between whole numbers on the line.
+    /// Least cost of this many different tests, in proportion between whole numbers.
     fn cost_of(&self, tests: f64) -> f64 {
         let last = self.cheapest.len() - 1;
         let whole = (tests as usize).min(last);

@@ -28,7 +28,7 @@ pub enum MatrixError {
         /// `state` or `test`.
         kind: &'static str,
     },
-    /// Two of one name.
+    /// Two states or two tests have the same name.
     #[error("{kind} \"{id}\" is there twice")]
     DuplicateId {
         /// `state` or `test`.
@@ -55,7 +55,7 @@ pub enum MatrixError {
         state: String,
         value: f64,
     },
-    /// Cells of another number than states times tests.
+    /// The number of cells is not states times tests.
     #[error("{found} cells for {states} states × {tests} tests")]
     CellCount {
         /// Cells given.
@@ -77,7 +77,7 @@ pub enum MatrixError {
         test: String,
         state: String,
     },
-    /// One row of outcomes given twice.
+    /// The outcomes of a test are given twice.
     #[error("the outcomes of test \"{test}\" are there twice")]
     TestTwice { test: String },
     #[error("the outcomes of test \"{test}\" name the state \"{state}\" twice")]
@@ -96,7 +96,7 @@ pub enum MatrixError {
         /// The outcomes that the test has.
         known: String,
     },
-    /// A table that is none, or a cell of it.
+    /// A line of a table, or a cell in it, cannot be read.
     #[error("line {line}: {what}")]
     Table {
         /// Line of the file, from 1.
@@ -110,7 +110,7 @@ pub enum MatrixError {
     Contradiction {
         /// The outcomes that went before, as words, empty or ending in a blank.
         before: String,
-        /// The test that leaves nothing.
+        /// The test whose outcome no remaining state explains.
         test: String,
         outcome: String,
     },

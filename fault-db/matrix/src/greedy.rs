@@ -37,16 +37,6 @@ const MAX_NOISY_NODES: usize = 20_000;
 /// Members rarer than this share are left out when the tests of a noisy matrix are weighed.
 const RARE: f64 = 1e-9;
 
-/// Whether choices are verified by rollout.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Rollout {
-    /// Most gain per cost, without rollout.
-    #[cfg(test)]
-    Off,
-    /// The best of a few by rollout.
-    On,
-}
-
 pub(super) struct GrownTree {
     pub(super) tree: Tree,
     /// Whether some choices were made by gain alone because the rollout work was used up.
@@ -54,8 +44,18 @@ pub(super) struct GrownTree {
 }
 
 /// Grows a tree, the likeliest branches first.
-pub(super) fn grow(problem: &Problem<'_>, rollout: Rollout) -> GrownTree {
-    let mut grower = Grower::new(problem);
+pub(super) fn grow(problem: &Problem<'_>) -> GrownTree {
+    let rollout = match problem.matrix.is_crisp() {
+        true => CRISP_ROLLOUT,
+        false => NOISY_ROLLOUT,
+    };
+    grow_within(problem, rollout)
+}
+
+/// Grows a tree with at most so many steps of rollout; without any, each choice is the test with the most gain per
+/// cost.
+fn grow_within(problem: &Problem<'_>, rollout: u64) -> GrownTree {
+    let mut grower = Grower::new(problem, rollout);
     let mut nodes = vec![Node::Leaf(problem.leaf(&problem.root(), false))];
     let mut open = BinaryHeap::from([OpenBranch::new(problem.root(), 0)]);
     let mut unchecked = false;
@@ -70,14 +70,10 @@ pub(super) fn grow(problem: &Problem<'_>, rollout: Rollout) -> GrownTree {
             nodes[node] = Node::Leaf(problem.leaf(&belief, true));
             continue;
         }
-        let test = match rollout {
-            #[cfg(test)]
-            Rollout::Off => best,
-            Rollout::On => grower.choose(&belief, &ranked).unwrap_or_else(|| {
-                unchecked = true;
-                best
-            }),
-        };
+        let test = grower.choose(&belief, &ranked).unwrap_or_else(|| {
+            unchecked = true;
+            best
+        });
         let split = problem.split(&belief, test);
         nodes[node] = problem.node(&belief, test, &split, nodes.len());
         for (_, belief) in split {
@@ -87,7 +83,7 @@ pub(super) fn grow(problem: &Problem<'_>, rollout: Rollout) -> GrownTree {
         }
     }
     GrownTree {
-        tree: Tree::new(nodes),
+        tree: Tree { nodes },
         unchecked,
     }
 }
@@ -145,7 +141,7 @@ struct Grower<'a> {
 }
 
 impl<'a> Grower<'a> {
-    fn new(problem: &'a Problem<'a>) -> Self {
+    fn new(problem: &'a Problem<'a>, rollout_left: u64) -> Self {
         let groups = 0..problem.len();
         let (mut fails, mut noise) = (Vec::new(), Vec::new());
         if problem.matrix.is_crisp() {
@@ -171,10 +167,7 @@ impl<'a> Grower<'a> {
                 .filter(|test| problem.is_worded(*test))
                 .collect(),
             work: 0,
-            rollout_left: match problem.matrix.is_crisp() {
-                true => CRISP_ROLLOUT,
-                false => NOISY_ROLLOUT,
-            },
+            rollout_left,
         }
     }
 
@@ -358,8 +351,8 @@ mod tests {
             let matrix = matrix(seed);
             let known = Posterior::prior(&matrix);
             let problem = Problem::new(&matrix, &known, 0.99);
-            let cost = |rollout| grow(&problem, rollout).tree.expected_cost(&matrix);
-            let (plain, checked) = (cost(Rollout::Off), cost(Rollout::On));
+            let cost = |grown: GrownTree| grown.tree.expected_cost(&matrix);
+            let (plain, checked) = (cost(grow_within(&problem, 0)), cost(grow(&problem)));
             assert!(checked <= plain + 1e-9, "seed {seed}: {checked} > {plain}");
             less += usize::from(checked < plain - 1e-9);
         }

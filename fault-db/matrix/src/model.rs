@@ -2,26 +2,29 @@
 
 use std::collections::BTreeSet;
 
+use serde::Deserialize;
+
 use super::error::MatrixError;
 
-/// What probabilities may miss 1 by, for each state: they come rounded.
+/// Allowed difference of the sum of probabilities from 1, for each state: they come rounded.
 const SUM_TOLERANCE: f64 = 1e-6;
 
 /// Cells at most: 400 MB.
 const MAX_CELLS: usize = 50_000_000;
 
-/// What the system may be in.
-#[derive(Clone, Debug, PartialEq)]
+/// A condition that the system may be in.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct State {
     pub id: String,
     /// Probability before any test, 0..1.
+    #[serde(rename = "p")]
     pub probability: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Test {
     pub id: String,
-    /// What doing it once costs, above 0, in any unit.
+    /// Cost of doing the test once, above 0, in any unit.
     pub cost: f64,
 }
 
@@ -58,7 +61,7 @@ impl Matrix {
         Self::worded(states, tests, cells, words)
     }
 
-    /// The same, where a test that has words has these for outcomes, and its cells say which.
+    /// As [`Matrix::new`], with words for the outcomes of some tests. A cell of such a test is the place of a word.
     pub(super) fn worded(
         states: Vec<State>,
         tests: Vec<Test>,
@@ -123,7 +126,7 @@ impl Matrix {
         self.words(test).len().max(2)
     }
 
-    /// What an outcome of a test is called.
+    /// The word for an outcome of a test.
     pub fn outcome(&self, test: usize, outcome: usize) -> &str {
         let word = self.words(test).get(outcome).map(String::as_str);
         word.unwrap_or(if outcome == 0 { "pass" } else { "fail" })

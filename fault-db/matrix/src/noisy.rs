@@ -146,7 +146,7 @@ impl<'a> NoisySpace<'a> {
         }
     }
 
-    /// Entropy that stays after all unused tests, at most, in bits.
+    /// Upper limit, in bits, of the entropy that remains after all unused tests.
     ///
     /// For a state i it is the mean of log2 Σ_j π_j P(y|j) / (π_i P(y|i)); the root of a sum is at
     /// most the sum of roots, and Jensen's inequality takes the mean inside, where it is the overlap
@@ -174,7 +174,7 @@ impl<'a> NoisySpace<'a> {
             .sum()
     }
 
-    /// Entropy of which class it is at an end that reached the confidence, at most.
+    /// Upper limit of the entropy over the classes at a leaf that reached the confidence.
     fn doubt(&self, groups: usize) -> f64 {
         let doubt = 1.0 - self.problem.confidence;
         binary_entropy(doubt) + doubt * (groups.max(2) as f64 - 1.0).log2()
@@ -200,10 +200,9 @@ impl Space for NoisySpace<'_> {
         useful.into_iter().map(branch).collect()
     }
 
-    /// An end has either reached the confidence or has no use for the tests left, so what it leaves
-    /// unknown is at most the doubt allowed and what all tests would leave. The rest must come from
-    /// tests, each giving at most its capacity, each used at most once: the cheapest way to buy it is
-    /// by rising cost per bit.
+    /// A leaf has either reached the confidence or has no use for the tests left. So the entropy left there is at
+    /// most the doubt allowed plus what all tests would leave. Tests have to remove the rest; each is used at
+    /// most once and removes at most its capacity. It is cheapest to take them by rising cost per bit.
     fn bound(&self, point: NoisyPoint) -> f64 {
         let belief = self.belief(point);
         let useful = self.useful(&belief);

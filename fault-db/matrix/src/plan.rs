@@ -2,7 +2,7 @@
 
 use super::crisp::CrispSpace;
 use super::error::MatrixError;
-use super::greedy::{Rollout, grow};
+use super::greedy::grow;
 use super::model::Matrix;
 use super::noisy::NoisySpace;
 use super::posterior::Posterior;
@@ -44,10 +44,10 @@ pub enum Method {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanOptions {
-    /// How; without it the cheapest tree if that can be found, else a greedy one.
+    /// The method; without one, the cheapest tree if it can be found, else a greedy one.
     pub method: Option<Method>,
-    /// Probability that an answer must have, above 0.5 and at most 1; of use in noisy matrices only,
-    /// where tests are certain answers are.
+    /// Probability that an answer must have, above 0.5 and at most 1. Only noisy matrices need it: certain tests
+    /// give certain answers.
     pub confidence: f64,
 }
 
@@ -68,7 +68,7 @@ pub struct Plan {
     pub expected_cost: f64,
     /// Whether no tree costs less.
     pub optimal: bool,
-    /// What a user of it should know.
+    /// Warnings for whoever follows the plan.
     pub warnings: Vec<String>,
 }
 
@@ -112,7 +112,7 @@ pub fn plan(matrix: &Matrix, known: &Posterior, options: PlanOptions) -> Result<
             ),
         }
     }
-    let grown = grow(&problem, Rollout::On);
+    let grown = grow(&problem);
     if grown.unchecked {
         warnings.push(
             "the work allowed for rollout was used up; some tests are chosen by information gain per cost alone"
@@ -174,10 +174,10 @@ fn searched<S: Space>(
         open.extend(below);
         open[after..].reverse();
     }
-    Ok(Tree::new(nodes))
+    Ok(Tree { nodes })
 }
 
-/// What stands out in a matrix that can be worked with all the same.
+/// Warnings about a matrix that can be planned for nevertheless.
 fn remarks(matrix: &Matrix) -> Vec<String> {
     const SHOWN: usize = 8;
     let some = |names: Vec<&str>| {

@@ -3,7 +3,7 @@
 use super::error::MatrixError;
 use super::model::Matrix;
 
-/// What a test came to.
+/// The outcome of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// It passed: outcome 0.
@@ -64,7 +64,7 @@ pub struct Posterior {
 }
 
 impl Posterior {
-    /// As the matrix has them, before any test.
+    /// The probabilities in the matrix, before any test.
     pub fn prior(matrix: &Matrix) -> Self {
         let states = &matrix.states();
         Self {

@@ -6,7 +6,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use serde::Deserialize;
-use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
+use serde::de::{Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 
 use super::error::MatrixError;
@@ -15,16 +15,10 @@ use super::posterior::Outcome;
 
 #[derive(Deserialize)]
 struct MatrixFile<'a> {
-    states: Vec<StateEntry>,
+    states: Vec<State>,
     tests: Vec<TestEntry>,
     #[serde(borrow)]
     outcomes: Pairs<'a, Pairs<'a, Cell>>,
-}
-
-#[derive(Deserialize)]
-struct StateEntry {
-    id: String,
-    p: f64,
 }
 
 #[derive(Deserialize)]
@@ -36,20 +30,14 @@ struct TestEntry {
 }
 
 /// The probability that a test fails, or one of its outcomes.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a number is expected, or the word of an outcome"
+)]
 enum Cell {
     Number(f64),
     Word(String),
-}
-
-impl<'de> Deserialize<'de> for Cell {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let wrong = || D::Error::custom("a number is expected, or the word of an outcome");
-        match Value::deserialize(deserializer)? {
-            Value::Number(number) => number.as_f64().map(Self::Number).ok_or_else(wrong),
-            Value::String(word) => Ok(Self::Word(word)),
-            _ => Err(wrong()),
-        }
-    }
 }
 
 impl Matrix {
@@ -101,16 +89,12 @@ impl Matrix {
                 }
             }
         }
-        let states = file.states.into_iter().map(|entry| State {
-            id: entry.id,
-            probability: entry.p,
-        });
         let tests = file.tests.into_iter().map(|entry| Test {
             id: entry.id,
             cost: entry.cost,
         });
         Self::worded(
-            states.collect(),
+            file.states,
             tests.collect(),
             cells.into_iter().map(|cell| cell.unwrap_or(0.0)).collect(),
             words,
@@ -241,7 +225,7 @@ fn index<'a>(ids: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, usize> {
     ids.enumerate().map(|(i, id)| (id, i)).collect()
 }
 
-/// An object as a list, so that a key that is there twice is seen.
+/// A JSON object as a list, so that a key that occurs twice is noticed.
 struct Pairs<'a, V>(Vec<(Name<'a>, V)>);
 
 impl<'de: 'a, 'a, V: Deserialize<'de>> Deserialize<'de> for Pairs<'a, V> {
@@ -267,26 +251,5 @@ impl<'de: 'a, 'a, V: Deserialize<'de>> Deserialize<'de> for Pairs<'a, V> {
 }
 
 /// A name that stays where it is in the text unless it has escapes: a large matrix has millions.
-struct Name<'a>(Cow<'a, str>);
-
-impl<'de: 'a, 'a> Deserialize<'de> for Name<'a> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Read;
-        impl<'de> Visitor<'de> for Read {
-            type Value = Name<'de>;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a name")
-            }
-
-            fn visit_borrowed_str<E>(self, text: &'de str) -> Result<Name<'de>, E> {
-                Ok(Name(text.into()))
-            }
-
-            fn visit_str<E>(self, text: &str) -> Result<Name<'de>, E> {
-                Ok(Name(text.to_owned().into()))
-            }
-        }
-        deserializer.deserialize_str(Read)
-    }
-}
+#[derive(Deserialize)]
+struct Name<'a>(#[serde(borrow)] Cow<'a, str>);

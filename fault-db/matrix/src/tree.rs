@@ -42,10 +42,6 @@ pub struct Tree {
 }
 
 impl Tree {
-    pub(super) fn new(nodes: Vec<Node>) -> Self {
-        Self { nodes }
-    }
-
     /// The first test, unless there is none.
     pub fn first_test(&self) -> Option<usize> {
         match self.nodes.first() {

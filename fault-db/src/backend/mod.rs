@@ -91,6 +91,12 @@ impl Backend {
         Ok(self.first(sql, values, |_| Ok(()))?.is_some())
     }
 
+    /// Executes an `INSERT … RETURNING seq`; the number of the row.
+    pub fn insert(&self, sql: &str, values: &[Value<'_>]) -> SqlResult<i64> {
+        let seq = self.first(sql, values, |row| row.get(0))?;
+        seq.ok_or(SqlError::File(rusqlite::Error::QueryReturnedNoRows))
+    }
+
     /// Executes a statement; the number of rows changed.
     pub fn execute(&self, sql: &str, values: &[Value<'_>]) -> SqlResult<u64> {
         match self {

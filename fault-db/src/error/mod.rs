@@ -1,6 +1,7 @@
 //! Errors of the store, each with the file or server it concerns and the next move. A message that tells to
 //! choose another file does not say how: the caller adds that.
 
+mod damage;
 mod file_change;
 mod query_limit;
 mod server;
@@ -9,10 +10,13 @@ mod sqlite;
 use std::path::PathBuf;
 
 use crate::id::{Id, list};
-use crate::maintenance::Damage;
 use crate::trace::TraceError;
 use crate::values::fault_state::TransitionError;
 use crate::values::withdrawal_error::WithdrawalError;
+pub(crate) use damage::time;
+pub use damage::{
+    Advice, Damage, Derived, ProblemKind, Samples, SchemaObject, SealPlace, WrongSignature,
+};
 pub use file_change::FileChange;
 pub use query_limit::{MOST_RESULT_BYTES, QueryLimit};
 pub use server::ServerReason;

@@ -3,7 +3,7 @@
 use std::error::Error as _;
 use std::path::Path;
 
-use postgres::error::SqlState;
+use postgres::error::{DbError, SqlState};
 use rustls::CertificateError;
 
 use super::StoreError;
@@ -48,42 +48,61 @@ pub enum ServerReason {
 
 /// Classifies an error of a server by what a caller can do about it.
 pub(crate) fn classify(path: &Path, doing: &'static str, source: postgres::Error) -> StoreError {
-    let path = path.to_path_buf();
-    let Some(said) = source.as_db_error() else {
-        return without_message(path, doing, source);
+    let reason = match source.as_db_error() {
+        Some(said) => by_code(said),
+        None => by_cause(&source),
     };
-    let reason = said.message().to_owned();
-    match *said.code() {
-        SqlState::QUERY_CANCELED
-        | SqlState::LOCK_NOT_AVAILABLE
-        | SqlState::TOO_MANY_CONNECTIONS => StoreError::ServerBusy {
+    let path = path.to_path_buf();
+    match reason {
+        Some(Trouble::Busy(reason)) => StoreError::ServerBusy {
             path,
             doing,
             reason,
         },
+        Some(Trouble::Refuses(reason)) => StoreError::ServerRefuses { path, reason },
+        Some(Trouble::Unreachable(reason)) => StoreError::ServerUnreachable {
+            path,
+            doing,
+            reason,
+        },
+        Some(Trouble::NotTrusted(reason)) => StoreError::ServerNotTrusted { path, reason },
+        None => StoreError::Server {
+            path,
+            doing,
+            source,
+        },
+    }
+}
+
+/// Kinds of trouble with a server that a caller tells apart.
+enum Trouble {
+    Busy(String),
+    Refuses(ServerReason),
+    Unreachable(ServerReason),
+    NotTrusted(ServerReason),
+}
+
+/// The trouble that the code of a server's message tells.
+fn by_code(said: &DbError) -> Option<Trouble> {
+    let reason = said.message().to_owned();
+    match *said.code() {
+        SqlState::QUERY_CANCELED
+        | SqlState::LOCK_NOT_AVAILABLE
+        | SqlState::TOO_MANY_CONNECTIONS => Some(Trouble::Busy(reason)),
         SqlState::INSUFFICIENT_PRIVILEGE
         | SqlState::INVALID_PASSWORD
         | SqlState::INVALID_AUTHORIZATION_SPECIFICATION
         | SqlState::INVALID_CATALOG_NAME
         | SqlState::READ_ONLY_SQL_TRANSACTION
         | SqlState::DISK_FULL
-        | SqlState::OUT_OF_MEMORY => StoreError::ServerRefuses {
-            path,
-            reason: ServerReason::Said(reason),
-        },
+        | SqlState::OUT_OF_MEMORY => Some(Trouble::Refuses(ServerReason::Said(reason))),
         SqlState::ADMIN_SHUTDOWN
         | SqlState::CRASH_SHUTDOWN
         | SqlState::CANNOT_CONNECT_NOW
-        | SqlState::IDLE_IN_TRANSACTION_SESSION_TIMEOUT => StoreError::ServerUnreachable {
-            path,
-            doing,
-            reason: ServerReason::Said(reason),
-        },
-        _ => StoreError::Server {
-            path,
-            doing,
-            source,
-        },
+        | SqlState::IDLE_IN_TRANSACTION_SESSION_TIMEOUT => {
+            Some(Trouble::Unreachable(ServerReason::Said(reason)))
+        }
+        _ => None,
     }
 }
 
@@ -95,51 +114,24 @@ pub(crate) fn message(error: &postgres::Error) -> String {
     }
 }
 
-/// Errors without a message of the server: of the network, or of the client.
-fn without_message(
-    path: std::path::PathBuf,
-    doing: &'static str,
-    source: postgres::Error,
-) -> StoreError {
+/// The trouble of an error without a message of the server: of the network, or of the client.
+fn by_cause(source: &postgres::Error) -> Option<Trouble> {
     if source.is_closed() {
-        let reason = ServerReason::Lost;
-        return StoreError::ServerUnreachable {
-            path,
-            doing,
-            reason,
-        };
+        return Some(Trouble::Unreachable(ServerReason::Lost));
     }
-    let Some(cause) = source.source() else {
-        return StoreError::Server {
-            path,
-            doing,
-            source,
-        };
-    };
+    let cause = source.source()?;
     let Some(network) = cause.downcast_ref::<std::io::Error>() else {
         // The client's own errors have fixed texts: no TLS here, no password given.
-        let reason = cause.to_string();
-        return match reason.as_str() {
-            "server does not support TLS" => StoreError::ServerRefuses {
-                path,
-                reason: ServerReason::NoTls,
-            },
-            "password missing" => StoreError::ServerRefuses {
-                path,
-                reason: ServerReason::NoPassword,
-            },
-            _ => StoreError::Server {
-                path,
-                doing,
-                source,
-            },
+        return match cause.to_string().as_str() {
+            "server does not support TLS" => Some(Trouble::Refuses(ServerReason::NoTls)),
+            "password missing" => Some(Trouble::Refuses(ServerReason::NoPassword)),
+            _ => None,
         };
     };
     if let Some(error) = network.get_ref().and_then(|inner| inner.downcast_ref()) {
-        let reason = distrust(error);
-        return StoreError::ServerNotTrusted { path, reason };
+        return Some(Trouble::NotTrusted(distrust(error)));
     }
-    let reason = match network.kind() {
+    Some(Trouble::Unreachable(match network.kind() {
         std::io::ErrorKind::ConnectionRefused => ServerReason::NothingListens,
         std::io::ErrorKind::TimedOut => ServerReason::NoAnswer,
         std::io::ErrorKind::NotFound => ServerReason::NoSocket,
@@ -148,12 +140,7 @@ fn without_message(
         | std::io::ErrorKind::ConnectionAborted
         | std::io::ErrorKind::BrokenPipe => ServerReason::Lost,
         _ => ServerReason::Said(network.to_string()),
-    };
-    StoreError::ServerUnreachable {
-        path,
-        doing,
-        reason,
-    }
+    }))
 }
 
 /// Reason for which a certificate was not trusted.

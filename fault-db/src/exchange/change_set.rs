@@ -156,7 +156,7 @@ impl ChangeSet {
         }
     }
 
-    /// Reads a row that others refer to, unless it is included; whether it was not.
+    /// Reads a row that others refer to, unless it is included already; whether it was read.
     fn include(&mut self, file: &Backend, of: TableId, seq: i64) -> SqlResult<bool> {
         let (key, place) = ((of as usize, seq), self.rows(of).count());
         if self.included.contains_key(&key) {

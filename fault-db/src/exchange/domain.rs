@@ -5,6 +5,7 @@
 use serde::Serialize;
 
 use crate::backend::Field;
+use crate::seal::hex;
 use crate::values::fault_state::FaultState;
 use crate::values::record::Verdict;
 
@@ -75,10 +76,8 @@ pub(crate) fn shown_id(bytes: &[u8]) -> String {
     match bytes.try_into() {
         Ok(id) => crate::id::Id::from_bytes(id).to_string(),
         Err(_) => {
-            let hex: String = (bytes.iter().take(ID_BYTES + 1))
-                .map(|byte| format!("{byte:02x}"))
-                .collect();
-            format!("of {} bytes ({hex}…)", bytes.len())
+            let shown = hex(&bytes[..bytes.len().min(ID_BYTES + 1)]);
+            format!("of {} bytes ({shown}…)", bytes.len())
         }
     }
 }

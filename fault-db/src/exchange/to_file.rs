@@ -8,16 +8,15 @@ use super::change_set::{ChangeSet, Counts};
 use super::columns::Kind;
 use super::rows::Rows;
 use super::tables::{COUNT, TableId};
-use crate::backend::{Backend, SqlResult, values};
+use crate::backend::{Backend, SqlResult, Value, values};
 use crate::history::event_graph::{fault_of, merge_faults};
 use crate::id::Id;
-use crate::seal::events_and_notes::{seal_event_as_found, seal_note_as_found};
-use crate::seal::seal_run_as_found;
+use crate::seal::covered::{Covered, seal_as_found};
 
 /// A file to which change sets are applied, in the caller's transaction.
 pub(super) struct FileApplier<'a> {
     file: &'a Backend,
-    /// `file` again, as a connection.
+    /// The SQLite connection of `file`.
     conn: &'a Connection,
     /// The file may be older than the faults of the change sets: rows of those it does not have are skipped.
     pub is_older: bool,
@@ -150,27 +149,23 @@ impl<'a> FileApplier<'a> {
 
     /// Seals, as found, the runs, events and notes that came without a fitting seal.
     pub fn seal_the_rest(&self, found: &str) -> SqlResult<()> {
-        let unsealed = "SELECT seq FROM run WHERE id = ?1 AND verdict IS NOT NULL
-            AND NOT EXISTS (SELECT 1 FROM seal s WHERE s.id = run.id AND s.what = 'run')";
-        for run in &self.new_runs {
-            if let Some(run) = (self.file).first(unsealed, &values![*run], |row| row.get(0))? {
-                seal_run_as_found(self.file, run, found)?;
-            }
-        }
-        let unsealed = |table: &str, what: &str, after: i64| {
+        let seal_unsealed = |kind: Covered, which: &str, value: Value<'_>| {
+            let (table, word) = (kind.table(), kind.word());
             let sql = format!(
-                "SELECT seq FROM {table} e WHERE seq > ?1 AND NOT EXISTS
-                    (SELECT 1 FROM seal s WHERE s.id = e.id AND s.what = '{what}') ORDER BY seq"
+                "SELECT seq FROM {table} e WHERE {which} AND NOT EXISTS
+                    (SELECT 1 FROM seal s WHERE s.id = e.id AND s.what = '{word}') ORDER BY seq"
             );
-            self.file
-                .select(&sql, &values![after], |row| row.get::<i64>(0))
+            let rows: Vec<i64> = self.file.select(&sql, &[value], |row| row.get(0))?;
+            (rows.into_iter()).try_for_each(|row| seal_as_found(self.file, kind, row, found))
         };
-        for event in unsealed("fault_event", "event", self.before.event)? {
-            seal_event_as_found(self.file, event, found)?;
+        for run in &self.new_runs {
+            seal_unsealed(
+                Covered::Run,
+                "id = ?1 AND verdict IS NOT NULL",
+                (*run).into(),
+            )?;
         }
-        for note in unsealed("run_note", "note", self.before.note)? {
-            seal_note_as_found(self.file, note, found)?;
-        }
-        Ok(())
+        seal_unsealed(Covered::Event, "seq > ?1", self.before.event.into())?;
+        seal_unsealed(Covered::Note, "seq > ?1", self.before.note.into())
     }
 }

@@ -16,7 +16,7 @@ use crate::history::recurrence::HighWaterMark;
 /// A server to which change sets of a laptop are applied, in the caller's transaction.
 pub(super) struct ServerApplier<'a> {
     pub backend: &'a Backend,
-    /// `backend` again.
+    /// The PostgreSQL connection of `backend`.
     pub server: &'a Server,
     /// The server's row number of the laptop.
     pub laptop: i64,

@@ -1,5 +1,5 @@
-//! Files that are there as long as the program that made them: a lock tells whether it still runs, in whatever container or
-//! on whatever computer. A number of a process means nothing there.
+//! Files that exist only while the program that made them runs. A lock shows whether it does, also from another container
+//! or computer, where the number of a process means nothing.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Result};
@@ -12,7 +12,7 @@ use crate::files::platform;
 /// Where a disk has no locks, a file that was not written to for this long is abandoned.
 const GIVEN_UP: Duration = Duration::from_secs(3_600);
 
-/// One that this program made; it is removed with this, and with what SQLite keeps beside it.
+/// A file that this program made. Dropping the value removes it, and the files that SQLite keeps beside it.
 #[derive(Debug)]
 pub(crate) struct HeldFile {
     pub(crate) file: File,
@@ -58,7 +58,7 @@ impl Drop for HeldFile {
     }
 }
 
-/// Whether whoever made a file that all may read still holds it. Where that cannot be known, it is taken to be so.
+/// Whether the program that made a file, readable for all, still holds it; also if that cannot be found out.
 pub(crate) fn is_held(path: &Path) -> bool {
     match File::open(path) {
         Ok(file) => file.try_lock_shared().is_err(),
@@ -70,7 +70,7 @@ pub(crate) fn is_held(path: &Path) -> bool {
     }
 }
 
-/// Removes the abandoned ones among the files of a folder whose names are of such.
+/// Removes the abandoned files of a folder, of those whose names `is_one` accepts.
 pub(crate) fn remove_abandoned(folder: &Path, is_one: impl Fn(&str) -> bool) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();

@@ -110,9 +110,10 @@ impl Store {
             body: &body,
             state: None,
         };
-        insert_event(&self.backend, seq, &event)
-            .and_then(|()| recompute_fault(&self.backend, seq))
-            .map_err(|error| self.failed("attributing a fault", error))
+        self.ask("attributing a fault", |backend| {
+            insert_event(backend, seq, &event)?;
+            recompute_fault(backend, seq)
+        })
     }
 
     /// The fault with this id, now or formerly.

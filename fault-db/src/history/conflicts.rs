@@ -3,6 +3,7 @@
 
 use serde::Serialize;
 
+use crate::backend::{Row, from_row};
 use crate::error::StoreError;
 use crate::history::graph_sql::heads;
 use crate::id::Id;
@@ -57,32 +58,23 @@ impl Store {
     /// Faults in conflict, in the order of their ids.
     pub fn conflicts(&self) -> Result<Vec<StateConflict>, StoreError> {
         let mut conflicts = Vec::<StateConflict>::new();
-        let take = |row: crate::backend::Row<'_>| {
+        let take = |row: Row<'_>| {
             let fault: Id = row.get(0)?;
-            let rival = ConflictingEvent {
-                id: row.get(6)?,
-                kind: row.get(7)?,
-                at_us: row.get(8)?,
-                who: row.get(9)?,
-                body: row.get(10)?,
-                state: row.get(11)?,
-            };
+            let rival = from_row!(row => ConflictingEvent:
+                _, _, _, _, _, _, id, kind, at_us, who, body, state
+            );
             match conflicts.last_mut().filter(|last| last.fault == fault) {
                 Some(last) => last.rivals.push(rival),
-                None => conflicts.push(StateConflict {
-                    fault,
-                    unit: row.get(1)?,
-                    code: row.get(2)?,
-                    code_name: row.get(3)?,
-                    lru: row.get(4)?,
-                    stands: row.get(5)?,
-                    rivals: vec![rival],
-                }),
+                None => conflicts.push(from_row!(row => StateConflict:
+                    fault, unit, code, code_name, lru, stands;
+                    rivals: vec![rival]
+                )),
             }
             Ok(())
         };
-        let found = self.backend.each(CONFLICTING_EVENTS, &[], take);
-        found.map_err(|error| self.failed("looking for conflicts", error))?;
+        self.ask("looking for conflicts", |backend| {
+            backend.each(CONFLICTING_EVENTS, &[], take)
+        })?;
         Ok(conflicts)
     }
 }

@@ -1,7 +1,5 @@
 //! Fault dictionaries stored in the file; none is ever deleted, the newest comes first.
 
-use rusqlite::params;
-
 use crate::backend::values;
 use crate::error::StoreError;
 use crate::id::Id;
@@ -30,22 +28,22 @@ impl Store {
     pub fn put_dictionary(&self, record: &DictionaryRecord) -> Result<Id, StoreError> {
         const DOING: &str = "storing a fault dictionary";
         let id = self.mint()?;
-        self.write(DOING, |conn| {
-            conn.prepare_cached(
-                "INSERT INTO dictionary(id, made_at_us, app_version, basis_sha256, modes, data)
-                 VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
-            )
-            .and_then(|mut insert| {
-                insert.execute(params![
-                    id,
-                    record.made_at_us,
-                    record.app_version,
-                    record.basis_sha256,
-                    record.modes,
-                    record.data
-                ])
+        let values = values![
+            id,
+            record.made_at_us,
+            &record.app_version,
+            &record.basis_sha256,
+            record.modes as i64,
+            &record.data[..],
+        ];
+        self.write(DOING, |_| {
+            self.ask(DOING, |file| {
+                file.execute(
+                    "INSERT INTO dictionary(id, made_at_us, app_version, basis_sha256, modes, data)
+                     VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+                    &values,
+                )
             })
-            .map_err(|error| self.failed(DOING, error))
         })?;
         Ok(id)
     }

@@ -107,7 +107,7 @@ impl Store {
         limits::name("the name of who says it", who)?;
         limits::note("the note", note)?;
         let id = self.mint()?;
-        self.change(DOING, |backend| {
+        self.change(DOING, |_| {
             let seq = self.fault_row(fault)?.seq;
             let event = NewEvent {
                 id,
@@ -117,7 +117,7 @@ impl Store {
                 body: note,
                 state: None,
             };
-            insert_event(backend, seq, &event).map_err(|error| self.failed(DOING, error))
+            self.ask(DOING, |backend| insert_event(backend, seq, &event))
         })
     }
 
@@ -131,16 +131,14 @@ impl Store {
         if change.kind != REPAIR {
             limits::note("the note", change.body)?;
         }
-        self.change("changing a fault's state", |backend| {
+        self.change("changing a fault's state", |_| {
             let named = self.fault_row(fault)?;
             let rest = match whole_case {
                 true => self.settled_with(&named, change.action)?,
                 false => Vec::new(),
             };
-            let named = self.apply(backend, named, change)?;
-            let rest = rest
-                .into_iter()
-                .map(|of_case| self.apply(backend, of_case, change));
+            let named = self.apply(named, change)?;
+            let rest = rest.into_iter().map(|of_case| self.apply(of_case, change));
             Ok((named, rest.collect::<Result<_, _>>()?))
         })
     }
@@ -148,7 +146,6 @@ impl Store {
     /// Adds the event of a change to one fault, in the caller's transaction.
     pub(crate) fn apply(
         &self,
-        backend: &Backend,
         fault: CaseFault,
         change: &Change<'_>,
     ) -> Result<CaseFault, StoreError> {
@@ -165,7 +162,7 @@ impl Store {
             body: change.body,
             state: Some(to),
         };
-        let work = || {
+        self.ask("changing a fault's state", |backend| {
             insert_event(backend, fault.seq, &event)?;
             // On a server clients may not write derived columns.
             if let Backend::Server(_) = backend {
@@ -177,8 +174,7 @@ impl Store {
                 &values![fault.seq, to, closed_at_us],
             )?;
             Ok(())
-        };
-        work().map_err(|error| self.failed("changing a fault's state", error))?;
+        })?;
         Ok(CaseFault { state: to, ..fault })
     }
 }

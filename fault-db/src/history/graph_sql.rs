@@ -6,9 +6,8 @@
 //! the most work stands until a later event names all heads as parents. `opened` and `recurred` are
 //! observations, not decisions: `recurred` yields to an acknowledgement, `opened` to every other event.
 //!
-//! An event that a `withdrawn` one follows, and this one, are in the graph as if they were not: what was a head before
-//! the one is a head again. What followed the event, made
-//! without knowing of the withdrawal, is in conflict with what was decided before it.
+//! A `withdrawn` event and the event that it follows do not count in the graph: the heads before that event are heads
+//! again. A later event, made without knowing of the withdrawal, is in conflict with them.
 //!
 //! What a fault comes from changes no state: a person's latest `cause` decides it, or else the latest `diagnosed` of a
 //! run, by Lamport number and id. The faults of a unit that are not closed and have one cause are one *case*.

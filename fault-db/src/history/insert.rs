@@ -2,16 +2,15 @@
 
 use std::borrow::Cow;
 
-use rusqlite::{Connection, params};
-
-use crate::backend::{Backend, SqlError, SqlResult, values};
+use crate::backend::{Backend, SqlResult, Value, values};
 use crate::history::fault_event::{NewEvent, insert_event};
 use crate::history::graph_sql::standing;
 use crate::history::limits;
 use crate::id::Id;
 use crate::seal;
+use crate::seal::run::{measurement_fields, step_fields};
 use crate::values::fault_state::{FaultAction, FaultState};
-use crate::values::record::{FaultRecord, MeasurementRecord, RunRecord, StepRecord, UnitRecord};
+use crate::values::record::{FaultRecord, RunRecord, StepRecord};
 
 /// The result of storing a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,126 +25,59 @@ pub struct FaultStored {
     pub reopened: bool,
 }
 
+/// Inserts a run and its scripts; `fields` as [`run_fields`](seal::run::run_fields) gives them. The row numbers
+/// of the run and of its unit.
 pub(crate) fn insert_run(
-    conn: &Connection,
-    id: Id,
+    file: &Backend,
     record: &RunRecord,
-    sw_versions: &str,
-) -> rusqlite::Result<(i64, i64)> {
-    let unit = upsert_unit(conn, &record.unit, sw_versions)?;
-    conn.prepare_cached(
-        "INSERT INTO run(id, unit, line, seed, operator, source, started_at_us, app_version,
-            scripts_sha256, unit_config_sha256, injected, owner, train, unit_kind, unit_config_name,
-            sw_versions, continues, connection, symptom, evidence)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18,
-            ?19, ?20)",
-    )?
-    .execute(params![
-        id,
-        unit,
-        record.line,
-        record.seed.cast_signed(),
-        record.operator,
-        record.source,
-        record.started_at_us,
-        record.app_version,
-        record.scripts_sha256,
-        record.unit_config_sha256,
-        record.injected,
-        record.owner,
-        record.train,
-        record.unit.kind,
-        record.unit.config_name,
-        sw_versions,
-        record.continues,
-        record.connection,
-        record.symptom,
-        record.evidence,
-    ])?;
-    let run = conn.last_insert_rowid();
-    let mut insert = conn.prepare_cached(
-        "INSERT OR REPLACE INTO run_script(run, path, sha256) VALUES (?1, ?2, ?3)",
-    )?;
-    for script in &record.scripts {
-        insert.execute(params![run, script.path, script.sha256])?;
-    }
-    Ok((run, unit))
-}
-
-fn upsert_unit(conn: &Connection, unit: &UnitRecord, versions: &str) -> rusqlite::Result<i64> {
-    conn.prepare_cached(
+    fields: &[Value<'_>; 20],
+) -> SqlResult<(i64, i64)> {
+    let unit = file.insert(
         "INSERT INTO unit(serial, kind, config_name, sw_versions) VALUES (?1, ?2, ?3, ?4)
          ON CONFLICT(serial) DO UPDATE SET kind = excluded.kind,
             config_name = excluded.config_name, sw_versions = excluded.sw_versions
          RETURNING seq",
-    )?
-    .query_row(
-        params![unit.serial, unit.kind, unit.config_name, versions],
-        |row| row.get(0),
-    )
+        &fields[1..5],
+    )?;
+    let mut fields = fields.clone();
+    fields[1] = unit.into();
+    let run = file.insert(
+        "INSERT INTO run(id, unit, unit_kind, unit_config_name, sw_versions, line, train, seed,
+            operator, source, connection, symptom, continues, started_at_us, app_version,
+            scripts_sha256, unit_config_sha256, injected, evidence, owner)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18,
+            ?19, ?20)
+         RETURNING seq",
+        &fields,
+    )?;
+    for script in &record.scripts {
+        file.execute(
+            "INSERT OR REPLACE INTO run_script(run, path, sha256) VALUES (?1, ?2, ?3)",
+            &values![run, &script.path, &script.sha256],
+        )?;
+    }
+    Ok((run, unit))
 }
 
-pub(crate) fn insert_steps(
-    conn: &Connection,
-    run: i64,
-    steps: &[StepRecord],
-) -> rusqlite::Result<()> {
-    let mut insert = conn.prepare_cached(
-        "INSERT INTO step(run, step_index, procedure, kind, place, name, turn, turns, verdict, started_bench_us,
-            bench_time_us, message, findings, script_line, limit_source)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15)",
-    )?;
+pub(crate) fn insert_steps(file: &Backend, run: i64, steps: &[StepRecord]) -> SqlResult<()> {
+    fn of_run<const N: usize>(run: i64, fields: [Value<'_>; N]) -> Vec<Value<'_>> {
+        [run.into()].into_iter().chain(fields).collect()
+    }
     for step in steps {
-        insert.execute(params![
-            run,
-            step.index,
-            step.procedure,
-            step.kind,
-            step.place,
-            step.name,
-            step.turn,
-            step.turns,
-            step.verdict,
-            step.started_bench_us,
-            step.bench_time_us,
-            step.message,
-            step.findings,
-            step.script_line,
-            step.limit_source,
-        ])?;
-        insert_measurements(conn, run, step.index, &step.measurements)?;
-    }
-    Ok(())
-}
-
-fn insert_measurements(
-    conn: &Connection,
-    run: i64,
-    step_index: u32,
-    measurements: &[MeasurementRecord],
-) -> rusqlite::Result<()> {
-    if measurements.is_empty() {
-        return Ok(());
-    }
-    let mut insert = conn.prepare_cached(
-        "INSERT INTO measurement(run, step_index, ordinal, name, value, unit, low, high, verdict,
-            limit_source)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
-    )?;
-    for (ordinal, m) in measurements.iter().enumerate() {
-        let values = params![
-            run,
-            step_index,
-            ordinal,
-            m.name,
-            m.value,
-            m.unit,
-            m.low,
-            m.high,
-            m.verdict,
-            m.limit_source
-        ];
-        insert.execute(values)?;
+        file.execute(
+            "INSERT INTO step(run, step_index, procedure, kind, place, name, turn, turns, verdict, started_bench_us,
+                bench_time_us, message, findings, script_line, limit_source)
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15)",
+            &of_run(run, step_fields(step)),
+        )?;
+        for measurement in measurement_fields(step) {
+            file.execute(
+                "INSERT INTO measurement(run, step_index, ordinal, name, value, unit, low, high, verdict,
+                    limit_source)
+                 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
+                &of_run(run, measurement),
+            )?;
+        }
     }
     Ok(())
 }
@@ -282,7 +214,7 @@ fn open_fault(
     id: Id,
     record: &FaultRecord,
 ) -> SqlResult<i64> {
-    let opened = backend.first(
+    backend.insert(
         "INSERT INTO fault(id, unit, code, code_name, lru, severity, state, first_at_us,
             last_at_us, occurrences, line)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, 'open', ?7, ?7, 0, ?8)
@@ -297,9 +229,7 @@ fn open_fault(
             record.at_us,
             place.line
         ],
-        |row| row.get(0),
-    )?;
-    opened.ok_or(SqlError::File(rusqlite::Error::QueryReturnedNoRows))
+    )
 }
 
 fn insert_occurrence(
@@ -309,6 +239,8 @@ fn insert_occurrence(
     id: Id,
     record: &FaultRecord,
 ) -> SqlResult<[u8; 32]> {
+    // Text and numbers only: cannot fail.
+    let freeze = serde_json::to_string(&record.freeze).unwrap_or_default();
     let payload = values![
         id,
         record.step_index,
@@ -316,7 +248,7 @@ fn insert_occurrence(
         record.bench_us,
         &record.message,
         record.findings.as_ref(),
-        json(&record.freeze)?,
+        freeze,
         record.code,
         &record.lru,
         place.line,
@@ -333,9 +265,4 @@ fn insert_occurrence(
         &row,
     )?;
     Ok(digest)
-}
-
-pub(crate) fn json(value: &impl serde::Serialize) -> rusqlite::Result<String> {
-    serde_json::to_string(value)
-        .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::backend::{SqlResult, values};
+use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
 use crate::history::limits;
 use crate::id::Id;
@@ -65,14 +65,13 @@ impl Store {
         limits::name("the name of who registers it", &instrument.who)?;
         let minted = self.mint()?;
         self.write(DOING, |_| {
-            let register = || -> SqlResult<()> {
-                let known = self.statements()?;
+            self.ask(DOING, |file| {
+                let known = statements(file)?;
                 let same =
                     (known.iter()).find(|(_, known)| known.serial_no == instrument.serial_no);
                 let id = same.map_or(minted, |(id, _)| *id);
-                append_statement(&self.backend, INSTRUMENT, id, instrument)
-            };
-            register().map_err(|error| self.failed(DOING, error))
+                append_statement(file, INSTRUMENT, id, instrument)
+            })
         })
     }
 
@@ -82,8 +81,7 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub fn instruments(&self) -> Result<Vec<Instrument>, StoreError> {
-        let read = self.statements();
-        let all = read.map_err(|error| self.failed("reading the instruments", error))?;
+        let all = self.ask("reading the instruments", statements)?;
         let last: BTreeMap<String, Instrument> = (all.into_iter())
             .map(|(_, instrument)| (instrument.serial_no.clone(), instrument))
             .collect();
@@ -92,18 +90,18 @@ impl Store {
             .filter(|instrument| !instrument.retired)
             .collect())
     }
+}
 
-    /// All statements in their order.
-    fn statements(&self) -> SqlResult<Vec<(Id, Instrument)>> {
-        let Some(own) = own_file_id(&self.backend)? else {
-            return Ok(Vec::new());
-        };
-        let sql =
-            "SELECT id, says FROM seal WHERE origin = ?1 AND what = 'instrument' ORDER BY ordinal";
-        let found = self.backend.select(sql, &values![own], |row| {
-            Ok((row.get::<Id>(0)?, row.get::<String>(1)?))
-        })?;
-        let read = |(id, says): (Id, String)| Some((id, serde_json::from_str(&says).ok()?));
-        Ok(found.into_iter().filter_map(read).collect())
-    }
+/// All statements about instruments of the file's own bench, in their order.
+fn statements(file: &Backend) -> SqlResult<Vec<(Id, Instrument)>> {
+    let Some(own) = own_file_id(file)? else {
+        return Ok(Vec::new());
+    };
+    let sql =
+        "SELECT id, says FROM seal WHERE origin = ?1 AND what = 'instrument' ORDER BY ordinal";
+    let found = file.select(sql, &values![own], |row| {
+        Ok((row.get::<Id>(0)?, row.get::<String>(1)?))
+    })?;
+    let read = |(id, says): (Id, String)| Some((id, serde_json::from_str(&says).ok()?));
+    Ok(found.into_iter().filter_map(read).collect())
 }

@@ -1,10 +1,9 @@
 //! Recordings: the stimuli of a procedure that found a fault, for replaying it. The two JSON texts are
 //! stored without being interpreted.
 
-use rusqlite::{Connection, params};
 use serde::Serialize;
 
-use crate::backend::{from_row, values};
+use crate::backend::{Backend, SqlResult, from_row, values};
 use crate::error::StoreError;
 use crate::history::compression;
 use crate::history::run_writer::RunWriter;
@@ -60,36 +59,29 @@ impl RunWriter<'_> {
                     reason: error.to_string(),
                 }
             })?;
-        let digest = seal::trace::of_recording(&values![
+        let mut fields = values![
             self.id(),
             record.ordinal,
             &record.procedure,
             record.t0_bench_us,
             &record.bench_json,
             &stimuli[..],
-        ]);
-        store.write(DOING, |conn| {
-            let work = || -> rusqlite::Result<()> {
-                conn.prepare_cached(
+        ];
+        let digest = seal::trace::of_recording(&fields);
+        fields[0] = run.into();
+        store.write(DOING, |_| {
+            store.ask(DOING, |file| {
+                file.execute(
                     "INSERT INTO recording(run, ordinal, procedure, t0_bench_us, bench_json, stimuli)
                      VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
-                )?
-                .execute(params![
-                    run,
-                    record.ordinal,
-                    record.procedure,
-                    record.t0_bench_us,
-                    record.bench_json,
-                    stimuli
-                ])?;
-                let mut hang = conn
-                    .prepare_cached("UPDATE trace SET recording = ?1 WHERE id = ?2 AND run = ?3")?;
+                    &fields,
+                )?;
+                let link = "UPDATE trace SET recording = ?1 WHERE id = ?2 AND run = ?3";
                 for trace in traces {
-                    hang.execute(params![record.ordinal, trace, run])?;
+                    file.execute(link, &values![record.ordinal, *trace, run])?;
                 }
                 Ok(())
-            };
-            work().map_err(|error| store.failed(DOING, error))
+            })
         })?;
         self.seal.recording(record.ordinal, digest, traces);
         Ok(())
@@ -127,29 +119,26 @@ impl Store {
 }
 
 /// The recordings that cannot be read back, each with the reason, and the number of all.
-pub(crate) fn check_recordings(conn: &Connection) -> rusqlite::Result<(u32, Vec<String>)> {
-    let mut select = conn.prepare(
+pub(crate) fn check_recordings(file: &Backend) -> SqlResult<(u32, Vec<String>)> {
+    let (mut count, mut wrong) = (0, Vec::new());
+    file.each(
         "SELECT 'recording ' || r.ordinal || ' of run ' || hex(u.id), r.bench_json, r.stimuli
          FROM recording r JOIN run u ON u.seq = r.run ORDER BY r.run, r.ordinal",
+        &[],
+        |row| {
+            count += 1;
+            let json = |text: &str| {
+                let read = serde_json::from_str::<serde::de::IgnoredAny>(text);
+                read.map(drop).map_err(|error| error.to_string())
+            };
+            let (name, bench): (&str, &str) = (row.get(0)?, row.get(1)?);
+            let found = unpack(row.get(2)?)
+                .and_then(|stimuli| json(&stimuli))
+                .and_then(|()| json(bench));
+            wrong.extend(found.err().map(|detail| format!("{name}: {detail}")));
+            Ok(())
+        },
     )?;
-    let mut rows = select.query([])?;
-    let (mut count, mut wrong) = (0, Vec::new());
-    while let Some(row) = rows.next()? {
-        count += 1;
-        let name: String = row.get(0)?;
-        let bench: String = row.get(1)?;
-        let packed: Vec<u8> = row.get(2)?;
-        let json = |text: &str| {
-            let read = serde_json::from_str::<serde::de::IgnoredAny>(text);
-            read.map(drop).map_err(|error| error.to_string())
-        };
-        let found = unpack(&packed)
-            .and_then(|stimuli| json(&stimuli))
-            .and_then(|()| json(&bench));
-        if let Err(detail) = found {
-            wrong.push(format!("{name}: {detail}"));
-        }
-    }
     Ok((count, wrong))
 }
 

@@ -73,15 +73,9 @@ impl Store {
         limits::note("the note", text)?;
         let id = self.mint()?;
         let (trace, place_us) = (place.map(|at| at.trace), place.map(|at| at.at_us));
-        self.change(DOING, |backend| {
-            let seq: Option<i64> = self.first(
-                DOING,
-                "SELECT seq FROM run WHERE id = ?1",
-                &values![run],
-                |row| row.get(0),
-            )?;
-            let seq = seq.ok_or_else(|| StoreError::not_found("run", run))?;
-            let add = || match backend {
+        self.change(DOING, |_| {
+            let seq = self.run_seq(DOING, run)?;
+            self.ask(DOING, |backend| match backend {
                 Backend::Server(_) => {
                     backend.execute(
                         "INSERT INTO run_note(id, run, at_us, who, trace, place_us, text, words)
@@ -99,8 +93,7 @@ impl Store {
                     let sealed = values![id, run, at_us, who, trace, place_us, text];
                     seal::events_and_notes::note(backend, id, &sealed)
                 }
-            };
-            add().map_err(|error| self.failed(DOING, error))
+            })
         })
     }
 
@@ -118,8 +111,8 @@ impl Store {
         let mut unsigned = Vec::new();
         for (run, note, who) in notes {
             if signed.0 != Some(run) {
-                let read = signatures_of(&self.backend, run);
-                signed = (Some(run), read.map_err(|error| self.failed(DOING, error))?);
+                let of_run = self.ask(DOING, |backend| signatures_of(backend, run))?;
+                signed = (Some(run), of_run);
             }
             if !signed.1.iter().any(|(_, of)| of.is_about("note", note)) {
                 unsigned.push((note, who));

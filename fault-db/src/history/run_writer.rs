@@ -8,17 +8,14 @@
 use std::borrow::Cow;
 use std::collections::HashSet;
 
-use rusqlite::params;
-
-use crate::backend::SqlError;
 use crate::error::StoreError;
 use crate::files::held_file::HeldFile;
 use crate::history::insert::FaultStored;
-use crate::history::insert::{FaultIds, FaultPlace, insert_fault, insert_run, insert_steps, json};
+use crate::history::insert::{FaultIds, FaultPlace, insert_fault, insert_run, insert_steps};
 use crate::history::limits;
 use crate::id::Id;
 use crate::schema::packed::fill_empty_blocks;
-use crate::seal::run::RunDigest;
+use crate::seal::run::{RunDigest, end_fields, run_fields};
 use crate::seal::{self, SealHead};
 use crate::store::Store;
 use crate::trace::TraceData;
@@ -82,15 +79,16 @@ impl<'a> RunWriter<'a> {
     fn begin_as(id: Id, store: &'a Store, record: &RunRecord) -> Result<Self, StoreError> {
         const DOING: &str = "beginning a run";
         record.check()?;
-        let sw_versions = json(&record.unit.sw_versions);
-        let sw_versions = sw_versions.map_err(|error| store.failed(DOING, error))?;
-        let seal = RunDigest::begin(id, record, &sw_versions);
+        // Text only: cannot fail.
+        let sw_versions = serde_json::to_string(&record.unit.sw_versions).unwrap_or_default();
+        let fields = run_fields(id, record, &sw_versions);
+        let seal = RunDigest::begin(&fields, &record.scripts);
         // Nothing is lost yet.
         store.check_place()?;
         let began = store.head()?;
         let lock = store.hold_run(id)?;
-        let (run, unit) = store.write(DOING, |conn| {
-            insert_run(conn, id, record, &sw_versions).map_err(|error| store.failed(DOING, error))
+        let (run, unit) = store.write(DOING, |_| {
+            store.ask(DOING, |file| insert_run(file, record, &fields))
         })?;
         let waiting = Vec::with_capacity(FLUSH_AT_STEPS);
         Ok(Self {
@@ -200,8 +198,8 @@ impl<'a> RunWriter<'a> {
             return Ok(());
         }
         let (store, run, waiting) = (self.store, self.run, &self.waiting);
-        store.write(DOING, |conn| {
-            insert_steps(conn, run, waiting).map_err(|error| store.failed(DOING, error))
+        store.write(DOING, |_| {
+            store.ask(DOING, |file| insert_steps(file, run, waiting))
         })?;
         self.waiting.clear();
         Ok(())
@@ -249,12 +247,11 @@ impl<'a> RunWriter<'a> {
             occurrence,
             event: store.mint()?,
         };
-        let (stored, digest) = store.write(DOING, |conn| {
-            let work = || {
-                insert_steps(conn, run, waiting)?;
-                insert_fault(&store.backend, &place, ids, record)
-            };
-            work().map_err(|error: SqlError| store.failed(DOING, error))
+        let (stored, digest) = store.write(DOING, |_| {
+            store.ask(DOING, |file| {
+                insert_steps(file, run, waiting)?;
+                insert_fault(file, &place, ids, record)
+            })
         })?;
         self.seal.occurrence(stored.occurrence, digest);
         self.waiting.clear();
@@ -320,31 +317,25 @@ impl<'a> RunWriter<'a> {
 
     fn end(&mut self, end: &RunEnd) -> Result<(), StoreError> {
         const DOING: &str = "finishing a run";
-        const SQL: &str = "UPDATE run SET verdict = ?2, finished_at_us = ?3, bench_time_us = ?4,
-            wall_time_us = ?5 WHERE seq = ?1";
+        const SQL: &str = "UPDATE run SET verdict = ?1, finished_at_us = ?2, bench_time_us = ?3,
+            wall_time_us = ?4 WHERE seq = ?5";
         let (store, run, waiting) = (self.store, self.run, &self.waiting);
         let (unit, id, known_events) = (self.unit, self.id, self.known_events);
         let (payload, digest) = self.seal.end(end);
         let is_rest = self.is_rest;
-        store.write(DOING, |conn| {
-            let work = || {
-                insert_steps(conn, run, waiting)?;
-                let RunEnd {
-                    verdict,
-                    finished_at_us,
-                    bench_time_us,
-                    wall_time_us,
-                } = end;
-                let values = params![run, verdict, finished_at_us, bench_time_us, wall_time_us];
-                conn.prepare_cached(SQL)?.execute(values)?;
+        store.write(DOING, |_| {
+            store.ask(DOING, |file| {
+                insert_steps(file, run, waiting)?;
+                let mut values = end_fields(end).to_vec();
+                values.push(run.into());
+                file.execute(SQL, &values)?;
                 match is_rest {
                     true => Ok(()),
-                    false => seal::append(&store.backend, "run", id, &payload, &digest),
+                    false => seal::append(file, "run", id, &payload, &digest),
                 }
-            };
-            work().map_err(|error: SqlError| store.failed(DOING, error))?;
+            })?;
             store.note_passed((unit, run, id), known_events, end)?;
-            fill_empty_blocks(&store.backend).map_err(|error| store.failed(DOING, error))
+            store.ask(DOING, fill_empty_blocks)
         })
     }
 

@@ -40,7 +40,7 @@ macro_rules! sealed_runs {
     };
 }
 
-/// A time of such a run by which they are in order: within one chain as the chain says, between two by their times.
+/// The time by which such runs are sorted: runs of one chain in the order of the chain, others by their own times.
 macro_rules! time_in_order {
     () => {
         "min(r.started_at_us) OVER (PARTITION BY coalesce(s.origin, r.id) ORDER BY s.ordinal
@@ -195,8 +195,7 @@ impl Store {
                 body: &note,
                 state: None,
             };
-            insert_event(&self.backend, fault, &event)
-                .map_err(|error| self.failed(DOING, error))?;
+            self.ask(DOING, |file| insert_event(file, fault, &event))?;
         }
         Ok(())
     }
@@ -265,7 +264,7 @@ impl Store {
         let Some(at_us) = finished.flatten() else {
             return Err(StoreError::not_found("finished run", run));
         };
-        self.change(DOING, |backend| {
+        self.change(DOING, |_| {
             let confirm = |fault, note: &str| {
                 let change = Change {
                     action: FaultAction::Verify,
@@ -274,7 +273,7 @@ impl Store {
                     body: note,
                     at_us,
                 };
-                self.apply(backend, fault, &change)
+                self.apply(fault, &change)
             };
             let mut rows = Vec::new();
             for (fault, note) in proven {

@@ -98,7 +98,7 @@ impl Store {
         limits::name("the name of who says it", who)?;
         limits::note("the note", reason)?;
         const DOING: &str = "withdrawing what was written";
-        self.change(DOING, |backend| {
+        self.change(DOING, |_| {
             let named = self.fault_row(fault)?;
             let written = self.last_written(&named, what.written_at_us)?;
             let mut faults = vec![named];
@@ -119,9 +119,10 @@ impl Store {
                     body: reason,
                     state: None,
                 };
-                insert_withdrawal(backend, fault.seq, &event, of_fault.id)
-                    .and_then(|()| recompute_fault(backend, fault.seq))
-                    .map_err(|error| self.failed(DOING, error))?;
+                self.ask(DOING, |backend| {
+                    insert_withdrawal(backend, fault.seq, &event, of_fault.id)?;
+                    recompute_fault(backend, fault.seq)
+                })?;
                 changed.push(self.fault_row(fault.id)?);
             }
             let Written {

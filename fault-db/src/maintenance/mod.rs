@@ -4,9 +4,5 @@ mod backup;
 mod check;
 mod prune;
 
-pub(crate) use check::has_its_traces;
-pub use check::{
-    Advice, CheckReport, Damage, Derived, KeyUse, Problem, ProblemKind, Samples, SchemaObject,
-    SealPlace, Verification, WrongSignature,
-};
+pub use check::{CheckReport, KeyUse, Problem, Verification};
 pub use prune::{PruneCounts, PruneRule};

@@ -106,8 +106,7 @@ impl Store {
         loop {
             let counts = self.write(DOING, |conn| {
                 let counts = plan(conn, rule).map_err(failed)?;
-                let sealed = seal_deleted(&self.backend, rule.at_us);
-                sealed.map_err(|error| self.failed(DOING, error))?;
+                self.ask(DOING, |file| seal_deleted(file, rule.at_us))?;
                 delete(conn).map_err(failed)?;
                 Ok(counts)
             })?;
@@ -202,30 +201,26 @@ fn plan(conn: &Connection, rule: &PruneRule) -> rusqlite::Result<PruneCounts> {
 fn seal_deleted(backend: &Backend, at_us: i64) -> SqlResult<()> {
     let recordings = format!("SELECT u.id, r.run, r.ordinal {RECORDINGS}");
     let recordings = recordings.replace("AS r WHERE", "AS r JOIN run u ON u.seq = r.run WHERE");
-    let recordings = backend.select(&recordings, &[], |row| {
-        Ok((row.get::<Id>(0)?, row.get(1)?, row.get(2)?))
+    let mut deleted = backend.select(&recordings, &[], |row| {
+        let run = row.get::<Id>(0)?;
+        Ok((run, run, row.get(1)?, Some(row.get(2)?)))
     })?;
-    for (id, run, ordinal) in recordings {
-        let payload = PrunedPayload {
-            run: id.to_string(),
-            sha256: hex(&trace::recording_digest(backend, run, ordinal)?),
-            recording: Some(ordinal),
-            at_us,
-        };
-        append_statement(backend, PRUNED, id, &payload)?;
-    }
     let traces = format!(
         "SELECT t.id, r.id, t.seq FROM temp.pruned p JOIN trace t ON t.seq = p.seq
             JOIN run r ON r.seq = t.run WHERE p.fate = {GOES} ORDER BY t.seq"
     );
-    let traces = backend.select(&traces, &[], |row| {
-        Ok((row.get::<Id>(0)?, row.get::<Id>(1)?, row.get(2)?))
-    })?;
-    for (id, run, seq) in traces {
+    deleted.extend(backend.select(&traces, &[], |row| {
+        Ok((row.get::<Id>(0)?, row.get::<Id>(1)?, row.get(2)?, None))
+    })?);
+    for (id, run, row, recording) in deleted {
+        let digest = match recording {
+            Some(ordinal) => trace::recording_digest(backend, row, ordinal)?,
+            None => trace::digest(backend, row)?,
+        };
         let payload = PrunedPayload {
             run: run.to_string(),
-            sha256: hex(&trace::digest(backend, seq)?),
-            recording: None,
+            sha256: hex(&digest),
+            recording,
             at_us,
         };
         append_statement(backend, PRUNED, id, &payload)?;

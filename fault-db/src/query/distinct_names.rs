@@ -4,30 +4,35 @@ use crate::error::StoreError;
 use crate::store::Store;
 use crate::values::record::part_name;
 
+/// Selects each value of an indexed column once, in order, from the rows `x` of a table for which a condition holds.
+/// It goes from one value to the next by the index, without reading all rows.
+pub(super) fn each_value(column: &str, table: &str, condition: &str) -> String {
+    format!(
+        "WITH RECURSIVE each_value(value) AS (
+            SELECT min(x.{column}) FROM {table} x WHERE {condition}
+            UNION ALL SELECT (SELECT min(x.{column}) FROM {table} x WHERE x.{column} > each_value.value AND {condition})
+            FROM each_value WHERE each_value.value IS NOT NULL)
+        SELECT value FROM each_value WHERE value IS NOT NULL ORDER BY value"
+    )
+}
+
 impl Store {
     /// Every code a fault was ever recorded with, and its latest name.
     pub fn known_codes(&self) -> Result<Vec<(i64, String)>, StoreError> {
-        // Goes from one code to the next by index, without reading all faults.
-        let sql = "WITH RECURSIVE c(code) AS (
-                SELECT min(code) FROM fault
-                UNION ALL SELECT (SELECT min(f.code) FROM fault f WHERE f.code > c.code)
-                FROM c WHERE c.code IS NOT NULL)
-            SELECT code, (SELECT f.code_name FROM fault f WHERE f.code = c.code
-                ORDER BY f.last_at_us DESC LIMIT 1)
-            FROM c WHERE code IS NOT NULL ORDER BY code";
-        self.select("listing codes", sql, &[], |row| {
+        let codes = each_value("code", "fault", "true");
+        let sql = format!(
+            "WITH c(code) AS ({codes}) SELECT code, (SELECT f.code_name FROM fault f WHERE f.code = c.code
+                ORDER BY f.last_at_us DESC LIMIT 1) FROM c ORDER BY code"
+        );
+        self.select("listing codes", &sql, &[], |row| {
             Ok((row.get(0)?, row.get(1)?))
         })
     }
 
     /// Every part a fault pointed at.
     pub fn known_lrus(&self) -> Result<Vec<String>, StoreError> {
-        let sql = "WITH RECURSIVE c(lru) AS (
-                SELECT min(lru) FROM fault
-                UNION ALL SELECT (SELECT min(f.lru) FROM fault f WHERE f.lru > c.lru)
-                FROM c WHERE c.lru IS NOT NULL)
-            SELECT lru FROM c WHERE lru IS NOT NULL ORDER BY lru";
-        self.select("listing parts", sql, &[], |row| row.get(0))
+        let sql = each_value("lru", "fault", "true");
+        self.select("listing parts", &sql, &[], |row| row.get(0))
     }
 
     /// Every part a fault came from: the attributed one, or else the one it points at. Reads all faults.
@@ -66,12 +71,8 @@ impl Store {
 
     /// Every train a unit was in when it was tested.
     pub fn known_trains(&self) -> Result<Vec<String>, StoreError> {
-        let sql = "WITH RECURSIVE c(train) AS (
-                SELECT min(train) FROM run WHERE train <> ''
-                UNION ALL SELECT (SELECT min(r.train) FROM run r WHERE r.train > c.train AND r.train <> '')
-                FROM c WHERE c.train IS NOT NULL)
-            SELECT train FROM c WHERE train IS NOT NULL ORDER BY train";
-        self.select("listing trains", sql, &[], |row| row.get(0))
+        let sql = each_value("train", "run", "x.train <> ''");
+        self.select("listing trains", &sql, &[], |row| row.get(0))
     }
 
     /// Every line a fault was seen on. Reads all occurrences.

@@ -9,10 +9,9 @@ use crate::error::StoreError;
 use crate::history::cases::REST_OF_CASE;
 use crate::id::Id;
 use crate::store::Store;
-use crate::values::event::Correction;
-use crate::values::event::FaultEvent;
+use crate::values::event::{Correction, FaultEvent};
 use crate::values::fault_state::FaultState;
-use crate::values::record::{CAUSE, DIAGNOSED, FreezeSample, REPAIR};
+use crate::values::record::{CAUSE, CauseRecord, DIAGNOSED, FreezeSample, REPAIR, RepairRecord};
 
 /// A fault in a list: one row per unit, code and part until it is closed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -138,9 +137,8 @@ impl Store {
             "{SELECT_FAULT} WHERE x.seq IN (SELECT c.seq FROM {REST_OF_CASE}) ORDER BY x.seq"
         );
         let case = self.select(DOING, &case, &values![seq], summary)?;
-        let failed = |error| self.failed(DOING, error);
-        let occurrences = self.occurrences(seq).map_err(failed)?;
-        let events = self.events(seq).map_err(failed)?.into_iter();
+        let occurrences = self.ask(DOING, |_| self.occurrences(seq))?;
+        let events = self.ask(DOING, |_| self.events(seq))?.into_iter();
         let (withdrawn, events) = events.partition(|event| event.correction.is_some());
         Ok(FaultDetail {
             fault,
@@ -176,18 +174,12 @@ impl Store {
              WHERE e.fault = ?1 AND e.kind <> 'withdrawn' ORDER BY e.at_us, e.seq, w.turn, w.id",
             &values![fault],
             |row| {
-                let kind: String = row.get(1)?;
-                let is_repair = kind == REPAIR;
-                let is_cause = matches!(&*kind, CAUSE | DIAGNOSED);
+                let said = Said::read(row, 1, 4)?;
                 Ok(from_row!(row => FaultEvent:
-                    id, _, at_us, who, _, state;
-                    note: if is_repair || is_cause {
-                        String::new()
-                    } else {
-                        row.get(4)?
-                    },
-                    repair: if is_repair { Some(json(row, 4)?) } else { None },
-                    cause: if is_cause { Some(json(row, 4)?) } else { None },
+                    id, kind, at_us, who, _, state;
+                    note: said.note,
+                    repair: said.repair,
+                    cause: said.cause,
                     correction: match row.get::<Option<i64>>(6)? {
                         Some(at_us) => Some(Correction {
                             at_us,
@@ -195,13 +187,36 @@ impl Store {
                             note: row.get(8)?,
                         }),
                         None => None,
-                    },
-                    kind
+                    }
                 ))
             },
         )?;
         events.dedup_by_key(|event| event.id);
         Ok(events)
+    }
+}
+
+/// What the body of an event says: a repair, a cause, or else a text.
+pub(super) struct Said {
+    pub note: String,
+    pub repair: Option<RepairRecord>,
+    pub cause: Option<CauseRecord>,
+}
+
+impl Said {
+    /// Reads the columns of an event's kind and body.
+    pub fn read(row: Row<'_>, kind: usize, body: usize) -> SqlResult<Self> {
+        let (mut repair, mut cause, mut note) = (None, None, String::new());
+        match row.get(kind)? {
+            REPAIR => repair = Some(json(row, body)?),
+            CAUSE | DIAGNOSED => cause = Some(json(row, body)?),
+            _ => note = row.get(body)?,
+        }
+        Ok(Self {
+            note,
+            repair,
+            cause,
+        })
     }
 }
 

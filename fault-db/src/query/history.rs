@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::faults::json;
-use crate::backend::{Row, SqlError, SqlResult, from_row, values};
+use crate::backend::{Row, SqlResult, from_row, values};
 use crate::error::StoreError;
 use crate::history::graph_sql::standing;
 use crate::id::Id;
@@ -65,12 +65,10 @@ impl Store {
         (since_us, before_us): (i64, i64),
         but: Option<Id>,
     ) -> Result<BTreeMap<String, PartHistory>, StoreError> {
-        let read = || {
+        let (seen, repairs) = self.ask("reading a unit's history", |_| {
             let seen = self.seen_before(unit, (since_us, before_us), but)?;
             Ok((seen, self.repairs_before(unit, (since_us, before_us))?))
-        };
-        let (seen, repairs) =
-            read().map_err(|error: SqlError| self.failed("reading a unit's history", error))?;
+        })?;
         let mut parts: BTreeMap<String, PartHistory> = BTreeMap::new();
         for (part, repairs) in by_part(repairs) {
             let repair = part_repair(&repairs, &seen);

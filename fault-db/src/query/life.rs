@@ -9,16 +9,14 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::faults::json;
+use super::faults::Said;
 use super::stays::{Span, Stay};
 use crate::backend::{SqlResult, from_row, values};
 use crate::error::StoreError;
 use crate::history::graph_sql::standing;
 use crate::id::Id;
 use crate::store::Store;
-use crate::values::record::{
-    CAUSE, CauseRecord, DIAGNOSED, REPAIR, RepairRecord, Verdict, part_name,
-};
+use crate::values::record::{CauseRecord, RepairRecord, Verdict, part_name};
 use crate::values::text_enum::text_enum;
 
 text_enum! {
@@ -33,7 +31,7 @@ text_enum! {
     }
 }
 
-/// The life of what has a serial number.
+/// The life of a thing with a serial number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Life {
     /// Kind of the thing.
@@ -123,7 +121,7 @@ impl Store {
     /// # Errors
     /// The file or the server cannot be read.
     pub fn lives(&self, serial: &str) -> Result<Vec<Life>, StoreError> {
-        let read = || -> SqlResult<_> {
+        self.ask("reading a life", |_| {
             let found = [
                 (LifeOf::Unit, self.stays_of_unit(serial)?),
                 (LifeOf::Train, self.stays_in_train(serial)?),
@@ -136,8 +134,7 @@ impl Store {
                 }
             }
             Ok(lives)
-        };
-        read().map_err(|error| self.failed("reading a life", error))
+        })
     }
 
     fn life(
@@ -200,34 +197,22 @@ impl Store {
             ),
             &values![span.unit, span.from_us, span.until_us],
             |row| {
-                let (kind, body): (String, String) = (row.get(1)?, row.get(3)?);
-                let repair: Option<RepairRecord> =
-                    (kind == REPAIR).then(|| json(row, 3)).transpose()?;
-                let is_cause = matches!(&*kind, CAUSE | DIAGNOSED);
-                let cause: Option<CauseRecord> = is_cause.then(|| json(row, 3)).transpose()?;
-                let fault = NamedFault {
-                    id: row.get(4)?,
-                    code: row.get(5)?,
-                    code_name: row.get(6)?,
-                    part: row.get(7)?,
-                };
-                let named = repair.as_ref().map_or(&fault.part, |repair| &repair.part);
+                let said = Said::read(row, 1, 3)?;
+                let fault = from_row!(row => NamedFault: _, _, _, _, id, code, code_name, part);
+                let named = said.repair.as_ref().map_or(&fault.part, |repair| &repair.part);
                 if (span.part.as_ref()).is_some_and(|part| part_name(named) != *part) {
                     return Ok(());
                 }
-                let (at_us, who): (i64, String) = (row.get(0)?, row.get(2)?);
+                let (kind, who): (String, String) = (row.get(1)?, row.get(2)?);
                 let findings = row.get(8)?;
-                let key = (at_us, kind.clone(), who.clone(), body.clone());
+                let key = (row.get(0)?, kind.clone(), who.clone(), row.get(3)?);
                 let of_case = together.entry(key).or_insert_with(|| LifeFault {
-                    note: match repair.is_some() || is_cause {
-                        true => String::new(),
-                        false => body,
-                    },
-                    findings,
                     kind,
                     who,
-                    repair,
-                    cause,
+                    note: said.note,
+                    findings,
+                    repair: said.repair,
+                    cause: said.cause,
                     faults: Vec::new(),
                 });
                 if of_case.faults.iter().all(|known| known.id != fault.id) {

@@ -162,10 +162,7 @@ impl Store {
         let mut conditions = Conditions::default();
         conditions.add("u.serial = ?", filter.unit.clone());
         conditions.add("r.line = ?", filter.line.clone());
-        conditions.add(
-            "r.verdict = ?",
-            filter.verdict.map(|verdict| verdict.to_string()),
-        );
+        conditions.add("r.verdict = ?", filter.verdict);
         conditions.add("r.operator = ?", filter.operator.clone());
         conditions.add("r.started_at_us >= ?", filter.since_us);
         conditions.add("r.started_at_us < ?", filter.until_us);
@@ -184,8 +181,8 @@ impl Store {
         let row = |row: Row<'_>| Ok((self.summary(row)?, row.get::<i64>(19)?));
         let found = self.first(DOING, &select, &values![id], row)?;
         let (run, seq) = found.ok_or_else(|| StoreError::not_found("run", id))?;
-        let rest = || -> SqlResult<_> {
-            let signed = signatures_of(&self.backend, id)?;
+        self.ask(DOING, |backend| {
+            let signed = signatures_of(backend, id)?;
             let mut notes = self.run_notes(seq)?;
             for note in &mut notes {
                 let of_note = signed.iter().find(|(_, of)| of.is_about("note", note.id));
@@ -198,12 +195,11 @@ impl Store {
                 faults: self.run_faults(seq)?,
                 settled: self.settled_by(id)?,
                 notes,
-                seal: sealed_as(&self.backend, id)?,
+                seal: sealed_as(backend, id)?,
                 signature: (signed.into_iter())
                     .find_map(|(_, of)| of.is_about("run", id).then_some(of)),
             })
-        };
-        rest().map_err(|error| self.failed(DOING, error))
+        })
     }
 
     fn settled_by(&self, run: Id) -> SqlResult<Vec<SettledFault>> {
@@ -218,16 +214,10 @@ impl Store {
     }
 
     fn scripts(&self, run: i64) -> SqlResult<Vec<ScriptRecord>> {
-        self.backend.select(
-            "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path",
-            &values![run],
-            |row| {
-                Ok(ScriptRecord {
-                    path: row.get(0)?,
-                    sha256: row.get(1)?,
-                })
-            },
-        )
+        let sql = "SELECT path, sha256 FROM run_script WHERE run = ?1 ORDER BY path";
+        self.backend.select(sql, &values![run], |row| {
+            Ok(from_row!(row => ScriptRecord: path, sha256))
+        })
     }
 
     fn steps(&self, run: i64) -> SqlResult<Vec<StepRecord>> {

@@ -1,10 +1,9 @@
 //! Lists traces, and shows how one is stored.
 
-use rusqlite::{Connection, OptionalExtension, params};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::backend::{Value, from_row, values};
+use crate::backend::{Backend, SqlResult, Value, from_row, values};
 use crate::error::StoreError;
 use crate::id::Id;
 use crate::seal;
@@ -85,54 +84,39 @@ impl Store {
             };
             StoreError::Trace { trace: id, source }
         })?;
-        let hash = sha256(&data);
-        let digest = seal::trace::of(
-            &values![
-                id,
-                trace.t0_bench_us,
-                trace.t0_us,
-                trace.period_us,
-                trace.rows() as i64,
-                trace.trigger_row,
-                flags,
-                ENCODING,
-                &hash[..],
-                &sha256(json.as_bytes())[..],
-            ],
-            occurrences,
-        );
-        let channel_set = self.write(DOING, |conn| {
-            let failed = |error| self.failed(DOING, error);
+        let (hash, hash_of_list) = (sha256(&data), sha256(json.as_bytes()));
+        let mut fields = values![
+            id,
+            trace.t0_bench_us,
+            trace.t0_us,
+            trace.period_us,
+            trace.rows() as i64,
+            trace.trigger_row,
+            flags,
+            ENCODING,
+            &hash[..],
+            &hash_of_list[..],
+        ]
+        .to_vec();
+        let digest = seal::trace::of(&fields, occurrences);
+        let channel_set = self.write(DOING, |_| {
             // A list is never changed or deleted, so a known one need not be looked up.
             let channel_set = match known {
                 Some(seq) => seq,
-                None => channel_set_seq(conn, &json).map_err(failed)?,
+                None => self.ask(DOING, |file| channel_set_seq(file, &json))?,
             };
-            let seq = conn
-                .prepare_cached(
-                    "INSERT INTO trace(id, run, t0_bench_us, t0_us, period_us, row_count,
-                        trigger_row, flags, channel_set, encoding, sha256, data)
-                     VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)",
+            fields[9] = channel_set.into();
+            fields.extend(values![run, &data[..]]);
+            let seq = self.ask(DOING, |file| {
+                file.insert(
+                    "INSERT INTO trace(id, t0_bench_us, t0_us, period_us, row_count, trigger_row,
+                        flags, encoding, sha256, channel_set, run, data)
+                     VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12) RETURNING seq",
+                    &fields,
                 )
-                .and_then(|mut insert| {
-                    insert.insert(params![
-                        id,
-                        run,
-                        trace.t0_bench_us,
-                        trace.t0_us,
-                        trace.period_us,
-                        trace.rows(),
-                        trace.trigger_row,
-                        flags,
-                        channel_set,
-                        ENCODING,
-                        hash,
-                        data
-                    ])
-                })
-                .map_err(failed)?;
+            })?;
             for occurrence in occurrences {
-                self.hang_trace(conn, seq, *occurrence)?;
+                self.link_trace(seq, *occurrence)?;
             }
             Ok(channel_set)
         })?;
@@ -150,13 +134,11 @@ impl Store {
         found.map(|(seq, _)| *seq)
     }
 
-    fn hang_trace(&self, conn: &Connection, trace: i64, occurrence: Id) -> Result<(), StoreError> {
+    fn link_trace(&self, trace: i64, occurrence: Id) -> Result<(), StoreError> {
         const SQL: &str = "UPDATE fault_occurrence SET trace = ?1 WHERE id = ?2";
-        let hung = conn
-            .prepare_cached(SQL)
-            .and_then(|mut update| update.execute(params![trace, occurrence]))
-            .map_err(|error| self.failed("storing a trace", error))?;
-        if hung == 0 {
+        let values = values![trace, occurrence];
+        let linked = self.ask("storing a trace", |file| file.execute(SQL, &values))?;
+        if linked == 0 {
             let asked = occurrence.to_string();
             return Err(StoreError::NotFound {
                 what: "fault occurrence",
@@ -168,17 +150,15 @@ impl Store {
 }
 
 /// The row number of a channel list; equal lists are stored once.
-fn channel_set_seq(conn: &Connection, json: &str) -> rusqlite::Result<i64> {
+fn channel_set_seq(file: &Backend, json: &str) -> SqlResult<i64> {
     let hash = sha256(json.as_bytes());
-    let known = conn
-        .prepare_cached("SELECT seq FROM channel_set WHERE sha256 = ?1")?
-        .query_row([&hash[..]], |row| row.get(0))
-        .optional()?;
-    match known {
+    let known = "SELECT seq FROM channel_set WHERE sha256 = ?1";
+    match file.first(known, &values![&hash[..]], |row| row.get(0))? {
         Some(seq) => Ok(seq),
-        None => conn
-            .prepare_cached("INSERT INTO channel_set(sha256, json) VALUES (?1, ?2)")?
-            .insert(params![hash, json]),
+        None => file.insert(
+            "INSERT INTO channel_set(sha256, json) VALUES (?1, ?2) RETURNING seq",
+            &values![&hash[..], json],
+        ),
     }
 }
 

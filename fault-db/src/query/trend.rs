@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::distinct_names::each_value;
 use super::filter::Conditions;
 use crate::backend::{Backend, from_row, values};
 use crate::error::StoreError;
@@ -286,13 +287,8 @@ impl Store {
     /// # Errors
     /// The file or server cannot be read.
     pub fn measurement_names(&self) -> Result<Vec<String>, StoreError> {
-        // Goes from one name to the next by index, without reading all values.
-        let sql = "WITH RECURSIVE c(name) AS (
-                SELECT min(name) FROM measurement
-                UNION ALL SELECT (SELECT min(m.name) FROM measurement m WHERE m.name > c.name)
-                FROM c WHERE c.name IS NOT NULL)
-            SELECT name FROM c WHERE name IS NOT NULL ORDER BY name";
-        self.select("listing measurements", sql, &[], |row| row.get(0))
+        let sql = each_value("name", "measurement", "true");
+        self.select("listing measurements", &sql, &[], |row| row.get(0))
     }
 
     /// The procedures that made the measurement.

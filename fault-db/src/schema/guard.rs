@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, Result};
 
-use crate::maintenance::{Damage, SchemaObject};
+use crate::error::{Damage, SchemaObject};
 use crate::schema::sql_functions;
 use crate::schema::{self, SCHEMA_VERSION};
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::append;
-use super::canonical::{CanonicalHash, take_rows};
+use super::canonical::CanonicalHash;
 use crate::backend::{Backend, SqlResult, Value, values};
 use crate::id::Id;
 
@@ -26,22 +26,28 @@ impl EventPayload {
         serde_json::from_str(text).ok()
     }
 
+    /// The payload of a stored event that is sealed as found, as text.
+    pub fn found(backend: &Backend, event: i64, found: &str) -> SqlResult<String> {
+        let sql = "SELECT f.id, e.seen FROM fault_event e JOIN fault f ON f.seq = e.fault WHERE e.seq = ?1";
+        let payload = backend.first(sql, &values![event], |row| {
+            Ok(Self {
+                fault: row.get::<Id>(0)?.to_string(),
+                occurrences_known: row.get(1)?,
+                found: Some(found.to_owned()),
+            })
+        })?;
+        Ok(payload.map(|payload| payload.text()).unwrap_or_default())
+    }
+
     fn text(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 }
 
-const EVENT: &str =
+/// The fields of an event that are sealed, and those of its fault.
+pub(super) const EVENT: &str =
     "SELECT e.id, e.kind, e.at_us, e.who, e.body, e.state, e.turn, e.follows, u.serial, f.code, f.lru
      FROM fault_event e JOIN fault f ON f.seq = e.fault JOIN unit u ON u.seq = f.unit WHERE e.seq = ?1";
-
-/// The digest of a stored event.
-pub(crate) fn event_digest(backend: &Backend, event: i64, payload: &str) -> SqlResult<[u8; 32]> {
-    let mut hash = CanonicalHash::of("event");
-    take_rows(&mut hash, backend, EVENT, &values![event])?;
-    hash.text(payload);
-    Ok(hash.finish())
-}
 
 /// Whether an event belongs to the fault it was sealed for, with no more occurrences known than sealed.
 pub(crate) fn is_of_its_fault(
@@ -99,40 +105,9 @@ pub(crate) fn event(
     append(backend, "event", id, &payload, &hash.finish())
 }
 
-/// Seals an event that came without a seal.
-pub(crate) fn seal_event_as_found(backend: &Backend, event: i64, found: &str) -> SqlResult<()> {
-    let sql = "SELECT e.id, f.id, e.seen FROM fault_event e JOIN fault f ON f.seq = e.fault WHERE e.seq = ?1";
-    let read = backend.first(sql, &values![event], |row| {
-        Ok((row.get::<Id>(0)?, row.get::<Id>(1)?, row.get::<i64>(2)?))
-    })?;
-    let Some((id, fault, occurrences_known)) = read else {
-        return Ok(());
-    };
-    let payload = EventPayload {
-        fault: fault.to_string(),
-        occurrences_known,
-        found: Some(found.to_owned()),
-    };
-    let payload = payload.text();
-    append(
-        backend,
-        "event",
-        id,
-        &payload,
-        &event_digest(backend, event, &payload)?,
-    )
-}
-
-const NOTE: &str = "SELECT n.id, r.id, n.at_us, n.who, n.trace, n.place_us, n.text
+/// The fields of a note that are sealed.
+pub(super) const NOTE: &str = "SELECT n.id, r.id, n.at_us, n.who, n.trace, n.place_us, n.text
      FROM run_note n JOIN run r ON r.seq = n.run WHERE n.seq = ?1";
-
-/// The digest of a stored note on a run.
-pub(crate) fn note_digest(backend: &Backend, note: i64, payload: &str) -> SqlResult<[u8; 32]> {
-    let mut hash = CanonicalHash::of("note");
-    take_rows(&mut hash, backend, NOTE, &values![note])?;
-    hash.text(payload);
-    Ok(hash.finish())
-}
 
 /// Seals a note; `fields` as given, in the order of [`NOTE`].
 pub(crate) fn note(backend: &Backend, id: Id, fields: &[Value<'_>]) -> SqlResult<()> {
@@ -140,20 +115,4 @@ pub(crate) fn note(backend: &Backend, id: Id, fields: &[Value<'_>]) -> SqlResult
     hash.values(fields);
     hash.text("");
     append(backend, "note", id, "", &hash.finish())
-}
-
-/// Seals a note that came without a seal.
-pub(crate) fn seal_note_as_found(backend: &Backend, note: i64, found: &str) -> SqlResult<()> {
-    let sql = "SELECT id FROM run_note WHERE seq = ?1";
-    let payload = serde_json::json!({ "found": found }).to_string();
-    match backend.first(sql, &values![note], |row| row.get(0))? {
-        Some(id) => append(
-            backend,
-            "note",
-            id,
-            &payload,
-            &note_digest(backend, note, &payload)?,
-        ),
-        None => Ok(()),
-    }
 }

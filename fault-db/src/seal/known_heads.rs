@@ -1,10 +1,10 @@
 //! Ends of chains that were seen once, of this file and of others: a chain that is rewritten or cut later no longer has
 //! them. A sync brings those of all laptops, an import those that the other file has seen.
 
-use super::copied_from;
+use super::{copied_from, hash_of};
 use crate::backend::{Backend, SqlResult, from_row, values};
+use crate::error::Damage;
 use crate::id::Id;
-use crate::maintenance::Damage;
 
 /// An entry of a chain as it was seen.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,11 +83,8 @@ pub(crate) fn broken(
         if copied_from(store, origin)?.is_some_and(|after| ordinal > after) {
             continue;
         }
-        let sql = "SELECT hash FROM seal WHERE origin = ?1 AND ordinal = ?2";
-        let hash: Option<Vec<u8>> =
-            store.first(sql, &values![origin, ordinal], |row| row.get(0))?;
         let seen = head.seen_at_us;
-        match hash {
+        match hash_of(store, origin, ordinal)? {
             Some(hash) if hash == head.hash => {}
             Some(_) => found.push((origin, Damage::Rewritten(origin, ordinal, seen))),
             None if own == Some(origin) => {

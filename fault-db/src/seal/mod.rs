@@ -6,11 +6,13 @@
 //! another file, or on a server. SEALS.md lists the hashed fields, byte by byte.
 
 pub(crate) mod canonical;
+pub(crate) mod covered;
 pub(crate) mod divergence;
 pub(crate) mod events_and_notes;
 mod head;
 pub(crate) mod known_heads;
 pub(crate) mod run;
+pub(crate) mod samples;
 pub(crate) mod trace;
 
 use serde::{Deserialize, Serialize};
@@ -98,22 +100,6 @@ pub(crate) fn statement_digest(what: &str, id: Id, payload: &str) -> [u8; 32] {
     hash.finish()
 }
 
-/// Seals a run that came without a seal.
-pub(crate) fn seal_run_as_found(backend: &Backend, run: i64, found: &str) -> SqlResult<()> {
-    let sql = "SELECT id FROM run WHERE seq = ?1";
-    let Some(id) = backend.first(sql, &values![run], |row| row.get(0))? else {
-        return Ok(());
-    };
-    let payload = run::payload(backend, run, found)?.text();
-    append(
-        backend,
-        "run",
-        id,
-        &payload,
-        &run::digest(backend, run, &payload)?,
-    )
-}
-
 /// The kind of an entry for the deletion of a trace or recording.
 pub(crate) const PRUNED: &str = "pruned";
 
@@ -155,6 +141,20 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// Bytes of lower-case hex digits.
+pub(crate) fn from_hex(text: &str) -> Option<Vec<u8>> {
+    let digit = |byte: u8| match byte {
+        b'0'..=b'9' => Some(byte - b'0'),
+        b'a'..=b'f' => Some(byte - b'a' + 10),
+        _ => None,
+    };
+    let pairs = text.as_bytes().chunks(2).map(|pair| match pair {
+        [high, low] => Some(digit(*high)? << 4 | digit(*low)?),
+        _ => None,
+    });
+    pairs.collect()
+}
+
 /// The kind of an entry for a recount.
 pub(crate) const RECOUNTED: &str = "recounted";
 
@@ -163,18 +163,6 @@ pub(crate) const RECOUNTED: &str = "recounted";
 pub(crate) struct RecountedPayload {
     pub at_us: i64,
     pub differed: Vec<String>,
-}
-
-impl RecountedPayload {
-    /// The recount as a sentence.
-    pub fn text(&self) -> String {
-        let at = chrono::DateTime::from_timestamp_micros(self.at_us).unwrap_or_default();
-        format!(
-            "counted again at {}; before, {}",
-            at.format("%Y-%m-%d %H:%M:%S UTC"),
-            self.differed.join("; ")
-        )
-    }
 }
 
 /// The payload of the first entry of a copy that got an id of its own.
@@ -191,9 +179,7 @@ pub(crate) struct CopiedPayload {
 impl CopiedPayload {
     /// Entry of a file that is a copy from entry `after` on.
     pub fn of(backend: &Backend, origin: Id, after: i64, at_us: i64) -> SqlResult<Self> {
-        let sql = "SELECT hash FROM seal WHERE origin = ?1 AND ordinal = ?2";
-        let hash: Option<Vec<u8>> =
-            backend.first(sql, &values![origin, after], |row| row.get(0))?;
+        let hash = hash_of(backend, origin, after)?;
         Ok(Self {
             file: origin.to_string(),
             after,

@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::canonical::{CanonicalHash, columns, take_rows};
-use super::{hex, trace};
+use super::{from_hex, hex, trace};
 use crate::backend::{Backend, SqlResult, Value, values};
 use crate::id::Id;
-use crate::values::record::{MeasurementRecord, RunEnd, RunRecord, StepRecord};
+use crate::values::record::{RunEnd, RunRecord, ScriptRecord, StepRecord};
 
 /// The payload of a run's seal: its traces and recordings, which may be deleted or arrive later, and occurrences
 /// that another run may have brought before.
@@ -75,36 +75,91 @@ pub(crate) struct RunDigest {
     payload: RunPayload,
 }
 
+/// The fields of a run at its beginning, in the order of [`RUN`]; of the unit the serial number.
+pub(crate) fn run_fields<'a>(
+    id: Id,
+    record: &'a RunRecord,
+    sw_versions: &'a str,
+) -> [Value<'a>; 20] {
+    let RunRecord { unit, .. } = record;
+    values![
+        id,
+        &unit.serial,
+        &unit.kind,
+        &unit.config_name,
+        sw_versions,
+        &record.line,
+        &record.train,
+        record.seed.cast_signed(),
+        &record.operator,
+        &record.source,
+        record.connection.as_ref(),
+        record.symptom.as_ref(),
+        record.continues,
+        record.started_at_us,
+        &record.app_version,
+        &record.scripts_sha256,
+        &record.unit_config_sha256,
+        record.injected.as_ref(),
+        record.evidence.as_ref(),
+        &record.owner,
+    ]
+}
+
+/// The fields of a step, in the order of [`PARTS`].
+pub(crate) fn step_fields(step: &StepRecord) -> [Value<'_>; 14] {
+    values![
+        step.index,
+        &step.procedure,
+        step.kind,
+        step.place,
+        &step.name,
+        step.turn,
+        step.turns,
+        step.verdict,
+        step.started_bench_us,
+        step.bench_time_us,
+        &step.message,
+        step.findings.as_ref(),
+        step.script_line,
+        step.limit_source.as_ref(),
+    ]
+}
+
+/// The fields of each measurement of a step, in the order of [`PARTS`].
+pub(crate) fn measurement_fields(step: &StepRecord) -> impl Iterator<Item = [Value<'_>; 9]> {
+    (0u32..).zip(&step.measurements).map(|(ordinal, measured)| {
+        values![
+            step.index,
+            ordinal,
+            &measured.name,
+            measured.value,
+            &measured.unit,
+            measured.low,
+            measured.high,
+            measured.verdict,
+            measured.limit_source.as_ref(),
+        ]
+    })
+}
+
+/// The fields of a run at its end, after those at its beginning.
+pub(crate) fn end_fields(end: &RunEnd) -> [Value<'static>; 4] {
+    values![
+        end.verdict,
+        end.finished_at_us,
+        end.bench_time_us,
+        end.wall_time_us,
+    ]
+}
+
 impl RunDigest {
-    /// Digest of a run at its beginning.
-    pub fn begin(id: Id, record: &RunRecord, sw_versions: &str) -> Self {
-        let RunRecord { unit, .. } = record;
+    /// Digest of a run at its beginning; `fields` as [`run_fields`] gives them.
+    pub fn begin(fields: &[Value<'_>], scripts: &[ScriptRecord]) -> Self {
         let mut run = CanonicalHash::of("run");
-        run.values(&values![
-            id,
-            &unit.serial,
-            &unit.kind,
-            &unit.config_name,
-            sw_versions,
-            &record.line,
-            &record.train,
-            record.seed.cast_signed(),
-            &record.operator,
-            &record.source,
-            record.connection.as_ref(),
-            record.symptom.as_ref(),
-            record.continues,
-            record.started_at_us,
-            &record.app_version,
-            &record.scripts_sha256,
-            &record.unit_config_sha256,
-            record.injected.as_ref(),
-            record.evidence.as_ref(),
-            &record.owner,
-        ]);
+        run.values(fields);
         // A path given twice is stored once, with the last digest.
-        let scripts = record.scripts.iter();
-        let scripts: BTreeMap<_, _> = scripts.map(|s| (&s.path, &s.sha256)).collect();
+        let scripts: BTreeMap<_, _> = scripts.iter().map(|s| (&s.path, &s.sha256)).collect();
         let mut hash = CanonicalHash::new();
         for (path, sha256) in scripts {
             hash.text(path);
@@ -122,39 +177,10 @@ impl RunDigest {
 
     /// Adds a step; indexes rise.
     pub fn step(&mut self, step: &StepRecord) {
-        self.steps.values(&values![
-            step.index,
-            &step.procedure,
-            step.kind.as_str(),
-            step.place,
-            &step.name,
-            step.turn,
-            step.turns,
-            step.verdict.as_str(),
-            step.started_bench_us,
-            step.bench_time_us,
-            &step.message,
-            step.findings.as_ref(),
-            step.script_line,
-            step.limit_source.as_ref(),
-        ]);
-        for (ordinal, measurement) in (0u32..).zip(&step.measurements) {
-            self.measurement(step.index, ordinal, measurement);
+        self.steps.values(&step_fields(step));
+        for measurement in measurement_fields(step) {
+            self.measurements.values(&measurement);
         }
-    }
-
-    fn measurement(&mut self, step: u32, ordinal: u32, measurement: &MeasurementRecord) {
-        self.measurements.values(&values![
-            step,
-            ordinal,
-            &measurement.name,
-            measurement.value,
-            &measurement.unit,
-            measurement.low,
-            measurement.high,
-            measurement.verdict.as_str(),
-            measurement.limit_source.as_ref(),
-        ]);
     }
 
     /// Adds an occurrence of a fault.
@@ -196,12 +222,7 @@ impl RunDigest {
     /// The payload and the digest of the finished run.
     pub fn end(&self, end: &RunEnd) -> (String, [u8; 32]) {
         let mut run = self.run.clone();
-        run.values(&values![
-            end.verdict.as_str(),
-            end.finished_at_us,
-            end.bench_time_us,
-            end.wall_time_us,
-        ]);
+        run.values(&end_fields(end));
         let payload = self.payload.text();
         let parts = [
             self.scripts,
@@ -291,24 +312,14 @@ fn brought_by_others(
         .contains("\"entries\"")
         .then(|| RunPayload::of(payload));
     for entry in payload.flatten().unwrap_or_default().entries {
-        if let (Ok(id), Some(digest)) = (entry.id.parse::<Id>(), from_hex(&entry.sha256))
+        let digest = from_hex(&entry.sha256).and_then(|digest| digest.try_into().ok());
+        if let (Ok(id), Some(digest)) = (entry.id.parse::<Id>(), digest)
             && backend.has(BY_OTHER, &values![id, run])?
         {
             brought.insert(id, digest);
         }
     }
     Ok(brought)
-}
-
-fn from_hex(text: &str) -> Option<[u8; 32]> {
-    let mut bytes = [0; 32];
-    if text.len() != 64 || !text.is_ascii() {
-        return None;
-    }
-    for (place, byte) in bytes.iter_mut().enumerate() {
-        *byte = u8::from_str_radix(&text[2 * place..2 * place + 2], 16).ok()?;
-    }
-    Some(bytes)
 }
 
 /// The payload of a stored run that is sealed as found.

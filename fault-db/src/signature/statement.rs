@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::places::Places;
 use super::signed::Signed;
 use crate::backend::{Backend, SqlResult, values};
+use crate::error::{SealPlace, WrongSignature};
 use crate::id::Id;
-use crate::maintenance::has_its_traces;
-use crate::maintenance::{SealPlace, WrongSignature};
-use crate::seal::events_and_notes::{event_digest, note_digest};
-use crate::seal::{hex, run};
+use crate::seal::covered::Covered;
+use crate::seal::hex;
+use crate::seal::samples::has_its_traces;
 
 /// The kind of an entry that holds a signature.
 pub(crate) const SIGNATURE: &str = "signature";
@@ -117,25 +117,22 @@ pub(crate) fn signatures_of(backend: &Backend, group: Id) -> SqlResult<Vec<(Stri
 
 /// Whether the run, note or event that a statement names has the content that was signed; a run with its traces.
 fn has_content(backend: &Backend, statement: &Statement) -> SqlResult<bool> {
-    type Digest = fn(&Backend, i64, &str) -> SqlResult<[u8; 32]>;
-    let (table, digest): (_, Digest) = match &statement.what[..] {
-        "run" => ("run", run::digest),
-        "note" => ("run_note", note_digest),
-        "event" => ("fault_event", event_digest),
-        _ => return Ok(true),
+    let Some(kind) = Covered::of(&statement.what) else {
+        return Ok(true);
     };
     let Ok(id) = statement.id.parse::<Id>() else {
         return Ok(false);
     };
     let sql = format!(
-        "SELECT t.seq, s.says FROM {table} t JOIN seal s ON s.id = t.id AND s.what = ?2 WHERE t.id = ?1"
+        "SELECT t.seq, s.says FROM {} t JOIN seal s ON s.id = t.id AND s.what = ?2 WHERE t.id = ?1",
+        kind.table()
     );
     let sealed = backend.select(&sql, &values![id, &statement.what], |row| {
         Ok((row.get::<i64>(0)?, row.get::<String>(1)?))
     })?;
     for (row, payload) in sealed {
-        if hex(&digest(backend, row, &payload)?) == statement.digest {
-            return Ok(statement.what != "run" || has_its_traces(backend, (id, row), &payload)?);
+        if hex(&kind.digest(backend, row, &payload)?) == statement.digest {
+            return Ok(kind != Covered::Run || has_its_traces(backend, (id, row), &payload)?);
         }
     }
     Ok(false)

@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use crate::error::StoreError;
-use crate::files::databases::note_opened;
-use crate::schema::guard;
-use crate::schema::sql_functions;
-use crate::schema::{self, APPLICATION_ID, SCHEMA_VERSION};
+use crate::files::databases::{note_opened, with_end};
+use crate::schema::{self, APPLICATION_ID, SCHEMA_VERSION, guard, sql_functions};
 use crate::store::atomic_file::AtomicFile;
 use crate::store::open_options::Synchronous;
 
@@ -32,12 +31,12 @@ pub(crate) fn connect(
     flags: OpenFlags,
     busy_timeout_ms: u32,
 ) -> Result<Connection, StoreError> {
+    let cannot_open = |reason| StoreError::CannotOpen {
+        path: path.to_path_buf(),
+        reason,
+    };
     if path.is_dir() {
-        let reason = "it is a directory".to_owned();
-        return Err(StoreError::CannotOpen {
-            path: path.to_path_buf(),
-            reason,
-        });
+        return Err(cannot_open("it is a directory".to_owned()));
     }
     // Opening a pipe would block.
     if std::fs::metadata(path).is_ok_and(|about| !about.is_file()) {
@@ -49,10 +48,7 @@ pub(crate) fn connect(
         true => Ok(name.to_path_buf()),
         false => std::path::absolute(name),
     };
-    let name = from_root.map_err(|error| StoreError::CannotOpen {
-        path: path.to_path_buf(),
-        reason: error.to_string(),
-    })?;
+    let name = from_root.map_err(|error| cannot_open(error.to_string()))?;
     let conn = Connection::open_with_flags(&name, flags).map_err(failed)?;
     note_opened(path);
     conn.busy_timeout(std::time::Duration::from_millis(busy_timeout_ms.into()))
@@ -141,18 +137,11 @@ pub(crate) fn keep_copy(conn: &Connection, path: &Path, version: i32) -> Result<
     if schema::user_version(conn).map_err(failed)? != version {
         return Ok(());
     }
-    let mut copies = (1..=MAX_COPIES).map(|number| {
-        let mut name = path.as_os_str().to_owned();
-        name.push(format!(".schema{version}"));
-        if number > 1 {
-            name.push(format!(".{number}"));
-        }
-        PathBuf::from(name)
-    });
+    let first = with_end(path, &format!(".schema{version}"));
+    let later = (2..=MAX_COPIES).map(|number| with_end(&first, &format!(".{number}")));
+    let mut copies = std::iter::once(first.clone()).chain(later);
     let Some(copy) = copies.find(|copy| !copy.exists()) else {
-        let mut first = path.as_os_str().to_owned();
-        first.push(format!(".schema{version}"));
-        return Err(StoreError::TargetExists(first.into()));
+        return Err(StoreError::TargetExists(first));
     };
     let part = AtomicFile::copy(conn, &copy, DOING)?;
     if part.version()? != version {
@@ -186,22 +175,17 @@ fn enter_wal(conn: &Connection) -> Result<(), rusqlite::Error> {
 }
 
 pub(crate) fn has_write_ahead_log(path: &Path) -> bool {
-    let mut name = path.as_os_str().to_owned();
-    name.push("-wal");
-    std::fs::metadata(name).is_ok_and(|log| log.len() > 0)
+    std::fs::metadata(with_end(path, "-wal")).is_ok_and(|log| log.len() > 0)
 }
 
 /// A `file:` URI with all special characters escaped.
 pub(crate) fn immutable_uri(path: &Path) -> PathBuf {
-    let mut uri = String::from("file:");
-    for byte in path.as_os_str().as_encoded_bytes() {
-        match byte {
-            b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'/' | b'.' | b'-' | b'_' | b'~' => {
-                uri.push(char::from(*byte));
-            }
-            _ => uri.push_str(&format!("%{byte:02X}")),
-        }
-    }
-    uri.push_str("?immutable=1");
-    PathBuf::from(uri)
+    const LETTERS: AsciiSet = NON_ALPHANUMERIC
+        .remove(b'/')
+        .remove(b'.')
+        .remove(b'-')
+        .remove(b'_')
+        .remove(b'~');
+    let path = percent_encode(path.as_os_str().as_encoded_bytes(), &LETTERS);
+    PathBuf::from(format!("file:{path}?immutable=1"))
 }

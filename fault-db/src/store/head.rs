@@ -1,7 +1,7 @@
 //! The last seal of a file.
 
 use super::Store;
-use crate::backend::{Backend, SqlResult};
+use crate::backend::Backend;
 use crate::error::StoreError;
 use crate::seal::{SealHead, head_of, hex, known_heads, own_file_id};
 
@@ -9,22 +9,17 @@ impl Store {
     /// The last entry of this file's chain; `None` for a server, which has no chain of its own, and for a
     /// file never opened for writing.
     pub fn head(&self) -> Result<Option<SealHead>, StoreError> {
-        const DOING: &str = "reading the last seal";
-        let Backend::File(_) = &self.backend else {
-            return Ok(None);
-        };
-        let read = || -> SqlResult<_> {
-            let Some(file) = own_file_id(&self.backend)? else {
+        self.ask("reading the last seal", |backend| {
+            let Some(file) = own_file_id(backend)? else {
                 return Ok(None);
             };
-            let head = head_of(&self.backend, file)?;
+            let head = head_of(backend, file)?;
             Ok(head.map(|(entries, hash)| SealHead {
                 file,
                 entries,
                 seal: hex(&hash),
             }))
-        };
-        read().map_err(|error| self.failed(DOING, error))
+        })
     }
 
     /// Holds the chains of another file against what this one has seen of them; what was rewritten or cut there.
@@ -36,13 +31,10 @@ impl Store {
         if !matches!(&self.backend, Backend::File(_)) {
             return Ok(Vec::new());
         }
-        let known = known_heads::seen_by(&self.backend);
-        let known = known.map_err(|error| self.failed(DOING, error))?;
-        let look = || {
-            let own = own_file_id(&other.backend)?;
-            known_heads::broken(&other.backend, &known, own)
-        };
-        let broken = look().map_err(|error| other.failed(DOING, error))?;
+        let known = self.ask(DOING, known_heads::seen_by)?;
+        let broken = other.ask(DOING, |other| {
+            known_heads::broken(other, &known, own_file_id(other)?)
+        })?;
         Ok(broken
             .into_iter()
             .map(|(_, what)| what.to_string())

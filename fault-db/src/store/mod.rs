@@ -18,10 +18,9 @@ use std::sync::Arc;
 use rusqlite::{Connection, Transaction, TransactionBehavior};
 
 use crate::backend::{Backend, Row, Server, SqlError, SqlResult, Value};
-use crate::error::StoreError;
+use crate::error::{Damage, StoreError};
 use crate::files::platform::Identity;
 use crate::id::{Id, IdSource};
-use crate::maintenance::Damage;
 use crate::schema::SCHEMA_VERSION;
 use crate::schema::guard;
 use crate::seal;
@@ -100,8 +99,7 @@ impl Store {
 
     /// The file's id. Without it its chain of seals is lost, and must not be begun again.
     fn name(&self) -> Result<Id, StoreError> {
-        let name = seal::own_file_id(&self.backend);
-        let name = name.map_err(|error| self.failed("reading its name", error))?;
+        let name = self.ask("reading its name", seal::own_file_id)?;
         name.ok_or_else(|| StoreError::Altered {
             path: self.path.clone(),
             what: Box::new(Damage::NoName),
@@ -201,8 +199,7 @@ impl Store {
         };
         let result = work(&transaction)?;
         if let Some(signer) = signer {
-            sign_new_entries(&self.backend, &signer, known)
-                .map_err(|error| self.failed("signing", error))?;
+            self.ask("signing", |file| sign_new_entries(file, &signer, known))?;
         }
         transaction.commit().map_err(failed)?;
         Ok(result)
@@ -233,6 +230,15 @@ impl Store {
         }
     }
 
+    /// Asks the file or server, or writes to it in the caller's transaction.
+    pub(crate) fn ask<T>(
+        &self,
+        doing: &'static str,
+        work: impl FnOnce(&Backend) -> SqlResult<T>,
+    ) -> Result<T, StoreError> {
+        work(&self.backend).map_err(|error| self.failed(doing, error))
+    }
+
     /// All rows of a result.
     pub(crate) fn select<T>(
         &self,
@@ -241,8 +247,7 @@ impl Store {
         values: &[Value<'_>],
         read: impl FnMut(Row<'_>) -> SqlResult<T>,
     ) -> Result<Vec<T>, StoreError> {
-        let found = self.backend.select(sql, values, read);
-        found.map_err(|error| self.failed(doing, error))
+        self.ask(doing, |backend| backend.select(sql, values, read))
     }
 
     /// The first row of a result.
@@ -253,8 +258,7 @@ impl Store {
         values: &[Value<'_>],
         read: impl FnMut(Row<'_>) -> SqlResult<T>,
     ) -> Result<Option<T>, StoreError> {
-        let found = self.backend.first(sql, values, read);
-        found.map_err(|error| self.failed(doing, error))
+        self.ask(doing, |backend| backend.first(sql, values, read))
     }
 
     /// Whether a result has a row.
@@ -264,8 +268,7 @@ impl Store {
         sql: &str,
         values: &[Value<'_>],
     ) -> Result<bool, StoreError> {
-        let found = self.backend.has(sql, values);
-        found.map_err(|error| self.failed(doing, error))
+        self.ask(doing, |backend| backend.has(sql, values))
     }
 
     pub(crate) fn failed(&self, doing: &'static str, error: impl Into<SqlError>) -> StoreError {

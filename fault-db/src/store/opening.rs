@@ -119,7 +119,7 @@ impl Store {
                 if from > 0 {
                     return self.name();
                 }
-                seal::begin(&self.backend, minted).map_err(|error| self.failed(DOING, error))
+                self.ask(DOING, |file| seal::begin(file, minted))
             });
         }
         self.name()

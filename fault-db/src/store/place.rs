@@ -13,7 +13,7 @@ use crate::id::Id;
 use crate::seal::{SealHead, hash_of, hex, sealed_as};
 use crate::store::atomic_file::AtomicFile;
 
-/// The whole file is looked at for as long as this; the rows of the run are read whatever it takes.
+/// Time limit of looking through the whole file; the rows of the run are read without one.
 const LOOK: Duration = Duration::from_millis(200);
 
 impl Store {
@@ -90,17 +90,15 @@ impl Store {
         let found = Self::open_read_only(&self.path)?;
         let is_there = || -> Result<bool, StoreError> {
             if let Some(began) = began {
-                let hash = hash_of(&found.backend, began.file, began.entries);
-                let hash =
-                    hash.map_err(|error| found.failed("comparing chains of seals", error))?;
+                let hash = found.ask("comparing chains of seals", |file| {
+                    hash_of(file, began.file, began.entries)
+                })?;
                 if hash.is_none_or(|hash| hex(&hash) != began.seal) {
                     return Ok(false);
                 }
             }
             let there = found.run(run)?;
-            let sealed = sealed_as(&found.backend, run);
-            let sealed =
-                sealed.map_err(|error| found.failed("reading the seal of a run", error))?;
+            let sealed = found.ask("reading the seal of a run", |file| sealed_as(file, run))?;
             let is_whole = |steps| sealed.is_some() && there.steps.len() == steps;
             Ok(there.run.verdict.is_some() && steps.is_none_or(is_whole) && found.looks_sound()?)
         };

@@ -11,12 +11,12 @@ use crate::id::Id;
 use crate::store::Store;
 
 impl Store {
-    /// Whether a run that has no end is under way: a server has only such as are over.
+    /// Whether a run without an end is under way. A server has no run that is.
     pub(crate) fn is_under_way(&self, run: Id) -> bool {
         matches!(&self.backend, Backend::File(_)) && is_held(&self.lock_of(run))
     }
 
-    /// Tells other programs that a run is under way, until what this gives is dropped.
+    /// Tells other programs that a run is under way, until the result is dropped.
     pub(crate) fn hold_run(&self, run: Id) -> Result<HeldFile, StoreError> {
         let locks = self.locks();
         if let (Some(folder), Some(begins)) = (locks.parent(), locks.file_name()) {

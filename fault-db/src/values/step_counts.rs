@@ -37,17 +37,17 @@ impl StepCounts {
         counter.counts(0)
     }
 
-    /// Were run, whatever came of it.
+    /// Steps that were run, with any result.
     pub fn run(&self) -> u32 {
         self.passed + self.not_passed()
     }
 
-    /// Were run and did not pass.
+    /// Steps that were run and did not pass.
     pub fn not_passed(&self) -> u32 {
         self.failed + self.error
     }
 
-    /// Were due and not run.
+    /// Steps that were due and not run.
     pub fn not_run(&self) -> u32 {
         self.planned.saturating_sub(self.run())
     }

@@ -42,20 +42,6 @@ macro_rules! text_enum {
             }
         }
 
-        impl rusqlite::types::ToSql for $name {
-            fn to_sql(&self) -> rusqlite::Result<rusqlite::types::ToSqlOutput<'_>> {
-                Ok(self.as_str().into())
-            }
-        }
-
-        impl rusqlite::types::FromSql for $name {
-            fn column_result(
-                value: rusqlite::types::ValueRef<'_>,
-            ) -> rusqlite::types::FromSqlResult<Self> {
-                value.as_str()?.parse().map_err(rusqlite::types::FromSqlError::other)
-            }
-        }
-
         impl crate::backend::FromField<'_> for $name {
             fn from_field(field: crate::backend::Field<'_>) -> Result<Self, String> {
                 let word = <&str as crate::backend::FromField>::from_field(field)?;

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::common::{
-    Deeds, T0_US, Traces, end, fault, ids, measurement, new_history, open, realistic_trace,
-    run_record, step,
+    Deeds, T0_US, Traces, end, fault, ids, kinds, measured_step, new_history, open, problems,
+    realistic_trace, refused, run_record, tells,
 };
 use fault_db::{
     FaultFilter, FaultState, FaultStored, Id, OpenOptions, PruneRule, RunState, RunWriter, Store,
@@ -16,9 +16,7 @@ use tempfile::tempdir;
 /// A run of one step, one fault and its trace.
 pub fn one_run(store: &Store, serial: &str, code: i64) -> (Id, FaultStored, Id) {
     let mut writer = RunWriter::begin(store, &run_record(serial)).expect("begun");
-    let mut measured = step(0);
-    measured.measurements = vec![measurement("eb_reaction", 0.42)];
-    writer.step(measured).expect("kept");
+    writer.step(measured_step(0)).expect("kept");
     let stored = writer.fault(&fault(code, T0_US)).expect("stored");
     let trace = writer.put_trace(&[stored.occurrence], &realistic_trace(600, 3));
     writer.finish(&end(Verdict::Failed)).expect("finished");
@@ -43,16 +41,9 @@ fn check_finds_a_flipped_bit_in_a_trace_and_a_lost_row() {
              DELETE FROM fault_event; DELETE FROM fault",
         )
         .expect("damaged");
-    let problems = store.check().expect("checked").problems;
-    let kinds: Vec<_> = problems
-        .iter()
-        .map(|problem| problem.kind.as_str())
-        .collect();
-    assert_eq!(kinds, ["foreign_key", "trace", "seal"], "{problems:?}");
-    assert!(
-        problems[1].detail.to_string().contains(&trace.to_string()),
-        "{problems:?}"
-    );
+    let found = problems(&store);
+    assert_eq!(kinds(&found), ["foreign_key", "trace", "seal"]);
+    assert!(tells(&found[1], &trace.to_string()), "{found:?}");
     assert!(matches!(store.trace(trace), Err(StoreError::Trace { .. })));
     assert!(matches!(
         store.fault(stored.fault),
@@ -79,7 +70,7 @@ fn of_two_backups_to_one_path_one_is_made() {
             assert!(matches!(refused, StoreError::TargetExists(_)), "{refused}");
         }
         let copy = Store::open_read_only(&to).expect("one of ours");
-        assert_eq!(copy.check().expect("checked").problems, []);
+        assert_eq!(problems(&copy), []);
         copy.trace(trace).expect("there");
     }
     assert_eq!(parts(dir.path()), [""; 0]);
@@ -123,7 +114,7 @@ fn a_backup_made_while_others_write_can_be_used_as_a_database() {
     for path in &copies {
         let copy = Store::open(path, OpenOptions::new(ids(10))).expect("one of ours");
         one_run(&copy, "ATC-9", 3);
-        assert_eq!(copy.check().expect("checked").problems, []);
+        assert_eq!(problems(&copy), []);
         let conn = Connection::open(path).expect("opens");
         let one = |sql: &str| {
             conn.query_row(sql, [], |row| row.get::<_, i64>(0))
@@ -186,7 +177,7 @@ fn prune_takes_old_traces_of_closed_faults_only_and_shrinks_the_file() {
         store.fault(closed.fault).expect("stays").fault.trace_id,
         None
     );
-    assert_eq!(store.check().expect("checked").problems, []);
+    assert_eq!(problems(&store), []);
 }
 
 #[test]
@@ -218,14 +209,13 @@ fn importing_twice_adds_nothing_twice() {
         ours.trace(trace).expect("there"),
         theirs.trace(trace).expect("there")
     );
-    assert_eq!(ours.check().expect("checked").problems, []);
+    assert_eq!(problems(&ours), []);
     let exported = path("c.db");
     let counts = ours
         .export(&exported, OpenOptions::new(ids(3)))
         .expect("exported");
     assert_eq!((counts.runs, counts.faults, counts.traces), (2, 2, 2));
-    let error = ours.import(&path("a.db")).expect_err("itself");
-    assert!(matches!(error, StoreError::SameFile(_)), "{error}");
+    refused!(ours.import(&path("a.db")), StoreError::SameFile(_));
 }
 
 /// Goal: a copy taken in mid-run is completed by a later one, and the state with the latest event
@@ -286,5 +276,5 @@ fn work_that_is_stopped_leaves_nothing_behind() {
     assert_eq!(all.len(), 1, "nothing was imported");
     assert_eq!(ours.import(&from).expect("imported").runs, 1);
     ours.backup(&to).expect("copied");
-    assert_eq!(ours.check().expect("checked").problems, []);
+    assert_eq!(problems(&ours), []);
 }

@@ -1,10 +1,10 @@
 //! Counts and lists that `counting_filters` does not hold against the rows.
 
-use crate::common::{Deeds, Random, T0_US, end, fault, new_history, open, repair_of, run_record};
-use crate::counting_filters::{DAY_US, history};
-use fault_db::{
-    FaultFilter, RunFilter, RunRecord, RunWriter, StatKey, StatQuery, TrendQuery, Verdict,
+use crate::common::{
+    Deeds, Random, T0_US, failed_run, fault, new_history, open, repair_of, run_record,
 };
+use crate::counting_filters::{DAY_US, history};
+use fault_db::{FaultFilter, RunFilter, RunRecord, RunWriter, StatKey, StatQuery, TrendQuery};
 use tempfile::tempdir;
 
 /// Goal: days of a measurement add up, whatever span is asked for: `counting_filters` counts faults. Method: all lines are those
@@ -82,9 +82,7 @@ fn all_conditions_on_an_occurrence_apply_to_the_same_one() {
             started_at_us: at_us,
             ..run_record("ATC-1")
         };
-        let mut writer = RunWriter::begin(&store, &record).expect("begun");
-        writer.fault(&fault(1, at_us)).expect("stored");
-        writer.finish(&end(Verdict::Failed)).expect("finished");
+        failed_run(&store, &record, &[], &[fault(1, at_us)]);
     }
     let found = |train: &str, month: i64| {
         let filter = FaultFilter {

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::common::{
-    Random, STAT_KEYS, T0_US, end, fault, filter, ids, measurement, new_history, repair_of,
-    run_record, step,
+    Deeds, Random, STAT_KEYS, T0_US, end, fault, filter, ids, measurement, new_history, problems,
+    repair_of, run_record, step,
 };
 use fault_db::{
     FaultFilter, FaultStat, FaultState, OpenOptions, RunRecord, RunWriter, StatKey, StatQuery,
@@ -67,9 +67,7 @@ fn handle(store: &Store, id: fault_db::Id, at_us: i64, random: &mut Random) {
         }
         (_, FaultState::Verified) => store.set_state(id, FaultState::Closed, "kim", "", later_us),
         (4, _) => {
-            store
-                .add_note(id, "lee", "relay replaced", later_us)
-                .expect("noted");
+            store.put_note(id, "lee", "relay replaced", later_us);
             Ok(state)
         }
         _ => Ok(state),
@@ -335,11 +333,7 @@ fn compare(store: &Store, path: &Path, what: &str, turn: usize) {
         for (key, by) in STAT_KEYS.into_iter().enumerate() {
             let one = (turn + at + key) % spans.len();
             // What is kept is added up where nothing, or a unit alone, is asked for.
-            let some = if at < 2 {
-                &spans[..]
-            } else {
-                &spans[one..=one]
-            };
+            let some = &spans[if at < 2 { 0..spans.len() } else { one..one + 1 }];
             for span in some {
                 let query = query(by, *span);
                 let (stats, total) = store.stats_and_total(&query).expect("counted");
@@ -377,21 +371,18 @@ fn counts_with_any_filter_are_those_of_the_rows() {
     assert!(empty(&path) > 0);
     let reader = Store::open_read_only(&path).expect("opens");
     compare(&reader, &path, "recorded", 0);
-    assert_eq!(
-        store.rebuild(T0_US).expect("made anew"),
-        Vec::<String>::new()
-    );
+    assert_eq!(store.rebuild(T0_US).expect("made anew"), [""; 0]);
     assert_eq!(empty(&path), 0);
     compare(&store, &path, "packed", 1);
     history(&store, &mut Random::new(10));
     assert!(empty(&path) > 0);
     compare(&store, &path, "recorded on", 2);
-    assert_eq!(store.check().expect("checked").problems, []);
+    assert_eq!(problems(&store), []);
     let to = dir.path().join("b.db");
     let copy = Store::open(&to, OpenOptions::new(ids(7))).expect("opens");
     copy.merge_from(&store).expect("merged");
     compare(&copy, &to, "merged", 3);
-    assert_eq!(copy.check().expect("checked").problems, []);
+    assert_eq!(problems(&copy), []);
 }
 
 /// Blocks of packed faults that are empty.

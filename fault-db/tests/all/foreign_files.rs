@@ -1,28 +1,17 @@
 //! Files of somebody else, as data: what holds what no history holds, or does not fit its seal, is named and
 //! left out, and the rest comes.
 
-use std::path::Path;
-
 use crate::common::{
-    Deeds, T0_US, Traces, change, end, fault, ids, measurement, realistic_trace, repair_of, rows,
-    run_record, step,
+    Deeds, T0_US, Traces, change, end, fault, measured_step, open_as, realistic_trace, refused,
+    repair_of, rows, run_record, tells,
 };
-use fault_db::{
-    Id, MergeCounts, OpenOptions, RecordingRecord, RunWriter, Store, Synchronous, Verdict,
-};
+use fault_db::{Id, MergeCounts, RecordingRecord, RunWriter, Store, StoreError, Verdict};
 use tempfile::tempdir;
-
-fn opened(path: &Path, seed: u64) -> Store {
-    let options = OpenOptions::new(ids(seed)).synchronous(Synchronous::Normal);
-    Store::open(path, options).expect("opens")
-}
 
 /// A run of all there is: steps, values, a fault with a trace and its recording, events and a note.
 fn whole_run(store: &Store, serial: &str) -> Id {
     let mut writer = RunWriter::begin(store, &run_record(serial)).expect("begun");
-    let mut measured = step(0);
-    measured.measurements = vec![measurement("eb_reaction", 0.42)];
-    writer.step(measured).expect("kept");
+    writer.step(measured_step(0)).expect("kept");
     let stored = writer.fault(&fault(101, T0_US)).expect("stored");
     let trace = writer.put_trace(&[stored.occurrence], &realistic_trace(60, 1));
     let recording = RecordingRecord {
@@ -51,7 +40,7 @@ const BAD_FAULT: &str =
 fn an_invalid_row_is_reported_and_all_others_are_merged() {
     let dir = tempdir().expect("a directory");
     let source = dir.path().join("source.db");
-    let theirs = opened(&source, 1);
+    let theirs = open_as(&source, 1);
     whole_run(&theirs, "GOOD");
     whole_run(&theirs, "BAD");
     theirs.close().expect("closed");
@@ -63,7 +52,7 @@ fn an_invalid_row_is_reported_and_all_others_are_merged() {
             &foreign,
             &sql.replace("{run}", BAD).replace("{fault}", BAD_FAULT),
         );
-        let ours = opened(
+        let ours = open_as(
             &dir.path().join(format!("ours{number}.db")),
             100 + number as u64,
         );
@@ -106,44 +95,26 @@ fn an_invalid_row_is_reported_and_all_others_are_merged() {
 fn a_trace_that_an_import_refused_is_told_until_a_good_file_brings_it() {
     let dir = tempdir().expect("a directory");
     let (source, damaged) = (dir.path().join("source.db"), dir.path().join("damaged.db"));
-    let theirs = opened(&source, 1);
+    let theirs = open_as(&source, 1);
     let run = whole_run(&theirs, "BAD");
     let trace = theirs.resolve_trace("latest").expect("its trace");
     theirs.close().expect("closed");
     std::fs::copy(&source, &damaged).expect("copied");
     change(&damaged, "UPDATE trace SET t0_us = t0_us + 1");
-    let ours = opened(&dir.path().join("ours.db"), 2);
+    let ours = open_as(&dir.path().join("ours.db"), 2);
     assert_eq!(ours.import(&damaged).expect("imported").refused.count, 1);
     let problems = ours.check().expect("a check").problems;
     let [problem] = &problems[..] else {
         panic!("{problems:?}")
     };
-    for words in [&trace.to_string(), "refused", "import a whole copy"] {
-        assert!(
-            problem.detail.to_string().contains(words),
-            "{}",
-            problem.detail
-        );
+    let name = trace.to_string();
+    for words in [&name[..], "refused", "import a whole copy"] {
+        assert!(tells(problem, words), "{}", problem.detail);
     }
-    for asked in [
-        trace.to_string(),
-        trace.short(),
-        trace.to_string()[..13].to_owned(),
-    ] {
-        let said = ours
-            .resolve_trace(&asked)
-            .expect_err("not here")
-            .to_string();
-        assert!(
-            said.contains("refused") && said.contains(&run.to_string()),
-            "{said}"
-        );
+    for asked in [&name, &trace.short(), &name[..13]] {
+        refused!(ours.resolve_trace(asked), _, "refused", &run.to_string());
     }
-    let other = ours.resolve_trace("ffffffff").expect_err("of no run");
-    assert!(
-        matches!(other, fault_db::StoreError::NotFound { .. }),
-        "{other}"
-    );
+    refused!(ours.resolve_trace("ffffffff"), StoreError::NotFound { .. });
     assert_eq!(ours.import(&source).expect("the good file").traces, 1);
     assert_eq!(ours.resolve_trace(&trace.short()).expect("here"), trace);
     assert_eq!(ours.check().expect("a check").problems, []);
@@ -154,11 +125,11 @@ fn a_trace_that_an_import_refused_is_told_until_a_good_file_brings_it() {
 fn runs_without_seals_are_not_merged() {
     let dir = tempdir().expect("a directory");
     let source = dir.path().join("source.db");
-    let theirs = opened(&source, 1);
+    let theirs = open_as(&source, 1);
     let run = whole_run(&theirs, "GOOD");
     theirs.close().expect("closed");
     change(&source, "DELETE FROM seal");
-    let ours = opened(&dir.path().join("ours.db"), 2);
+    let ours = open_as(&dir.path().join("ours.db"), 2);
     let counts = ours.import(&source).expect("merged");
     assert_eq!((counts.runs, counts.faults, counts.events), (0, 0, 0));
     let named: Vec<_> = counts
@@ -185,15 +156,14 @@ fn a_view_in_the_place_of_a_table_is_refused_at_once() {
     .enumerate()
     {
         let source = dir.path().join(format!("{number}.db"));
-        let theirs = opened(&source, 1);
+        let theirs = open_as(&source, 1);
         whole_run(&theirs, "GOOD");
         theirs.close().expect("closed");
         change(&source, sql);
-        let ours = opened(&dir.path().join(format!("ours{number}.db")), 2);
+        let ours = open_as(&dir.path().join(format!("ours{number}.db")), 2);
         let begun = std::time::Instant::now();
-        let refused = ours.import(&source).expect_err(sql).to_string();
+        refused!(ours.import(&source), _, &format!("{number}.db"));
         assert!(begun.elapsed().as_secs() < 10, "{sql}");
-        assert!(refused.contains(&format!("{number}.db")), "{sql}: {refused}");
-        assert_eq!(ours.merge_from(&opened(&dir.path().join("empty.db"), 3)).expect("merged"), MergeCounts::default());
+        assert_eq!(ours.merge_from(&open_as(&dir.path().join("empty.db"), 3)).expect("merged"), MergeCounts::default());
     }
 }

@@ -1,11 +1,11 @@
 //! Lives by serial number: of a unit, of a train, of a part that went from unit to unit.
 
 use fault_db::{
-    FaultState, Id, Life, LifeOf, LifeWhat, RunEnd, RunRecord, RunWriter, Store, ToWithdraw,
+    FaultRecord, FaultState, Id, Life, LifeOf, LifeWhat, RunEnd, RunRecord, Store, ToWithdraw,
     Verdict,
 };
 
-use crate::common::{self, Deeds, T0_US, end, fault, open, repair_of};
+use crate::common::{self, Deeds, T0_US, end, fault, open, recorded, repair_of};
 
 const DAY_US: i64 = 86_400_000_000;
 
@@ -20,19 +20,16 @@ fn run(store: &Store, (unit, train): (&str, &str), day: i64, codes: &[i64]) -> V
         train: train.to_owned(),
         ..common::run_record(unit)
     };
-    let mut writer = RunWriter::begin(store, &record).expect("a run");
-    let mut seen = Vec::new();
-    for code in codes {
-        let mut fault = fault(*code, at(day) + code);
-        fault.lru = "eb_relay".to_owned();
-        seen.push(writer.fault(&fault).expect("a fault").fault);
-    }
+    let seen = codes.iter().map(|code| FaultRecord {
+        lru: "eb_relay".to_owned(),
+        ..fault(*code, at(day) + code)
+    });
+    let seen: Vec<_> = seen.collect();
     let end = RunEnd {
         finished_at_us: at(day) + 1_000_000,
         ..end(Verdict::Failed)
     };
-    writer.finish(&end).expect("its end");
-    seen
+    recorded(store, &record, &[], &seen, &end).1
 }
 
 fn repair(store: &Store, fault: Id, [old, new]: [&str; 2], day: i64) {

@@ -1,28 +1,23 @@
 //! Laptops that meet in any order: the same faults, states and counts everywhere, and nothing hidden of
 //! what people did without knowing of each other.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::common::{
-    Deeds, Random, STAT_KEYS, T0_US, change, end, fault, ids, measurement, repair_of, rows,
-    run_record, step, with,
+    Deeds, Random, STAT_KEYS, T0_US, change, end, failed_run, fault, ids, measured_step,
+    measurement, open_as, problems, refused, repair_of, rows, run_record, state, step, with,
 };
 use fault_db::{
     CauseRecord, FaultFilter, FaultState, Id, MergeCounts, OpenOptions, RunWriter, StatQuery,
-    Store, StoreError, Synchronous, Verdict,
+    Store, StoreError, Verdict,
 };
 use rusqlite::Connection;
 use tempfile::{TempDir, tempdir};
 
 const HOUR_US: i64 = 3_600_000_000;
 
-fn opened(path: &Path, seed: u64) -> Store {
-    let options = OpenOptions::new(ids(seed)).synchronous(Synchronous::Normal);
-    Store::open(path, options).expect("opens")
-}
-
 fn laptop(dir: &TempDir, name: &str, seed: u64) -> Store {
-    opened(&dir.path().join(name), seed)
+    open_as(&dir.path().join(name), seed)
 }
 
 /// Content of a file, without row numbers and the id by which a fault goes, which differ between files.
@@ -69,7 +64,7 @@ fn said(store: &Store) -> Vec<String> {
 }
 
 fn whole(store: &Store, what: &str) {
-    assert_eq!(store.check().expect("checked").problems, [], "{what}");
+    assert_eq!(problems(store), [], "{what}");
 }
 
 /// Runs, faults out of order, and people who do what they may, with a clock of their own.
@@ -208,14 +203,7 @@ fn shared_fault(dir: &TempDir) -> (Store, Store, Id) {
 }
 
 fn one_fault(store: &Store, at_us: i64) -> Id {
-    let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");
-    let stored = writer.fault(&fault(1, at_us)).expect("stored");
-    writer.finish(&end(Verdict::Failed)).expect("finished");
-    stored.fault
-}
-
-fn state(store: &Store, fault: Id) -> FaultState {
-    store.fault(fault).expect("there").fault.state
+    failed_run(store, &run_record("ATC-7"), &[], &[fault(1, at_us)]).1[0]
 }
 
 /// Goal: what two people did to a fault without knowing of each other is shown, with the state that leaves
@@ -444,7 +432,7 @@ fn a_forked_copy_is_merged_with_all_its_runs() {
     one_fault(&a, T0_US);
     let copy: PathBuf = dir.path().join("copy.db");
     a.backup(&copy).expect("copied");
-    let b = opened(&copy, 2);
+    let b = open_as(&copy, 2);
     one_fault(&a, T0_US + 1);
     one_fault(&b, T0_US + 2);
     one_fault(&b, T0_US + 3);
@@ -471,7 +459,7 @@ fn a_copy_that_was_changed_by_hand_changes_no_run_here() {
         let copy = dir.path().join("copy.db");
         a.backup(&copy).expect("copied");
         change(&copy, sql);
-        let b = opened(&copy, 2);
+        let b = open_as(&copy, 2);
         one_fault(&b, T0_US + 1);
         let before = a.run(altered).expect("there");
         let added = a.merge_from(&b).expect("merged");
@@ -507,8 +495,8 @@ fn a_changed_file_without_seals_and_id_gets_no_new_chain() {
         &copy,
         "UPDATE run SET verdict = 'passed'; DELETE FROM seal; DELETE FROM about WHERE key = 'file_id'",
     );
-    let refused = Store::open(&copy, OpenOptions::new(ids(2))).expect_err("it has no name");
-    assert!(matches!(refused, StoreError::Altered { .. }), "{refused}");
+    let nameless = Store::open(&copy, OpenOptions::new(ids(2)));
+    refused!(nameless, StoreError::Altered { .. });
     let added = a.import(&copy).expect("merged");
     let named: Vec<_> = added.different.iter().map(|run| run.id).collect();
     assert_eq!((named, added.runs), (vec![altered], 0));
@@ -560,11 +548,6 @@ fn the_seal_of_a_run_that_ended_otherwise_here_is_left_out() {
 
 /// A run with a step, a measurement and a fault.
 fn measured_run(store: &Store) -> Id {
-    let mut writer = RunWriter::begin(store, &run_record("ATC-7")).expect("begun");
-    let mut measured = step(0);
-    measured.measurements = vec![measurement("eb_reaction", 0.42)];
-    writer.step(measured).expect("kept");
-    writer.fault(&fault(1, T0_US)).expect("stored");
-    writer.finish(&end(Verdict::Failed)).expect("finished");
-    writer.id()
+    let seen = [fault(1, T0_US)];
+    failed_run(store, &run_record("ATC-7"), &[measured_step(0)], &seen).0
 }

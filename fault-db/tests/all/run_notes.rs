@@ -1,6 +1,9 @@
 //! Notes on runs: in their order, merged once, untouched by pruning, found when damaged.
 
-use crate::common::{T0_US, end, ids, new_history, open, realistic_trace, run_record, with};
+use crate::common::{
+    T0_US, end, ids, kinds, new_history, open, problems, realistic_trace, refused, run_record,
+    tells, with,
+};
 use fault_db::{
     Id, OpenOptions, PruneRule, RunNote, RunWriter, Store, StoreError, TracePlace, Verdict,
 };
@@ -60,27 +63,16 @@ fn merging_takes_notes_along_once_and_both_files_notes_stay() {
 fn a_note_on_no_run_is_refused_and_one_whose_run_is_lost_is_found() {
     let (_dir, path, store) = new_history();
     let run = one_run(&store);
-    let nobody = "ffffffff-ffff-7fff-bfff-ffffffffffff"
-        .parse()
-        .expect("an id");
-    let error = store
-        .add_run_note(nobody, "kim", "x", T0_US)
-        .expect_err("no run");
-    assert!(matches!(error, StoreError::NotFound { .. }), "{error}");
+    let nobody = Id::from_bytes([7; 16]);
+    let noted = store.add_run_note(nobody, "kim", "x", T0_US);
+    refused!(noted, StoreError::NotFound { .. });
     note(&store, run, "x", T0_US);
     let other = Connection::open(&path).expect("opens");
     let damage = "PRAGMA foreign_keys = OFF; UPDATE run_note SET run = 99";
     other.execute_batch(damage).expect("damaged");
-    let problems = store.check().expect("checked").problems;
-    let kinds: Vec<_> = problems
-        .iter()
-        .map(|problem| problem.kind.as_str())
-        .collect();
-    assert_eq!(kinds, ["foreign_key", "seal"], "{problems:?}");
-    assert!(
-        problems[0].detail.to_string().contains("run_note"),
-        "{problems:?}"
-    );
+    let found = problems(&store);
+    assert_eq!(kinds(&found), ["foreign_key", "seal"]);
+    assert!(tells(&found[0], "run_note"), "{found:?}");
 }
 
 /// Goal: what somebody saw in a trace is found there by others. Method: notes at two places, given in the wrong order, and one
@@ -116,7 +108,6 @@ fn a_note_at_a_place_in_a_trace_is_found_there_and_on_its_run() {
         trace: run,
         at_us: 0,
     };
-    let error = ours.add_trace_note(nowhere, "kim", "x", T0_US);
-    let error = error.expect_err("no such trace");
-    assert!(matches!(error, StoreError::NotFound { .. }), "{error}");
+    let noted = ours.add_trace_note(nowhere, "kim", "x", T0_US);
+    refused!(noted, StoreError::NotFound { .. });
 }

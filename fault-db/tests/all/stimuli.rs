@@ -1,7 +1,8 @@
 //! Recordings of stimuli: kept beside their traces, merged, pruned and checked with them.
 
 use crate::common::{
-    Deeds, T0_US, Traces, end, fault, ids, new_history, realistic_trace, run_record,
+    Deeds, T0_US, Traces, end, fault, ids, kinds, new_history, problems, realistic_trace, refused,
+    run_record,
 };
 use fault_db::{
     FaultState, Id, OpenOptions, PruneRule, RecordingRecord, RunWriter, Store, StoreError, Verdict,
@@ -101,16 +102,7 @@ fn a_damaged_recording_is_reported_and_never_returned() {
             substr(stimuli, 14) AS BLOB) WHERE ordinal = 2;
          UPDATE recording SET bench_json = '{' WHERE ordinal = 5",
     );
-    let error = store.recording(traces[0]).expect_err("damaged");
-    assert!(matches!(error, StoreError::Corrupt { .. }), "{error}");
-    let problems = store.check().expect("checked").problems;
-    let kinds: Vec<_> = problems
-        .iter()
-        .map(|problem| problem.kind.as_str())
-        .collect();
-    assert_eq!(
-        kinds,
-        ["recording", "recording", "seal", "seal"],
-        "{problems:?}"
-    );
+    refused!(store.recording(traces[0]), StoreError::Corrupt { .. });
+    let found = problems(&store);
+    assert_eq!(kinds(&found), ["recording", "recording", "seal", "seal"]);
 }

@@ -1,6 +1,6 @@
 //! Parts of traces out of a file: the right rows, nothing but what is needed, and damage by its name.
 
-use crate::common::{open, realistic_trace, run_record};
+use crate::common::{open, problems, realistic_trace, refused, run_record, tells};
 use fault_db::{Id, RunWriter, Store, StoreError, TraceData, TraceError};
 use rusqlite::Connection;
 use tempfile::TempDir;
@@ -101,32 +101,15 @@ fn damage_in_one_channel_leaves_the_others_readable() {
         *bytes.last_mut().expect("not empty") ^= 0x10;
         kept.put(&bytes);
         let speed = kept.store.trace_channels(kept.id, &["speed"]);
-        assert_eq!(
-            speed.expect("whole").column("speed"),
-            trace.column("speed"),
-            "{rows} rows"
-        );
-        let error = kept.store.trace_channels(kept.id, &["bit_19"]);
-        let told = error.expect_err("damaged").to_string();
-        assert!(
-            told.contains("bit_19") && told.contains("checksum"),
-            "{told}"
-        );
-        let told = kept.store.trace(kept.id).expect_err("damaged").to_string();
-        assert!(told.contains("bit_19"), "{told}");
-        let report = kept.store.check().expect("checked");
-        let of_trace: Vec<_> = report
-            .problems
-            .iter()
-            .filter(|p| p.kind.as_str() == "trace")
-            .collect();
-        assert_eq!(of_trace.len(), 1, "{report:?}");
-        assert!(
-            of_trace[0]
-                .detail
-                .to_string()
-                .contains(&kept.id.to_string())
-        );
+        let speed = speed.expect("whole");
+        assert_eq!(speed.column("speed"), trace.column("speed"), "{rows} rows");
+        let damaged = kept.store.trace_channels(kept.id, &["bit_19"]);
+        refused!(damaged, _, "bit_19", "checksum");
+        refused!(kept.store.trace(kept.id), _, "bit_19");
+        let mut found = problems(&kept.store);
+        found.retain(|problem| problem.kind.as_str() == "trace");
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(tells(&found[0], &kept.id.to_string()));
     }
 }
 
@@ -142,33 +125,20 @@ fn a_blob_that_is_cut_or_of_another_trace_is_refused() {
                 kept.store.trace(kept.id),
                 kept.store.trace_window(kept.id, &["speed"], 0..10),
             ] {
-                let error = found.expect_err("cut");
-                assert!(
-                    matches!(
-                        error,
-                        StoreError::Trace {
-                            source: TraceError::Blob { .. },
-                            ..
-                        }
-                    ),
-                    "{rows} rows, {length} bytes: {error}"
-                );
+                let StoreError::Trace { source, .. } = found.expect_err("cut") else {
+                    panic!("{rows} rows, {length} bytes");
+                };
+                assert!(matches!(source, TraceError::Blob { .. }), "{source}");
             }
         }
         // Whole in itself, but not what this row's checksum is of.
         let other = realistic_trace(rows, 5);
         let other = Kept::new(&other).bytes();
         kept.put(&other);
-        let error = kept.store.trace(kept.id).expect_err("another");
-        assert!(
-            matches!(
-                error,
-                StoreError::Trace {
-                    source: TraceError::Checksum,
-                    ..
-                }
-            ),
-            "{error}"
-        );
+        let StoreError::Trace { source, .. } = kept.store.trace(kept.id).expect_err("another")
+        else {
+            panic!("{rows} rows");
+        };
+        assert_eq!(source, TraceError::Checksum);
     }
 }

@@ -1,6 +1,9 @@
 //! The life of a fault: a repair is verified by a run that passed what saw the fault, by no other.
 
-use crate::common::{T0_US, end, fault, ids, open, repair_of, run_record, step};
+use crate::common::{
+    Deeds, T0_US, confirm_passed, end, failed_run, fault, ids, open, recorded, repair_of,
+    run_record, state, step,
+};
 use fault_db::{
     FaultState, Id, OpenOptions, RunEnd, RunFilter, RunRecord, RunWriter, StepRecord, Store,
     Verdict,
@@ -20,16 +23,13 @@ impl Depot {
     fn with_fault() -> Self {
         let folder = TempDir::new().expect("a folder");
         let store = open(&folder.path().join("a.db"));
-        let mut writer = RunWriter::begin(&store, &run_record("ATC-1")).expect("begun");
-        writer
-            .step(StepRecord {
-                verdict: Verdict::Failed,
-                ..step(3)
-            })
-            .expect("kept");
-        let fault = writer.fault(&fault(7, T0_US)).expect("stored").fault;
-        writer.finish(&end(Verdict::Failed)).expect("finished");
-        drop(writer);
+        let failed = StepRecord {
+            verdict: Verdict::Failed,
+            ..step(3)
+        };
+        let seen = [fault(7, T0_US)];
+        let (_, faults) = failed_run(&store, &run_record("ATC-1"), &[failed], &seen);
+        let fault = faults[0];
         Self {
             store,
             fault,
@@ -49,25 +49,16 @@ impl Depot {
             started_at_us: T0_US + 2 * DAY_US,
             ..run_record(unit)
         };
-        let mut writer = RunWriter::begin(&self.store, &record).expect("begun");
-        writer.step(of_step).expect("kept");
-        writer
-            .finish(&RunEnd {
-                finished_at_us: T0_US + 3 * DAY_US,
-                ..end(verdict)
-            })
-            .expect("finished");
+        let end = RunEnd {
+            finished_at_us: T0_US + 3 * DAY_US,
+            ..end(verdict)
+        };
+        recorded(&self.store, &record, &[of_step], &[], &end);
     }
 
     /// The last run proves what it may.
     fn confirm(&self) {
-        let run = self.last_run();
-        let to_prove = self.store.repairs_to_prove(run).expect("read");
-        let proven: Vec<_> = to_prove
-            .iter()
-            .map(|repair| (repair.fault, "by the test".to_owned()))
-            .collect();
-        self.store.confirm_repairs(run, &proven).expect("stored");
+        confirm_passed(&self.store, self.last_run(), 1);
     }
 
     fn last_run(&self) -> Id {
@@ -76,7 +67,7 @@ impl Depot {
     }
 
     fn state(&self) -> FaultState {
-        self.store.fault(self.fault).expect("known").fault.state
+        state(&self.store, self.fault)
     }
 }
 
@@ -90,17 +81,12 @@ fn a_run_that_passes_the_step_may_prove_the_repair() {
     depot.confirm();
     assert_eq!(depot.state(), FaultState::Verified);
     let events = depot.store.fault(depot.fault).expect("known").events;
-    let kinds: Vec<_> = events.iter().map(|event| event.kind.as_str()).collect();
-    assert!(
-        ["passed", "confirmed"]
-            .iter()
-            .all(|kind| kinds.contains(kind)),
-        "{kinds:?}"
-    );
-    let closed = depot
+    for kind in ["passed", "confirmed"] {
+        assert!(events.iter().any(|event| event.kind == kind), "{events:?}");
+    }
+    depot
         .store
-        .set_state(depot.fault, FaultState::Closed, "lee", "", T0_US);
-    assert_eq!(closed.expect("verified before"), FaultState::Closed);
+        .put_state(depot.fault, FaultState::Closed, "lee", "", T0_US);
 }
 
 #[test]
@@ -164,17 +150,14 @@ fn an_import_does_not_change_which_step_saw_the_fault_last() {
         verdict,
         ..step(3)
     };
-    let mut writer = RunWriter::begin(&store, &record).expect("begun");
-    writer.step(another(Verdict::Failed)).expect("kept");
-    writer.fault(&fault(7, T0_US - DAY_US)).expect("stored");
     let finished_at_us = end(Verdict::Failed).finished_at_us - DAY_US;
     let ended = RunEnd {
         finished_at_us,
         ..end(Verdict::Failed)
     };
-    writer.finish(&ended).expect("finished");
-    let first = writer.id();
-    drop(writer);
+    let seen = [fault(7, T0_US - DAY_US)];
+    let steps = [another(Verdict::Failed)];
+    let (first, _) = recorded(&store, &record, &steps, &seen, &ended);
     store.close().expect("closed");
     depot.store.import(&older).expect("merged");
     depot.repair(T0_US + DAY_US);

@@ -1,14 +1,14 @@
 //! An event of a person is withdrawn: everything but the correction is as it was before.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use crate::common::{
-    Deeds, Random, T0_US, change, end, fault, ids, open, repair_of, run_record, step, with,
+    Deeds, Random, STAT_KEYS, T0_US, change, confirm_passed, end, fault, open, open_as, problems,
+    recorded, refused, repair_of, run_record, state, step, with,
 };
 use fault_db::{
-    CauseRecord, FaultFilter, FaultRecord, FaultState, Id, OpenOptions, RepairRecord, RepairsOf,
-    RunWriter, StatKey, StatQuery, Store, ToWithdraw, Verdict, Withdrawn,
+    CauseRecord, FaultFilter, FaultRecord, FaultState, Id, RepairRecord, RepairsOf, StatQuery,
+    StepRecord, Store, ToWithdraw, Verdict, Withdrawn,
 };
 use fuzzing::draw;
 use rusqlite::Connection;
@@ -21,33 +21,20 @@ fn run(store: &Store, at_us: i64, faults: &[(i64, &str)]) -> Vec<Id> {
     let mut record = run_record("ATC-1");
     record.started_at_us = at_us;
     record.source = "serial:/dev/ttyUSB0".to_owned();
-    let mut writer = RunWriter::begin(store, &record).expect("begun");
     let verdict = match faults {
         [] => Verdict::Passed,
         _ => Verdict::Failed,
     };
-    let mut of_run = step(3);
-    of_run.verdict = verdict;
-    writer.step(of_run).expect("kept");
-    let seen = faults.iter().map(|(code, part)| {
-        let seen = FaultRecord {
-            lru: (*part).to_owned(),
-            step_index: Some(3),
-            ..fault(*code, at_us)
-        };
-        writer.fault(&seen).expect("stored").fault
+    let of_step = StepRecord { verdict, ..step(3) };
+    let faults = faults.iter().map(|(code, part)| FaultRecord {
+        lru: (*part).to_owned(),
+        ..fault(*code, at_us)
     });
-    let seen: Vec<Id> = seen.collect();
     let mut ended = end(verdict);
     ended.finished_at_us = at_us + 60_000_000;
-    writer.finish(&ended).expect("finished");
-    let to_prove = store.repairs_to_prove(writer.id()).expect("read");
-    let proven: Vec<_> = to_prove
-        .iter()
-        .filter(|repair| repair.passed.len() > 1)
-        .map(|repair| (repair.fault, "by the test".to_owned()))
-        .collect();
-    store.confirm_repairs(writer.id(), &proven).expect("stored");
+    let faults: Vec<_> = faults.collect();
+    let (run, seen) = recorded(store, &record, &[of_step], &faults, &ended);
+    confirm_passed(store, run, 2);
     seen
 }
 
@@ -56,9 +43,8 @@ fn repair(part: &str, serial: &str) -> RepairRecord {
 }
 
 fn undo(store: &Store, fault: Id, at_us: i64) -> Withdrawn {
-    store
-        .withdraw(fault, ToWithdraw::default(), "lee", "by mistake", at_us)
-        .expect("withdrawn")
+    let done = store.withdraw(fault, ToWithdraw::default(), "lee", "by mistake", at_us);
+    done.expect("withdrawn")
 }
 
 /// All that the history answers but the corrections: lists, details, counts, what is learnt, and derived tables.
@@ -66,32 +52,20 @@ fn said(store: &Store) -> Vec<String> {
     let mut said = Vec::new();
     for note in [None, Some("교체"), Some("relay"), Some("burnt")] {
         let filter = with(|it: &mut FaultFilter| it.note = note.map(str::to_owned));
-        said.push(format!(
-            "{note:?} {:?}",
-            store.faults(&filter).expect("listed")
-        ));
+        let listed = store.faults(&filter).expect("listed");
+        said.push(format!("{note:?} {listed:?}"));
     }
     for serial in ["SN-1", "SN-2"] {
         let filter = with(|it: &mut FaultFilter| it.serial = Some(serial.to_owned()));
-        said.push(format!(
-            "{serial} {:?}",
-            store.faults(&filter).expect("listed")
-        ));
+        let listed = store.faults(&filter).expect("listed");
+        said.push(format!("{serial} {listed:?}"));
     }
     for fault in store.faults(&FaultFilter::default()).expect("listed") {
         let detail = store.fault(fault.id).expect("read");
-        said.push(format!(
-            "{:?} {:?} {:?}",
-            detail.fault, detail.case, detail.events
-        ));
+        let told = (detail.fault, detail.case, detail.events);
+        said.push(format!("{told:?}"));
     }
-    for by in [
-        StatKey::Cause,
-        StatKey::Lru,
-        StatKey::Unit,
-        StatKey::Code,
-        StatKey::All,
-    ] {
+    for by in STAT_KEYS {
         for unit in [None, Some("ATC-1".to_owned())] {
             let query = StatQuery {
                 by,
@@ -99,10 +73,8 @@ fn said(store: &Store) -> Vec<String> {
                 now_us: T0_US + 1000 * HOUR_US,
                 back_within_days: 30,
             };
-            said.push(format!(
-                "{by:?} {:?}",
-                store.stats(&query).expect("counted")
-            ));
+            let counted = store.stats(&query).expect("counted");
+            said.push(format!("{by:?} {counted:?}"));
         }
     }
     let of = RepairsOf {
@@ -110,36 +82,26 @@ fn said(store: &Store) -> Vec<String> {
         unit_type: "default",
         practice: true,
     };
-    said.push(format!(
-        "{:?}",
-        store.confirmed_repairs(of).expect("learnt")
-    ));
-    said.push(format!(
-        "{:?}",
-        store.confirmed_cases(of, 9).expect("learnt")
-    ));
-    let span = (0, T0_US + 1000 * HOUR_US);
-    said.push(format!(
-        "{:?}",
-        store.part_history("ATC-1", span, None).expect("read")
-    ));
-    said.push(format!("{:?}", store.conflicts().expect("read")));
+    let repairs = store.confirmed_repairs(of).expect("learnt");
+    let cases = store.confirmed_cases(of, 9).expect("learnt");
+    let parts = store.part_history("ATC-1", (0, of.before_us), None);
+    let conflicts = store.conflicts().expect("read");
+    let told = (repairs, cases, parts.expect("read"), conflicts);
+    said.push(format!("{told:?}"));
     let conn = Connection::open(store.path()).expect("opens");
     for sql in [
         "SELECT quote(event) || fault || part || at_us || '/' || opened_at_us || '/' || ifnull(back_at_us, '-') FROM repair",
         "SELECT seq || state || ifnull(closed_at_us, '-') || repairs || disputed || ifnull(cause, '-') FROM fault",
     ] {
         let mut select = conn.prepare(sql).expect("a question");
-        let rows = select
-            .query_map([], |row| row.get::<_, String>(0))
-            .expect("asked");
-        said.extend(rows.map(|row| row.expect("read")));
+        let rows = select.query_map([], |row| row.get::<_, String>(0));
+        said.extend(rows.expect("asked").map(|row| row.expect("read")));
     }
     said
 }
 
 fn sound(store: &Store) {
-    assert_eq!(store.check().expect("checked").problems, []);
+    assert_eq!(problems(store), []);
 }
 
 /// Goal: after an undo everything is as before. Method: random histories of two laptops' worth of steps on three faults of a
@@ -152,11 +114,8 @@ fn all_that_can_be_asked_is_after_an_undo_what_it_was_before_the_step() {
         let store = open(&folder.path().join("a.db"));
         let mut random = Random::new(seed);
         let mut now_us = T0_US;
-        let faults = run(
-            &store,
-            now_us,
-            &[(1, "eb_relay"), (2, "atp_cpu"), (3, "io_board")],
-        );
+        let parts = [(1, "eb_relay"), (2, "atp_cpu"), (3, "io_board")];
+        let faults = run(&store, now_us, &parts);
         let cause = CauseRecord {
             part: "eb_relay".to_owned(),
             probability: Some(0.97),
@@ -181,27 +140,28 @@ fn all_that_can_be_asked_is_after_an_undo_what_it_was_before_the_step() {
                 let state = |to| {
                     store
                         .set_case_state(fault, to, "kim", "relay", at_us)
-                        .is_ok()
+                        .map(drop)
                 };
-                match which {
+                let done = match which {
                     0 => state(FaultState::Acknowledged),
                     1 => state(FaultState::Verified),
                     2 => state(FaultState::Closed),
                     3 => state(FaultState::Open),
-                    4 => store
-                        .repair_case(fault, &repair("eb_relay", "SN-1"), "kim", at_us)
-                        .is_ok(),
-                    5 => store
-                        .record_repair(fault, &repair("io_board", "SN-2"), "kim", at_us)
-                        .is_ok(),
-                    6 => store
-                        .add_note(fault, "kim", "burnt contacts", at_us)
-                        .is_ok(),
+                    4 => {
+                        let repair = repair("eb_relay", "SN-1");
+                        store.repair_case(fault, &repair, "kim", at_us).map(drop)
+                    }
+                    5 => {
+                        let repair = repair("io_board", "SN-2");
+                        store.record_repair(fault, &repair, "kim", at_us).map(drop)
+                    }
+                    6 => store.add_note(fault, "kim", "burnt contacts", at_us),
                     _ => {
                         let cause = with(|it: &mut CauseRecord| it.part = "io_board".to_owned());
-                        store.set_cause(fault, &cause, "kim", at_us).is_ok()
+                        store.set_cause(fault, &cause, "kim", at_us).map(drop)
                     }
-                }
+                };
+                done.is_ok()
             };
             let before = said(&store);
             if !act(now_us) {
@@ -240,18 +200,12 @@ fn the_correction_is_told_with_what_it_withdraws() {
     assert_eq!(event.repair, Some(repair("eb_relay", "SN-1")));
     let correction = event.correction.as_ref().expect("who did it");
     assert_eq!((&*correction.who, &*correction.note), ("lee", "by mistake"));
-    let rows = store
-        .query_read_only(
-            "SELECT kind, who, withdrawn, text FROM events ORDER BY turn",
-            9,
-        )
-        .expect("asked");
-    assert_eq!(rows.rows.len(), 4, "nothing is deleted: {:?}", rows.rows);
+    let rows = store.query_read_only("SELECT kind, who, withdrawn, text FROM events", 9);
+    assert_eq!(rows.expect("asked").rows.len(), 4, "nothing is deleted");
     // One step after the other, the last first.
     assert_eq!(undo(&store, faults[0], T0_US + 4).kind, "acknowledged");
     let nothing = store.withdraw(faults[0], ToWithdraw::default(), "lee", "", T0_US + 5);
-    let said = nothing.expect_err("nothing is left").to_string();
-    assert!(said.contains("nobody has written anything"), "{said}");
+    refused!(nothing, _, "nobody has written anything");
 }
 
 /// What rests on a step keeps it.
@@ -260,40 +214,22 @@ fn what_a_run_or_a_new_fault_rests_on_is_not_withdrawn() {
     let folder = tempdir().expect("a folder");
     let store = open(&folder.path().join("a.db"));
     let faults = run(&store, T0_US, &[(1, "eb_relay"), (2, "atp_cpu")]);
-    let refused = |fault: Id, says: &str| {
-        let refused = store.withdraw(fault, ToWithdraw::default(), "lee", "", T0_US + HOUR_US);
-        let said = refused.expect_err("refused").to_string();
-        assert!(said.contains(says), "{said}");
+    let assert_kept = |fault: Id, says: &str| {
+        let withdrawn = store.withdraw(fault, ToWithdraw::default(), "lee", "", T0_US + HOUR_US);
+        refused!(withdrawn, _, says);
     };
     store.put_repair(faults[0], &repair("eb_relay", "SN-1"), "kim", T0_US + 9);
     run(&store, T0_US + 10, &[]);
-    refused(faults[0], "it was passed after it was repair");
+    assert_kept(faults[0], "it was passed after it was repair");
     run(&store, T0_US + 20, &[]);
-    assert_eq!(
-        store.fault(faults[0]).expect("read").fault.state,
-        FaultState::Verified
-    );
-    refused(faults[0], "it was passed after it was repair");
-    store.put_state(
-        faults[1],
-        FaultState::Closed,
-        "kim",
-        "not found",
-        T0_US + 30,
-    );
-    let other = ToWithdraw {
-        written_at_us: Some(T0_US + 29),
-        ..ToWithdraw::default()
-    };
-    let said = store.withdraw(faults[1], other, "lee", "", T0_US + 31);
-    let said = said.expect_err("of another time").to_string();
-    assert!(said.contains("is another: closed by kim"), "{said}");
+    assert_eq!(state(&store, faults[0]), FaultState::Verified);
+    assert_kept(faults[0], "it was passed after it was repair");
+    store.put_state(faults[1], FaultState::Closed, "kim", "", T0_US + 30);
+    let other = with(|it: &mut ToWithdraw| it.written_at_us = Some(T0_US + 29));
+    let of_another_time = store.withdraw(faults[1], other, "lee", "", T0_US + 31);
+    refused!(of_another_time, _, "is another: closed by kim");
     run(&store, T0_US + 40, &[(2, "atp_cpu")]);
-    refused(faults[1], "a fault of its own since");
-}
-
-fn laptop(path: &Path, seed: u64) -> Store {
-    Store::open(path, OpenOptions::new(ids(seed))).expect("opens")
+    assert_kept(faults[1], "a fault of its own since");
 }
 
 /// Goal: a withdrawal counts wherever it comes to, also before what it withdraws. Method: two laptops; one writes and
@@ -302,9 +238,9 @@ fn laptop(path: &Path, seed: u64) -> Store {
 fn a_withdrawal_is_imported_with_what_it_withdraws() {
     let folder = tempdir().expect("a folder");
     let (here, there) = (folder.path().join("a.db"), folder.path().join("b.db"));
-    let store = laptop(&here, 1);
+    let store = open_as(&here, 1);
     let faults = run(&store, T0_US, &[(1, "eb_relay")]);
-    let other = laptop(&there, 2);
+    let other = open_as(&there, 2);
     other.import(&here).expect("imported");
     let before = said(&other);
     store.put_repair(faults[0], &repair("eb_relay", "SN-1"), "kim", T0_US + 2);
@@ -317,21 +253,12 @@ fn a_withdrawal_is_imported_with_what_it_withdraws() {
     store.put_acknowledged(faults[0], "kim", "", T0_US + 4);
     store.put_repair(faults[0], &repair("eb_relay", "SN-2"), "kim", T0_US + 5);
     other.import(&here).expect("imported");
-    other.put_state(
-        faults[0],
-        FaultState::Verified,
-        "lee",
-        "seen by eye",
-        T0_US + 7,
-    );
+    other.put_state(faults[0], FaultState::Verified, "lee", "", T0_US + 7);
     undo(&store, faults[0], T0_US + 8);
     other.import(&here).expect("imported");
     store.import(&there).expect("imported");
     for store in [&store, &other] {
-        assert_eq!(
-            store.fault(faults[0]).expect("read").fault.state,
-            FaultState::Acknowledged
-        );
+        assert_eq!(state(store, faults[0]), FaultState::Acknowledged);
         assert_eq!(store.conflicts().expect("read").len(), 1);
         sound(store);
     }
@@ -343,23 +270,19 @@ fn a_withdrawal_of_no_event_is_refused() {
     for set in ["follows = x''", "state = 'closed'"] {
         let folder = tempdir().expect("a folder");
         let (here, there) = (folder.path().join("a.db"), folder.path().join("b.db"));
-        let store = laptop(&here, 1);
+        let store = open_as(&here, 1);
         let faults = run(&store, T0_US, &[(1, "eb_relay")]);
         store.put_acknowledged(faults[0], "kim", "", T0_US + 1);
         undo(&store, faults[0], T0_US + 2);
         drop(store);
-        change(
-            &here,
-            &format!("UPDATE fault_event SET {set} WHERE kind = 'withdrawn'"),
-        );
-        let other = laptop(&there, 2);
-        let counts = other.import(&here).expect("imported");
-        let refused = &counts.refused.named;
+        let sql = format!("UPDATE fault_event SET {set} WHERE kind = 'withdrawn'");
+        change(&here, &sql);
+        let other = open_as(&there, 2);
+        let named = other.import(&here).expect("imported").refused.named;
+        let mut reasons = named.iter().map(|one| &one.reason);
         assert!(
-            refused
-                .iter()
-                .any(|one| one.reason.contains("withdraws one event")),
-            "{refused:?}"
+            reasons.any(|reason| reason.contains("withdraws one event")),
+            "{named:?}"
         );
     }
 }

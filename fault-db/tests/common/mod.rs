@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 
 use fault_db::{
     CaseFault, CauseRecord, Channel, ChannelKind, FaultFilter, FaultRecord, FaultState,
-    FreezeSample, Id, IdSource, MeasurementRecord, OpenOptions, RepairRecord, RunEnd, RunRecord,
-    RunWriter, ScriptRecord, StatKey, StepRecord, Store, TraceData, UnitRecord, Verdict,
+    FreezeSample, Id, IdSource, MeasurementRecord, OpenOptions, Problem, RepairRecord, RunEnd,
+    RunRecord, RunWriter, ScriptRecord, StatKey, StepRecord, Store, Synchronous, TraceData,
+    UnitRecord, Verdict,
 };
 
 /// 2026-03-01 00:00:00 UTC.
@@ -64,6 +65,94 @@ pub fn ids(seed: u64) -> IdSource {
 
 pub fn open(path: &Path) -> Store {
     Store::open(path, OpenOptions::new(ids(1))).expect("a new or known file opens")
+}
+
+/// A file with ids of its own, written without waiting for the disk.
+pub fn open_as(path: &Path, seed: u64) -> Store {
+    let options = OpenOptions::new(ids(seed)).synchronous(Synchronous::Normal);
+    Store::open(path, options).expect("opens")
+}
+
+/// Records a whole run; its id and the ids of the faults it saw.
+#[track_caller]
+pub fn recorded(
+    store: &Store,
+    record: &RunRecord,
+    steps: &[StepRecord],
+    faults: &[FaultRecord],
+    end: &RunEnd,
+) -> (Id, Vec<Id>) {
+    let mut writer = RunWriter::begin(store, record).expect("begun");
+    for step in steps {
+        writer.step(step.clone()).expect("kept");
+    }
+    let seen = faults
+        .iter()
+        .map(|fault| writer.fault(fault).expect("stored").fault);
+    let seen = seen.collect();
+    writer.finish(end).expect("finished");
+    (writer.id(), seen)
+}
+
+/// Records a run that failed.
+#[track_caller]
+pub fn failed_run(
+    store: &Store,
+    record: &RunRecord,
+    steps: &[StepRecord],
+    faults: &[FaultRecord],
+) -> (Id, Vec<Id>) {
+    recorded(store, record, steps, faults, &end(Verdict::Failed))
+}
+
+/// Confirms the repairs for which at least so many runs passed, the last of them this one.
+#[track_caller]
+pub fn confirm_passed(store: &Store, run: Id, least: usize) {
+    let to_prove = store.repairs_to_prove(run).expect("read").into_iter();
+    let proven = to_prove.filter(|repair| repair.passed.len() >= least);
+    let proven: Vec<_> = proven
+        .map(|repair| (repair.fault, "by the test".to_owned()))
+        .collect();
+    store.confirm_repairs(run, &proven).expect("stored");
+}
+
+/// The error of what is refused: it is of this kind, and its message has these words.
+#[allow(unused_macros, reason = "each test file uses its part")]
+macro_rules! refused {
+    ($result:expr, $kind:pat $(if $also:expr)? $(, $words:expr)* $(,)?) => {{
+        let error = $result.err().expect("a refusal");
+        let said = error.to_string();
+        assert!(matches!(&error, $kind $(if $also)?), "{said}");
+        $(assert!(said.contains($words), "{said}");)*
+        error
+    }};
+}
+#[allow(unused_imports, reason = "each test file uses its part")]
+pub(crate) use refused;
+
+/// The problems that a check of the store finds.
+#[track_caller]
+pub fn problems(store: &Store) -> Vec<Problem> {
+    store.check().expect("checked").problems
+}
+
+/// The state of a fault.
+#[track_caller]
+pub fn state(store: &Store, fault: Id) -> FaultState {
+    store.fault(fault).expect("known").fault.state
+}
+
+/// The kinds of these problems.
+pub fn kinds(problems: &[Problem]) -> Vec<&'static str> {
+    problems
+        .iter()
+        .map(|problem| problem.kind.as_str())
+        .collect()
+}
+
+/// Whether the text of a problem has these words.
+pub fn tells(problem: &Problem, words: &str) -> bool {
+    problem.detail.to_string().contains(words)
 }
 
 /// A new file in a folder of its own, which goes with the first of the three.
@@ -192,6 +281,14 @@ pub fn step(index: u32) -> StepRecord {
         bench_time_us: 50_000,
         script_line: Some(12),
         ..StepRecord::passed(index, "atp.overspeed", format!("step {index}"))
+    }
+}
+
+/// A step that measured the reaction time of the emergency brake.
+pub fn measured_step(index: u32) -> StepRecord {
+    StepRecord {
+        measurements: vec![measurement("eb_reaction", 0.42)],
+        ..step(index)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Every question gets the same answer from a file and from the server it was synced with.
 
-use crate::common::{Deeds, filter, repair_of, with};
+use crate::common::{Deeds, filter, refused, repair_of, with};
 use std::fmt::Debug;
 
 use fault_db::{
@@ -53,12 +53,7 @@ fn history(laptop: &Laptop) {
                 run.recording(&recording, &[trace]).expect("a recording");
             }
         }
-        let verdict = if n % 2 == 0 {
-            Verdict::Failed
-        } else {
-            Verdict::Passed
-        };
-        let mut end = common::end(verdict);
+        let mut end = common::end([Verdict::Failed, Verdict::Passed][(n % 2) as usize]);
         end.finished_at_us = record.started_at_us + 300_000_000;
         run.finish(&end).expect("an end");
         let id = store.resolve_run("latest").expect("a run");
@@ -80,10 +75,10 @@ fn history(laptop: &Laptop) {
 
 fn people(store: &Store, at_us: i64) {
     let open = store.faults(&FaultFilter::default()).expect("faults");
-    for (n, fault) in (0..).zip(
-        open.iter()
-            .filter(|fault| fault.state != FaultState::Closed),
-    ) {
+    let open = open
+        .iter()
+        .filter(|fault| fault.state != FaultState::Closed);
+    for (n, fault) in (0..).zip(open) {
         let say = |state| {
             store
                 .set_state(fault.id, state, "lee", "", at_us + n)
@@ -145,15 +140,10 @@ fn lists() -> Vec<Question> {
     vec![
         question("runs", |store| store.runs(&RunFilter::default())),
         question("runs of a unit", |store| {
-            let filter = RunFilter {
-                unit: Some("부품-3".to_owned()),
-                verdict: Some(Verdict::Failed),
-                since_us: Some(day(3)),
-                until_us: Some(day(40)),
-                limit: Some(3),
-                ..RunFilter::default()
-            };
-            store.runs(&filter)
+            store.runs(&with(|it: &mut RunFilter| {
+                (it.unit, it.verdict) = (Some("부품-3".to_owned()), Some(Verdict::Failed));
+                (it.since_us, it.until_us, it.limit) = (Some(day(3)), Some(day(40)), Some(3));
+            }))
         }),
         question("every run", |store| {
             let runs = store.runs(&RunFilter::default())?;
@@ -169,11 +159,8 @@ fn lists() -> Vec<Question> {
         }),
         question("every fault", |store| {
             let faults = store.faults(&FaultFilter::default())?;
-            let each = |fault: &fault_db::FaultSummary| store.fault(fault.id);
-            faults
-                .iter()
-                .map(each)
-                .collect::<Result<Vec<_>, StoreError>>()
+            let details = faults.iter().map(|fault| store.fault(fault.id));
+            details.collect::<Result<Vec<_>, StoreError>>()
         }),
         question("a trace", |store| {
             let id = store.resolve_trace("latest")?;
@@ -303,12 +290,11 @@ fn a_server_gives_the_answers_its_files_give() {
             Ok((wanted.clone(), store.faults(&wanted)?))
         }));
         for by in common::STAT_KEYS {
+            let mut filter = filter.clone();
+            filter.limit = None;
             let query = StatQuery {
                 by,
-                filter: FaultFilter {
-                    limit: None,
-                    ..filter.clone()
-                },
+                filter,
                 now_us: day(60),
                 back_within_days: 10,
             };
@@ -319,25 +305,19 @@ fn a_server_gives_the_answers_its_files_give() {
     }
     for query in trends() {
         questions.push(question("trend", move |store| {
-            let points = store.trend(&query)?;
-            let days = store.trend_by_day(&query)?;
-            let units = store.trend_by_unit(&query)?;
-            Ok((
-                query.clone(),
-                points,
-                days,
-                units,
-                store.trend_limits(&query)?,
-            ))
+            let points = (store.trend(&query)?, store.trend_by_day(&query)?);
+            let units = (store.trend_by_unit(&query)?, store.trend_limits(&query)?);
+            Ok((query.clone(), points, units))
         }));
     }
     questions.push(question("measurements", |store| {
-        let procedures = store.measuring_procedures("eb_reaction")?;
+        let names = store.measurement_names()?;
+        let of_values = store.measuring_procedures("eb_reaction")?;
         let of_no_value = store.measuring_procedures("door_time")?;
         let repaired = store.last_repair("U-1", "eb_relay")?;
         Ok((
-            store.measurement_names()?,
-            procedures,
+            names,
+            of_values,
             of_no_value,
             repaired,
             store.history_span()?,
@@ -444,8 +424,7 @@ fn an_sql_query_on_a_server_is_answered_and_cannot_change_anything() {
         ("SELECT * FROM no_such", "does not exist"),
         ("SELECT now()", "CAST it to TEXT"),
     ] {
-        let refused = writer.query_read_only(sql, 10).expect_err(sql).to_string();
-        assert!(refused.contains(words), "{sql}: {refused}");
+        refused!(writer.query_read_only(sql, 10), _, words);
     }
     let sleeps = "SELECT CAST(pg_sleep(600) AS TEXT)";
     for (sql, server_ms, limit) in [
@@ -457,18 +436,9 @@ fn an_sql_query_on_a_server_is_answered_and_cannot_change_anything() {
             server_ms,
             ..QueryBounds::default()
         };
-        let stopped = writer.query_within(sql, bounds, || true).expect_err(sql);
-        assert!(
-            matches!(stopped, StoreError::QueryExceeds(found) if found == limit),
-            "{stopped}"
-        );
+        let stopped = writer.query_within(sql, bounds, || true);
+        refused!(stopped, StoreError::QueryExceeds(found) if *found == limit);
     }
-    assert_eq!(
-        writer
-            .query_read_only("SELECT 1", 10)
-            .expect("still alive")
-            .rows
-            .len(),
-        1
-    );
+    let alive = writer.query_read_only("SELECT 1", 10);
+    assert_eq!(alive.expect("still alive").rows.len(), 1);
 }

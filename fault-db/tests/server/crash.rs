@@ -7,16 +7,15 @@
     reason = "figures, for whoever asks with --nocapture"
 )]
 
-use crate::common::Deeds;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 
-use fault_db::{Store, StoreError, SyncOptions};
+use fault_db::StoreError;
 
-use crate::common;
+use crate::common::{Deeds, refused};
 use crate::counts::{self, Counts};
-use crate::laptop::{Laptop, connect, day, record};
+use crate::laptop::{Laptop, day, record, sync};
 use crate::private::{Cluster, NO_HURRY, name_of, shared, signal};
 use crate::proxy::{When, Wire};
 use fuzzing::draw;
@@ -29,13 +28,8 @@ fn history() -> Laptop {
     let laptop = Laptop::new("matrix");
     let store = laptop.open();
     for n in 0..6 {
-        record(
-            &store,
-            &format!("U-{}", n % 2),
-            day(n),
-            &[101 + n, 107],
-            true,
-        );
+        let unit = format!("U-{}", n % 2);
+        record(&store, &unit, day(n), &[101 + n, 107], true);
         // Events are entries of their own, so that runs and notes alternate.
         let fault = store.resolve_fault("latest").expect("a fault");
         for note in 0..190 {
@@ -48,27 +42,13 @@ fn history() -> Laptop {
     laptop
 }
 
-fn sync(file: &Path, address: &str) -> Result<(), StoreError> {
-    let server = connect(address)?;
-    let options = fault_db::OpenOptions::new(common::ids(99));
-    let store = Store::open(file, options)?;
-    let mut options = SyncOptions {
-        laptop: "matrix",
-        traces: true,
-        as_copy: false,
-        now_us: &crate::laptop::system_now_us,
-        go_on: &mut |_| true,
-    };
-    store.sync(&server, &mut options).map(drop)
-}
-
 /// The program that is killed: this test run again by itself, with a file and an address.
 #[test]
 fn the_client_that_is_killed() {
     let (Some(file), Ok(address)) = (std::env::var_os(FILE), std::env::var(ADDRESS)) else {
         return;
     };
-    sync(Path::new(&file), &address).expect("a sync");
+    sync(Path::new(&file), &address, "matrix", &mut |_| true).expect("a sync");
 }
 
 /// One line of the matrix, checked.
@@ -84,17 +64,11 @@ impl Case<'_> {
     }
 
     /// Rows on the server after the trouble, and after the next sync.
-    fn check(&self, name: &str, address: &str, file: &Path) {
+    fn check(&self, name: &str, address: &str, file: &Laptop) {
         let rows = |counts: &Counts| {
-            [
-                "run",
-                "step",
-                "fault_occurrence",
-                "fault_event",
-                "run_note",
-                "trace",
-            ]
-            .map(|table| counts.get(table).copied().unwrap_or_default())
+            let tables = "run step fault_occurrence fault_event run_note trace".split(' ');
+            let rows = tables.map(|table| counts.get(table).copied().unwrap_or_default());
+            rows.collect::<Vec<_>>()
         };
         let mut client = self.cluster.client(name_of(address));
         let has_tables = client.query_one("SELECT to_regclass('trace') IS NOT NULL", &[]);
@@ -102,7 +76,7 @@ impl Case<'_> {
             true => counts::of_server(&mut client),
             false => Counts::new(),
         };
-        sync(file, address).expect("the next sync");
+        file.sync(address);
         let after = counts::of_server(&mut client);
         println!("{name:34} {:?} -> {:?}", rows(&before), rows(&after));
         assert_eq!(after, *self.whole, "{name}");
@@ -113,9 +87,7 @@ impl Case<'_> {
 
     fn kill_client(&self, when: When) {
         let address = self.cluster.database();
-        let folder = tempfile::tempdir().expect("a folder");
-        let file = folder.path().join("history.db");
-        std::fs::copy(self.history.path(), &file).expect("a copy");
+        let file = self.history.copy();
         let process = Arc::new(std::sync::Mutex::new(None::<u32>));
         let victim = Arc::clone(&process);
         let wire = Wire::to(self.cluster.port(), when, move || {
@@ -126,7 +98,7 @@ impl Case<'_> {
         let mut locked = process.lock().expect("a lock");
         let mut client = Command::new(exe)
             .args(["--exact", "crash::the_client_that_is_killed"])
-            .env(FILE, &file)
+            .env(FILE, file.path())
             .env(ADDRESS, self.address_by(&address, &wire))
             .stdout(Stdio::null())
             .stderr(Stdio::null())
@@ -142,12 +114,10 @@ impl Case<'_> {
 
     fn cut(&self, when: When) {
         let address = self.cluster.database();
-        let folder = tempfile::tempdir().expect("a folder");
-        let file = folder.path().join("history.db");
-        std::fs::copy(self.history.path(), &file).expect("a copy");
+        let file = self.history.copy();
         let wire = Wire::to(self.cluster.port(), when, || {});
-        let cut = sync(&file, &self.address_by(&address, &wire)).expect_err("a wire that is cut");
-        assert!(matches!(cut, StoreError::ServerUnreachable { .. }), "{cut}");
+        let cut = file.try_sync(&self.address_by(&address, &wire), &mut |_| true);
+        refused!(cut, StoreError::ServerUnreachable { .. });
         wire.commits();
         self.check(&format!("wire cut, {when:?}"), &address, &file);
     }
@@ -159,10 +129,7 @@ fn commits(history: &Laptop) -> (u32, Counts) {
     let address = cluster.database();
     let wire = Wire::to(cluster.port(), When::Never, || {});
     let by_wire = address.replace(&cluster.port().to_string(), &wire.port.to_string());
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("history.db");
-    std::fs::copy(history.path(), &file).expect("a copy");
-    sync(&file, &by_wire).expect("a sync");
+    history.copy().sync(&by_wire);
     let whole = counts::of_server(&mut cluster.client(name_of(&address)));
     assert_eq!(whole, counts::of_file(&history.path()));
     (wire.commits(), whole)
@@ -208,19 +175,13 @@ fn a_sync_continues_after_the_server_was_killed_at_any_commit() {
     for commit in draw::drawn(2..=commits, 3) {
         for when in [When::BeforeCommit(commit), When::AfterCommit(commit)] {
             let address = cluster.database();
-            let folder = tempfile::tempdir().expect("a folder");
-            let file = folder.path().join("history.db");
-            std::fs::copy(history.path(), &file).expect("a copy");
+            let file = history.copy();
             let victim = Arc::clone(&cluster);
             let wire = Wire::to(cluster.port(), when, move || victim.kill());
-            let away = sync(&file, &case.address_by(&address, &wire)).expect_err("no server");
-            assert!(
-                matches!(away, StoreError::ServerUnreachable { .. }),
-                "{away}"
-            );
+            let away = file.try_sync(&case.address_by(&address, &wire), &mut |_| true);
+            refused!(away, StoreError::ServerUnreachable { .. });
             wire.commits();
-            let gone = sync(&file, &address).expect_err("still no server");
-            assert!(gone.to_string().contains("nothing listens"), "{gone}");
+            refused!(file.try_sync(&address, &mut |_| true), _, "nothing listens");
             cluster.restart();
             case.check(&format!("server killed, {when:?}"), &address, &file);
         }

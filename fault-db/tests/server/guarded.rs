@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use fault_db::StoreError;
 use rcgen::{BasicConstraints, CertificateParams, IsCa, Issuer, KeyPair};
 
+use crate::common::refused;
 use crate::laptop::connect;
 use crate::private::{Cluster, NO_HURRY, give_away};
 
@@ -48,10 +49,7 @@ fn guarded() -> &'static Guarded {
         let key = KeyPair::generate().expect("a key");
         let about = CertificateParams::new(["localhost".to_owned()]).expect("a name");
         let certificate = about.signed_by(&key, &trusted).expect("a certificate");
-        let (cert_file, key_file) = (
-            folder.path().join("server.pem"),
-            folder.path().join("key.pem"),
-        );
+        let [cert_file, key_file] = ["server.pem", "key.pem"].map(|name| folder.path().join(name));
         std::fs::write(&cert_file, certificate.pem()).expect("a file");
         std::fs::write(&key_file, key.serialize_pem()).expect("a file");
         give_away(&key_file);
@@ -82,7 +80,8 @@ fn guarded() -> &'static Guarded {
 #[test]
 fn a_server_is_trusted_by_its_issuer_and_its_name() {
     let server = guarded();
-    let issuer = format!("sslrootcert={}", server.file("issuer.pem"));
+    let by = |name: &str| format!("sslrootcert={}", server.file(name));
+    let issuer = by("issuer.pem");
     for accepted in [
         server.address("localhost", &issuer),
         server.address("localhost", &format!("{issuer}&sslmode=require")),
@@ -92,53 +91,35 @@ fn a_server_is_trusted_by_its_issuer_and_its_name() {
     ] {
         connect(&accepted).unwrap_or_else(|error| panic!("{accepted}: {error}"));
     }
-    for (refused, words) in [
+    for (host, options, words) in [
+        ("localhost", "sslmode=verify-full".to_owned(), "sslrootcert"),
         (
-            server.address("localhost", "sslmode=verify-full"),
-            "sslrootcert",
-        ),
-        (
-            server.address(
-                "localhost",
-                &format!("sslrootcert={}", server.file("other.pem")),
-            ),
+            "localhost",
+            by("other.pem"),
             "nobody known here issued its certificate",
         ),
-        (server.address("127.0.0.1", &issuer), "for another host"),
-        (
-            server.address(
-                "localhost",
-                &format!("sslrootcert={}", server.file("empty.pem")),
-            ),
-            "no certificate in it",
-        ),
-        (
-            server.address(
-                "localhost",
-                &format!("sslrootcert={}", server.file("gone.pem")),
-            ),
-            "gone.pem",
-        ),
+        ("127.0.0.1", by("issuer.pem"), "for another host"),
+        ("localhost", by("empty.pem"), "no certificate in it"),
+        ("localhost", by("gone.pem"), "gone.pem"),
     ] {
-        let error = connect(&refused).expect_err(&refused);
-        assert!(
-            matches!(error, StoreError::ServerNotTrusted { .. }),
-            "{refused}: {error:?}"
+        let address = server.address(host, &options);
+        let error = refused!(
+            connect(&address),
+            StoreError::ServerNotTrusted { .. },
+            words
         );
-        assert!(error.to_string().contains(words), "{error}");
         assert!(!error.to_string().contains("cret@"), "{error}");
     }
     // In the clear the server does not want kim.
-    let clear = connect(&server.address("localhost", "sslmode=disable")).expect_err("in the clear");
-    assert!(matches!(clear, StoreError::ServerRefuses { .. }), "{clear}");
+    let clear = connect(&server.address("localhost", "sslmode=disable"));
+    refused!(clear, StoreError::ServerRefuses { .. });
 }
 
 #[test]
 fn a_server_without_tls_is_refused_unless_told_otherwise() {
     let plain = crate::private::shared().database();
     let insisting = plain.replace("disable", "require");
-    let refused = connect(&insisting).expect_err("no TLS");
-    assert!(refused.to_string().contains("it has no TLS"), "{refused}");
+    refused!(connect(&insisting), _, "it has no TLS");
     connect(&plain.replace("disable", "prefer")).expect("a server");
 }
 
@@ -161,15 +142,13 @@ fn passwords_come_from_a_file_and_are_never_shown() {
     let store = connect(&address).expect("a server");
     assert!(!format!("{store:?} {}", store.path().display()).contains("cret"));
     allow(0o644);
-    let refused = connect(&address).expect_err("a file that others can read");
-    assert!(refused.to_string().contains("chmod 600"), "{refused}");
+    refused!(connect(&address), _, "chmod 600");
 
     let wrong = server.address("localhost", "").replace("s%40cret", "wrong");
-    let refused = connect(&wrong).expect_err("a wrong password");
-    assert!(
-        matches!(refused, StoreError::ServerRefuses { .. }),
-        "{refused}"
+    let refused = refused!(
+        connect(&wrong),
+        StoreError::ServerRefuses { .. },
+        "password"
     );
-    assert!(refused.to_string().contains("password"), "{refused}");
     assert!(!refused.to_string().contains("wrong@"), "{refused}");
 }

@@ -23,16 +23,13 @@ fn invalid_rows_of_a_laptop_are_not_sent_and_all_others_are() {
         let outcome = laptop.sync(&address);
         let refused = &outcome.refused;
         assert!(refused.count > 0, "{sql}");
+        let is_named = |what: &str| format!("{what} ").starts_with(&format!("{named} "));
         assert!(
-            (refused.named.iter())
-                .any(|one| format!("{} ", one.what).starts_with(&format!("{named} "))),
+            refused.named.iter().any(|one| is_named(&one.what)),
             "{sql}: {refused:?}"
         );
-        assert_eq!(
-            (outcome.runs, outcome.events, outcome.waiting),
-            (runs, events, 0),
-            "{sql}: {refused:?}"
-        );
+        let told = (outcome.runs, outcome.events, outcome.waiting);
+        assert_eq!(told, (runs, events, 0), "{sql}: {refused:?}");
         // What comes later goes as ever.
         laptop.run("U-3", day(3), &[103], true);
         assert_eq!(laptop.sync(&address).runs, 1, "{sql}");
@@ -78,11 +75,7 @@ fn invalid_rows_on_the_server_do_not_block_a_sync() {
         .expect("bad rows");
     for laptop in [&one, &two] {
         let outcome = laptop.sync(&address);
-        assert_eq!(
-            outcome.refused.count, 4,
-            "{}: {:?}",
-            laptop.name, outcome.refused
-        );
+        assert_eq!(outcome.refused.count, 4, "{:?}", outcome.refused);
         laptop.is_whole();
     }
     // Later events of that fault reach both laptops, and a repair that did not hold is found.

@@ -1,14 +1,15 @@
 //! Laptops for the tests: a file each, with runs, faults and people who say something about them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use fault_db::{
-    Address, FaultDetail, FaultFilter, Id, OpenOptions, RunWriter, Store, StoreError, SyncOptions,
-    SyncOutcome, Synchronous, Verdict,
+    Address, FaultDetail, FaultFilter, FaultState, Id, OpenOptions, RunWriter, Store, StoreError,
+    SyncOptions, SyncOutcome, SyncProgress, Verdict,
 };
 use tempfile::TempDir;
 
-use crate::common::{self, T0_US};
+use crate::common::{self, Deeds, T0_US};
+use crate::private::{name_of, shared};
 
 /// A laptop with its file.
 pub struct Laptop {
@@ -42,9 +43,7 @@ impl Laptop {
 
     pub fn open(&self) -> Store {
         self.seed.set(self.seed.get() + 1);
-        let options = OpenOptions::new(common::ids(self.seed.get()));
-        let options = options.synchronous(Synchronous::Normal);
-        Store::open(&self.path(), options).expect("its file opens")
+        common::open_as(&self.path(), self.seed.get())
     }
 
     /// Syncs with a server, samples and all.
@@ -55,36 +54,67 @@ impl Laptop {
     pub fn try_sync(
         &self,
         address: &str,
-        go_on: &mut dyn FnMut(fault_db::SyncProgress) -> bool,
+        go_on: &mut dyn FnMut(SyncProgress) -> bool,
     ) -> Result<SyncOutcome, StoreError> {
-        let server = connect(address)?;
-        self.open().sync(
-            &server,
-            &mut SyncOptions {
-                laptop: self.name,
-                traces: true,
-                as_copy: self.as_copy.get(),
-                now_us: &|| system_now_us() + self.clock_ahead_us.get(),
-                go_on,
-            },
-        )
+        let mut options = SyncOptions {
+            laptop: self.name,
+            traces: true,
+            as_copy: self.as_copy.get(),
+            now_us: &|| system_now_us() + self.clock_ahead_us.get(),
+            go_on,
+        };
+        self.open().sync(&connect(address)?, &mut options)
     }
 
     /// Holds the file to its own checks: checksums, seals, and counts that fit the rows.
     pub fn is_whole(&self) {
-        let report = self.open().check().expect("a check");
-        assert!(
-            report.problems.is_empty(),
-            "{}: {:#?}",
-            self.name,
-            report.problems
-        );
+        assert_eq!(common::problems(&self.open()), [], "{}", self.name);
+    }
+
+    /// Another laptop with the same name and a copy of the file.
+    pub fn copy(&self) -> Self {
+        let copy = Self::new(self.name);
+        std::fs::copy(self.path(), copy.path()).expect("a copy");
+        copy
+    }
+
+    /// Changes the file by hand.
+    pub fn alter(&self, sql: &str) {
+        let file = rusqlite::Connection::open(self.path()).expect("its file");
+        file.execute_batch(sql).expect("changed by hand");
+    }
+
+    /// Somebody gives the only fault this state.
+    pub fn judge(&self, state: FaultState, at_us: i64) {
+        let store = self.open();
+        store.put_state(only_fault(&store).fault.id, state, "kim", "", at_us);
     }
 
     /// A run of three steps that sees these faults of a unit, one trace each if wanted.
     pub fn run(&self, serial: &str, at_us: i64, codes: &[i64], traces: bool) -> Id {
         record(&self.open(), serial, at_us, codes, traces)
     }
+}
+
+/// Syncs a file with a server, samples and all, in a process of its own.
+pub fn sync(
+    file: &Path,
+    address: &str,
+    laptop: &str,
+    go_on: &mut dyn FnMut(SyncProgress) -> bool,
+) -> Result<(), StoreError> {
+    let server = connect(address)?;
+    let ids = common::ids(system_now_us().unsigned_abs());
+    let store = Store::open(file, OpenOptions::new(ids))?;
+    let mut options = SyncOptions {
+        laptop,
+        traces: true,
+        as_copy: false,
+        now_us: &system_now_us,
+        go_on,
+    };
+    store.sync(&server, &mut options)?;
+    store.close()
 }
 
 /// Records a run of three steps that sees these faults of a unit.
@@ -109,16 +139,11 @@ pub fn record(store: &Store, serial: &str, at_us: i64, codes: &[i64], traces: bo
             writer.trace(&[stored.occurrence], &trace).expect("a trace");
         }
     }
-    let id = writer.id();
-    let verdict = if codes.is_empty() {
-        Verdict::Passed
-    } else {
-        Verdict::Failed
-    };
-    let mut end = common::end(verdict);
+    let passed = codes.is_empty();
+    let mut end = common::end([Verdict::Failed, Verdict::Passed][usize::from(passed)]);
     end.finished_at_us = at_us + 60_000_000;
     writer.finish(&end).expect("an end");
-    id
+    writer.id()
 }
 
 pub fn open_faults(store: &Store) -> Vec<Id> {
@@ -135,6 +160,12 @@ pub fn only_fault(store: &Store) -> FaultDetail {
 pub fn connect(address: &str) -> Result<Store, StoreError> {
     let address: Address = address.parse()?;
     Store::connect(&address, common::ids(system_now_us().unsigned_abs()))
+}
+
+/// The owner of a server's database changes it by hand.
+pub fn as_owner(address: &str, sql: &str) {
+    let done = shared().client(name_of(address)).batch_execute(sql);
+    done.expect("the owner may");
 }
 
 pub fn read_only(address: &str) -> Result<Store, StoreError> {

@@ -17,10 +17,10 @@ use std::sync::{Mutex, MutexGuard};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fault_db::{FaultState, OpenOptions, Store, StoreError, SyncOptions};
+use fault_db::{FaultState, StoreError, SyncProgress};
 
-use crate::common::{self, Random, repair_of};
-use crate::laptop::{Laptop, connect, day, open_faults, record, system_now_us};
+use crate::common::{Deeds, Random, refused, repair_of};
+use crate::laptop::{Laptop, as_owner, connect, day, open_faults, record, sync};
 use crate::private::{Cluster, NO_HURRY, name_of, shared};
 use compare::Same;
 
@@ -68,7 +68,11 @@ fn the_laptop_that_syncs() {
         return;
     };
     println!("{SYNC}begun");
-    match sync(Path::new(&file), &address, &name) {
+    let mut go_on = |progress: SyncProgress| {
+        println!("{SYNC}{:?}", progress.phase);
+        true
+    };
+    match sync(Path::new(&file), &address, &name, &mut go_on) {
         Ok(()) => println!("{SYNC}completed"),
         // The message says to try again, which is what this laptop will do.
         Err(error) if error.to_string().contains("try again") => {
@@ -76,24 +80,6 @@ fn the_laptop_that_syncs() {
         }
         Err(error) => println!("{SYNC}stopped {error}"),
     }
-}
-
-fn sync(file: &Path, address: &str, laptop: &str) -> Result<(), StoreError> {
-    let server = connect(address)?;
-    let ids = common::ids(system_now_us().unsigned_abs());
-    let mut options = SyncOptions {
-        laptop,
-        traces: true,
-        as_copy: false,
-        now_us: &system_now_us,
-        go_on: &mut |progress| {
-            println!("{SYNC}{:?}", progress.phase);
-            true
-        },
-    };
-    let store = Store::open(file, OpenOptions::new(ids))?;
-    store.sync(&server, &mut options)?;
-    store.close()
 }
 
 /// Work during which the error came, and the message of server or network.
@@ -307,9 +293,9 @@ fn laptops_with_work(number: u64) -> Vec<Laptop> {
         }
         let at_us = day(RUNS) + n * 60_000_000;
         let run = store.resolve_run("latest").expect("a run");
-        (store.add_run_note(run, "kim", "brakes looked at", at_us)).expect("a note");
+        store.put_run_note(run, "kim", "brakes looked at", at_us);
         let faults = open_faults(&store);
-        (store.add_note(faults[1], "kim", "seen before", at_us)).expect("a note");
+        store.put_note(faults[1], "kim", "seen before", at_us);
         let repair = repair_of("eb_relay", "", &format!("SN-{n}"), "");
         let state = match n % 3 {
             0 => store.record_repair(faults[0], &repair, "lee", at_us),
@@ -366,13 +352,15 @@ fn print(tally: &Tally, laptops: usize, seconds: f64, same: &Same) -> f64 {
 fn a_laptop_that_finds_no_free_connection_is_told_to_try_again() {
     let address = shared().database();
     let name = name_of(&address);
-    shared()
-        .client("postgres")
-        .batch_execute(&format!("ALTER DATABASE {name} CONNECTION LIMIT 1"))
-        .expect("a limit");
+    as_owner(
+        &address,
+        &format!("ALTER DATABASE {name} CONNECTION LIMIT 1"),
+    );
     let first = connect(&address).expect("the only connection");
-    let busy = connect(&address).expect_err("no connection is free");
-    assert!(matches!(busy, StoreError::ServerBusy { .. }), "{busy}");
-    assert!(busy.to_string().contains("try again later"), "{busy}");
+    refused!(
+        connect(&address),
+        StoreError::ServerBusy { .. },
+        "try again later"
+    );
     drop(first);
 }

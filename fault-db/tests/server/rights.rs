@@ -2,8 +2,8 @@
 
 use fault_db::{Address, SERVER_SCHEMA_VERSION, StoreError};
 
-use crate::common;
-use crate::laptop::{Laptop, connect, day, read_only};
+use crate::common::{self, refused};
+use crate::laptop::{Laptop, as_owner, connect, day, read_only};
 use crate::private::{LAPTOPS, name_of, shared};
 
 /// Statements that a laptop's account tries on a server that has everything.
@@ -64,32 +64,24 @@ fn a_laptops_account_may_insert_and_select_and_nothing_else() {
     let laptop = Laptop::new("careful");
     laptop.run("U-1", day(0), &[101], true);
     laptop.sync(&address);
-    let counts = |client: &mut postgres::Client| crate::counts::of_server(client);
-    let before = counts(&mut shared().client(name_of(&address)));
+    let counts = || crate::counts::of_server(&mut shared().client(name_of(&address)));
+    let before = counts();
     let mut client = shared().client_as(LAPTOPS, name_of(&address));
     // No error, but no effect either.
-    client
-        .batch_execute("GRANT ALL ON ALL TABLES IN SCHEMA public TO laptop")
-        .expect("a warning");
+    let grant = "GRANT ALL ON ALL TABLES IN SCHEMA public TO laptop";
+    client.batch_execute(grant).expect("a warning");
     for sql in REFUSED {
         let refused = client.batch_execute(sql).expect_err(sql);
         let code = refused.code().expect(sql).code();
         // Insufficient privilege; of what is not its own there is also no such thing.
-        assert!(
-            matches!(code, "42501" | "42P01"),
-            "{sql}: {code} {refused:?}"
-        );
+        assert!(matches!(code, "42501" | "42P01"), "{sql}: {refused:?}");
     }
-    let after = counts(&mut shared().client(name_of(&address)));
-    assert_eq!(before, after);
+    assert_eq!(before, counts());
     // The functions it may call say what the rows say.
-    client
-        .batch_execute(
-            "SELECT settle_faults(array_agg(seq)), join_faults(array_agg(seq)) FROM fault",
-        )
-        .expect("called");
-    assert_eq!(before, counts(&mut shared().client(name_of(&address))));
-    assert!(laptop.open().check().expect("a check").problems.is_empty());
+    let calls = "SELECT settle_faults(array_agg(seq)), join_faults(array_agg(seq)) FROM fault";
+    client.batch_execute(calls).expect("called");
+    assert_eq!(before, counts());
+    laptop.is_whole();
 }
 
 /// Rows outside their domain are refused by the server, too, from any client.
@@ -186,8 +178,8 @@ fn setting_up_again_changes_nothing() {
     let laptop = Laptop::new("newer");
     laptop.run("U-0", day(0), &[101], true);
     assert_eq!(laptop.sync(&laptops).runs, 1);
-    read_only(&laptops)
-        .expect("a server")
+    let server = read_only(&laptops).expect("a server");
+    server
         .query_read_only("SELECT * FROM runs", 10)
         .expect("an answer");
 }
@@ -216,16 +208,15 @@ fn an_account_that_may_delete_rows_is_refused_as_the_laptops_account() {
         (&by_plain, "nobody_yet", "createuser --pwprompt nobody_yet"),
         (&by_plain, LAPTOPS, "as a superuser"),
     ] {
-        let refused = set_up(address, laptops).expect_err(words).to_string();
-        assert!(refused.contains(words), "{refused}");
-        let left = connect(address).expect_err("nothing was made");
-        assert!(matches!(left, StoreError::ServerEmpty(_)), "{left}");
+        refused!(set_up(address, laptops), _, words);
+        refused!(connect(address), StoreError::ServerEmpty(_));
     }
     // The account everybody shared owned it all: somebody who may takes it over.
     let database = name_of(&address);
-    client
-        .batch_execute(&format!("ALTER DATABASE {database} OWNER TO plain"))
-        .expect("its database");
+    as_owner(
+        &address,
+        &format!("ALTER DATABASE {database} OWNER TO plain"),
+    );
     set_up(&by_plain, LAPTOPS).expect("as the owner of the database");
     set_up(&address, "plain").expect("as a superuser, for the account that was the owner");
     let mut plain = shared().client_as("plain", database);

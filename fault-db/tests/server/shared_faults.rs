@@ -41,14 +41,8 @@ fn two_laptops_that_saw_one_fault_share_what_was_done_about_it() {
     );
     // Events made on the server reach both.
     let desk = connect(&address).expect("a server");
-    desk.set_state(
-        only_fault(&desk).fault.id,
-        FaultState::Verified,
-        "park",
-        "ran well",
-        day(3),
-    )
-    .expect("a state");
+    let fault = only_fault(&desk).fault.id;
+    desk.put_state(fault, FaultState::Verified, "park", "ran well", day(3));
     for laptop in [&one, &two] {
         assert!(laptop.sync(&address).events_received >= 1);
         assert_eq!(only_fault(&laptop.open()).fault.state, FaultState::Verified);
@@ -74,11 +68,8 @@ fn a_withdrawal_reaches_server_and_laptops() {
         [sql, repairs].map(|sql| store.query_read_only(sql, 9).expect("asked").rows)
     };
     let stores = || {
-        [
-            one.open(),
-            two.open(),
-            read_only(&address).expect("a server"),
-        ]
+        let server = read_only(&address).expect("a server");
+        [one.open(), two.open(), server]
     };
     let before = asked(&one.open());
     let write = |store: &Store| {
@@ -133,11 +124,11 @@ fn a_case_is_one_on_laptops_and_server() {
     one.sync(&address);
     let desk = connect(&address).expect("a server");
     let fault_of = |store: &Store, code: i64| {
-        let faults = store.faults(&FaultFilter::default()).expect("listed");
-        faults
-            .into_iter()
-            .find(|fault| fault.code == code)
-            .expect("it")
+        let mut faults = store
+            .faults(&FaultFilter::default())
+            .expect("listed")
+            .into_iter();
+        faults.find(|fault| fault.code == code).expect("it")
     };
     let alone = fault_of(&desk, 103).id;
     desk.set_cause(alone, &from(""), "park", day(2))
@@ -156,17 +147,12 @@ fn a_case_is_one_on_laptops_and_server() {
     ] {
         for store in [&desk, &one.open()] {
             let fault = fault_of(store, code);
-            assert_eq!(
-                (fault.cause.as_deref(), fault.state),
-                (cause, state),
-                "{code}"
-            );
+            let told = (fault.cause.as_deref(), fault.state);
+            assert_eq!(told, (cause, state), "{code}");
         }
     }
-    assert_eq!(
-        fault_of(&two.open(), 102).cause.as_deref(),
-        Some("eb_relay")
-    );
+    let cause = fault_of(&two.open(), 102).cause;
+    assert_eq!(cause.as_deref(), Some("eb_relay"));
 }
 
 /// A fault that is new to a laptop brings all its events.
@@ -175,10 +161,7 @@ fn a_laptop_receives_events_from_before_it_knew_the_fault() {
     let address = shared().database();
     let (one, two) = (Laptop::new("one"), Laptop::new("late"));
     one.run("U-1", day(0), &[101], false);
-    let store = one.open();
-    let fault = only_fault(&store).fault.id;
-    store.put_acknowledged(fault, "kim", "on it", day(0));
-    drop(store);
+    one.judge(FaultState::Acknowledged, day(0));
     one.sync(&address);
     two.run("U-9", day(0), &[], false);
     two.sync(&address);
@@ -200,11 +183,8 @@ fn two_concurrent_decisions_are_kept_and_the_state_with_more_work_stands() {
         laptop.sync(&address);
     }
     one.sync(&address);
-    for (laptop, state) in [(&one, FaultState::Closed), (&two, FaultState::Acknowledged)] {
-        let store = laptop.open();
-        let fault = only_fault(&store).fault.id;
-        store.put_state(fault, state, "", "", day(1));
-    }
+    one.judge(FaultState::Closed, day(1));
+    two.judge(FaultState::Acknowledged, day(1));
     one.sync(&address);
     let second = two.sync(&address);
     assert_eq!(second.conflicts.len(), 1);
@@ -213,18 +193,11 @@ fn two_concurrent_decisions_are_kept_and_the_state_with_more_work_stands() {
     for store in [&server, &one.open(), &two.open()] {
         let fault = only_fault(store);
         assert_eq!(fault.fault.state, FaultState::Acknowledged);
-        assert!(
-            fault
-                .events
-                .iter()
-                .any(|event| event.state == Some(FaultState::Closed))
-        );
+        let mut states = fault.events.iter().map(|event| event.state);
+        assert!(states.any(|state| state == Some(FaultState::Closed)));
     }
     // One of them looks again, knowing of the other.
-    let store = one.open();
-    let fault = only_fault(&store).fault.id;
-    store.put_state(fault, FaultState::Closed, "", "talked", day(2));
-    drop(store);
+    one.judge(FaultState::Closed, day(2));
     assert!(one.sync(&address).conflicts.is_empty());
     assert!(two.sync(&address).conflicts.is_empty());
     assert_eq!(only_fault(&two.open()).fault.state, FaultState::Closed);
@@ -242,25 +215,17 @@ fn wrong_clocks_do_not_decide_a_conflict() {
     behind.clock_ahead_us.set(-YEAR * 86_400_000_000);
     behind.sync(&address);
 
-    let say = |laptop: &Laptop, state, at_us| {
-        let store = laptop.open();
-        let fault = only_fault(&store).fault.id;
-        store.put_state(fault, state, "", "", at_us);
-        drop(store);
-        laptop.sync(&address)
-    };
-    say(&right, FaultState::Acknowledged, day(YEAR + 1));
+    right.judge(FaultState::Acknowledged, day(YEAR + 1));
+    right.sync(&address);
     assert_eq!(behind.sync(&address).faults_changed, 1);
-    let told = say(&behind, FaultState::Closed, day(1));
+    behind.judge(FaultState::Closed, day(1));
+    let told = behind.sync(&address);
     assert!(told.clocks_differ());
     let years = -told.clock_offset_us / 86_400_000_000;
     assert!((364..=365).contains(&years), "{years} days behind");
     assert!(!right.sync(&address).clocks_differ());
-    for store in [
-        &right.open(),
-        &behind.open(),
-        &read_only(&address).expect("a server"),
-    ] {
+    let server = read_only(&address).expect("a server");
+    for store in [&right.open(), &behind.open(), &server] {
         assert_eq!(only_fault(store).fault.state, FaultState::Closed);
     }
 }
@@ -282,11 +247,7 @@ fn a_fault_that_occurred_after_its_resolution_elsewhere_is_open_after_a_sync() {
             behind.run("U-1", day(1 - YEAR), &[101], false);
         }
         behind.sync(&address);
-        let store = one.open();
-        let fault = only_fault(&store).fault.id;
-        let set = store.set_state(fault, done, "kim", "nothing found", day(5));
-        set.expect("a state");
-        drop(store);
+        one.judge(done, day(5));
         behind.run("U-1", day(seen - YEAR), &[101], false);
         let mut order = [&one, &behind];
         if seen_first {
@@ -334,15 +295,13 @@ fn a_changed_clock_reopens_no_fault() {
     other.sync(&address);
     let desk = connect(&address).expect("a server");
     let fault = only_fault(&desk).fault.id;
-    let closed = desk.set_state(fault, FaultState::Closed, "park", "", day(0) + hour_us);
-    closed.expect("a state");
+    desk.put_state(fault, FaultState::Closed, "park", "", day(0) + hour_us);
     ahead.clock_ahead_us.set(0);
     ahead.sync(&address);
     for laptop in [&other, &ahead] {
         let store = laptop.open();
         let fault = only_fault(&store).fault.id;
-        let noted = store.add_note(fault, "kim", "well then", day(1));
-        noted.expect("a note");
+        store.put_note(fault, "kim", "well then", day(1));
         drop(store);
         laptop.sync(&address);
         assert_eq!(only_fault(&desk).fault.state, FaultState::Closed);
@@ -354,29 +313,23 @@ fn a_changed_clock_reopens_no_fault() {
 #[test]
 fn a_received_closing_event_knows_no_more_occurrences_than_its_new_file() {
     let address = shared().database();
-    let (told, many, away) = (
-        Laptop::new("told"),
-        Laptop::new("many"),
-        Laptop::new("away"),
-    );
+    let [told, many, away] = ["told", "many", "away"].map(Laptop::new);
     told.run("U-1", day(0), &[101], false);
-    away.open()
-        .merge_from(&told.open())
-        .expect("a shared beginning");
+    let began = away.open().merge_from(&told.open());
+    began.expect("a shared beginning");
     told.sync(&address);
     for n in 0..4 {
         many.run("U-1", day(n), &[101], false);
     }
     many.sync(&address);
     let desk = connect(&address).expect("a server");
-    let closed = desk.set_state(
+    desk.put_state(
         only_fault(&desk).fault.id,
         FaultState::Closed,
         "park",
         "",
         day(5),
     );
-    closed.expect("a state");
     told.sync(&address);
     assert_eq!(only_fault(&told.open()).fault.state, FaultState::Closed);
     away.run("U-1", day(6), &[101], false);
@@ -399,8 +352,8 @@ fn a_fault_merged_during_a_pull_brings_all_events_of_the_older_one() {
     let store = two.open();
     let fault = only_fault(&store).fault.id;
     store.put_note(fault, "kim", "contacts burnt", day(0));
-    store.put_state(fault, FaultState::Closed, "kim", "", day(1));
     drop(store);
+    two.judge(FaultState::Closed, day(1));
     two.sync(&address);
     three.run("U-1", day(3), &[101], false);
     // The first laptop has the same fault under a name of its own, and another one there is news about.
@@ -447,10 +400,7 @@ fn faults_found_to_be_the_same_are_merged_in_every_file() {
         laptop.run("U-1", day(0), &[101], false);
         laptop.sync(&address);
     }
-    let store = one.open();
-    let fault = only_fault(&store).fault.id;
-    store.put_state(fault, FaultState::Closed, "kim", "", day(1));
-    drop(store);
+    one.judge(FaultState::Closed, day(1));
     one.sync(&address);
     three.run("U-1", day(2), &[101], false);
     three.sync(&address);
@@ -472,23 +422,12 @@ fn faults_found_to_be_the_same_are_merged_in_every_file() {
     }
     // The name that three gave it still means it, there and here.
     let name = only_fault(&three.open()).fault.id.to_string();
-    assert_eq!(
-        server.resolve_fault(&name).expect("a fault"),
-        joined.fault.id
-    );
-    let store = three.open();
-    let fault = only_fault(&store).fault.id;
-    store.put_state(fault, FaultState::Acknowledged, "lee", "", day(4));
-    drop(store);
+    assert_eq!(server.resolve_fault(&name).ok(), Some(joined.fault.id));
+    three.judge(FaultState::Acknowledged, day(4));
     for laptop in [three, two, one] {
         laptop.sync(&address);
-        let told = only_fault(&laptop.open());
-        assert_eq!(
-            told.fault.state,
-            FaultState::Acknowledged,
-            "{}",
-            laptop.name
-        );
+        let state = only_fault(&laptop.open()).fault.state;
+        assert_eq!(state, FaultState::Acknowledged, "{}", laptop.name);
         laptop.is_whole();
     }
 }
@@ -501,10 +440,7 @@ fn a_fault_after_a_closed_one_is_a_new_fault_on_the_server_too() {
     let laptop = Laptop::new("one");
     laptop.run("U-1", day(0), &[101], false);
     laptop.sync(&address);
-    let store = laptop.open();
-    let first = only_fault(&store).fault.id;
-    store.put_state(first, FaultState::Closed, "kim", "nothing found", day(1));
-    drop(store);
+    laptop.judge(FaultState::Closed, day(1));
     laptop.run("U-1", day(2), &[101], false);
     laptop.sync(&address);
     let of = |store: &Store| store.faults(&FaultFilter::default()).expect("faults");

@@ -2,9 +2,9 @@
 
 use fault_db::{FaultFilter, RunFilter, RunWriter, StoreError};
 
-use crate::common;
+use crate::common::{self, Deeds, change, refused};
 use crate::counts;
-use crate::laptop::{Laptop, day, only_fault, read_only};
+use crate::laptop::{Laptop, as_owner, day, only_fault, read_only};
 use crate::private::{name_of, shared};
 
 #[test]
@@ -39,19 +39,17 @@ fn a_cursor_too_far_ahead_on_one_side_loses_nothing() {
     let mut client = shared().client(name_of(&address));
     let content = counts::content(&mut client);
 
-    client
-        .batch_execute("UPDATE laptop SET sent = 0, sent_traces = 0, received = 0")
-        .expect("an older server");
+    as_owner(
+        &address,
+        "UPDATE laptop SET sent = 0, sent_traces = 0, received = 0",
+    );
     let again = laptop.sync(&address);
     assert_eq!((again.runs, again.events, again.traces), (0, 0, 0));
     assert!(again.already_there > 0);
     assert_eq!(counts::content(&mut client), content);
 
-    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
-    file.execute_batch(
-        "DELETE FROM sync_server; DELETE FROM fault_event; UPDATE fault SET state = 'open'",
-    )
-    .expect("an older file");
+    laptop
+        .alter("DELETE FROM sync_server; DELETE FROM fault_event; UPDATE fault SET state = 'open'");
     laptop.sync(&address);
     let events = only_fault(&laptop.open()).events;
     assert_eq!(events.len(), 1, "what the file had lost came back");
@@ -86,13 +84,10 @@ fn an_interrupted_run_is_sent_as_it_is() {
     // The writer was not dead after all.
     drop(under_way);
     let run = runs[0].id;
-    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
-    file.execute(
+    laptop.alter(&format!(
         "UPDATE run SET verdict = 'passed', finished_at_us = 5, bench_time_us = 5, wall_time_us = 5
-         WHERE id = ?1",
-        [&run.as_bytes()[..]],
-    )
-    .expect("an end");
+         WHERE lower(hex(id)) = replace('{run}', '-', '')"
+    ));
     drop(store);
     let second = laptop.sync(&address);
     assert_eq!(second.runs, 1, "the other one");
@@ -108,13 +103,10 @@ fn a_run_that_differs_on_the_server_is_reported_and_not_changed() {
     laptop.sync(&address);
     let mut client = shared().client(name_of(&address));
     let content = counts::content(&mut client);
-    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
-    file.execute_batch(
+    laptop.alter(
         "UPDATE seal SET digest = zeroblob(32); DELETE FROM sync_server;
          UPDATE run SET operator = 'somebody'",
-    )
-    .expect("an altered file");
-    drop(file);
+    );
     laptop.run("U-1", day(1), &[], false);
     let told = laptop.sync(&address);
     let different: Vec<_> = told.different.iter().map(|d| (d.what, d.id)).collect();
@@ -136,12 +128,12 @@ fn a_forked_copy_gets_an_id_of_its_own() {
     one.run("U-1", day(1), &[], false);
     let forked = copy.run("U-1", day(2), &[], false);
     one.sync(&address);
-    let refused = copy.try_sync(&address, &mut |_| true).expect_err("a copy");
-    assert!(
-        matches!(refused, StoreError::ForkedCopy { after: 2, .. }),
-        "{refused}"
+    let forked_sync = copy.try_sync(&address, &mut |_| true);
+    refused!(
+        forked_sync,
+        StoreError::ForkedCopy { after: 2, .. },
+        "--as-copy"
     );
-    assert!(refused.to_string().contains("--as-copy"), "{refused}");
     copy.as_copy.set(true);
     let told = copy.sync(&address);
     assert_eq!((told.runs, told.different), (1, vec![]));
@@ -168,17 +160,14 @@ fn a_file_is_compared_with_the_chain_the_server_knows() {
     std::fs::copy(laptop.path(), backup.path()).expect("a backup");
     let run = laptop.run("U-1", day(1), &[101], false);
     laptop.sync(&address);
-    let refused = backup.try_sync(&address, &mut |_| true).expect_err("older");
-    assert!(
-        matches!(
-            refused,
-            StoreError::EarlierCopy {
-                here: 2,
-                there: 4,
-                ..
-            }
-        ),
-        "{refused}"
+    let older = backup.try_sync(&address, &mut |_| true);
+    refused!(
+        older,
+        StoreError::EarlierCopy {
+            here: 2,
+            there: 4,
+            ..
+        }
     );
     backup.as_copy.set(true);
     backup.run("U-1", day(2), &[], false);
@@ -186,61 +175,43 @@ fn a_file_is_compared_with_the_chain_the_server_knows() {
     assert_eq!((told.runs, told.different), (1, vec![]));
     backup.is_whole();
     // A verdict changed, and its chain made anew throughout.
-    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
-    file.execute_batch(
-        "DROP TRIGGER run_ended; UPDATE run SET verdict = 'passed' WHERE verdict = 'failed'",
-    )
-    .expect("changed");
-    file.execute(
-        "UPDATE seal SET digest = x'07', hash = x'08' WHERE what = 'run' AND id = ?1",
-        [run],
-    )
-    .expect("sealed again");
-    let trigger = include_str!("../../src/schema/triggers.sql");
-    let begin = trigger.find("CREATE TRIGGER run_ended").expect("there");
-    let end = begin + trigger[begin..].find("END;").expect("its end") + 4;
-    file.execute_batch(&trigger[begin..end]).expect("as it was");
-    drop(file);
+    change(
+        &laptop.path(),
+        &format!(
+            "UPDATE run SET verdict = 'passed' WHERE verdict = 'failed';
+             UPDATE seal SET digest = x'07', hash = x'08' WHERE what = 'run' AND lower(hex(id)) = replace('{run}', '-', '')"
+        ),
+    );
     for as_copy in [false, true] {
         laptop.as_copy.set(as_copy);
-        let refused = laptop
-            .try_sync(&address, &mut |_| true)
-            .expect_err("made up");
-        assert!(
-            matches!(&refused, StoreError::Rewritten { after: 3, id, .. } if *id == run),
-            "{refused}"
-        );
+        let made_up = laptop.try_sync(&address, &mut |_| true);
+        refused!(made_up, StoreError::Rewritten { after: 3, id, .. } if *id == run);
     }
 }
 
+/// Traces that are not what was stored, or whose list of channels is not: they stay behind, all else goes both ways.
 #[test]
-fn a_damaged_trace_is_not_sent_and_is_reported() {
-    let address = shared().database();
-    let laptop = Laptop::new("damaged");
-    laptop.run("U-1", day(0), &[101, 102], true);
-    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
-    file.execute_batch("UPDATE trace SET data = zeroblob(length(data)) WHERE seq = 1")
-        .expect("a flipped bit, or more");
-    drop(file);
-    let told = laptop.sync(&address);
-    assert_eq!((told.traces, told.damaged_traces.len()), (1, 1));
-}
-
-/// A list of channels that is not what was stored: its traces stay behind, all else goes both ways.
-#[test]
-fn traces_with_a_damaged_channel_list_are_not_sent_and_block_nothing() {
-    let address = shared().database();
-    let (laptop, other) = (Laptop::new("damaged"), Laptop::new("other"));
-    laptop.run("U-1", day(0), &[101, 102], true);
-    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
-    file.execute_batch("UPDATE channel_set SET json = replace(json, 'a', 'b')")
-        .expect("a flipped bit, or more");
-    drop(file);
-    other.run("U-1", day(1), &[101], false);
-    other.sync(&address);
-    let told = laptop.sync(&address);
-    assert_eq!((told.traces, told.damaged_traces.len()), (0, 2));
-    assert_eq!((told.runs, told.events_received, told.waiting), (1, 1, 0));
+fn damaged_traces_are_not_sent_and_block_nothing() {
+    for (damage, sent) in [
+        (
+            "UPDATE trace SET data = zeroblob(length(data)) WHERE seq = 1",
+            1,
+        ),
+        ("UPDATE channel_set SET json = replace(json, 'a', 'b')", 0),
+    ] {
+        let address = shared().database();
+        let (laptop, other) = (Laptop::new("damaged"), Laptop::new("other"));
+        laptop.run("U-1", day(0), &[101, 102], true);
+        laptop.alter(damage);
+        other.run("U-1", day(1), &[101], false);
+        other.sync(&address);
+        let told = laptop.sync(&address);
+        assert_eq!(
+            (told.traces, told.damaged_traces.len()),
+            (sent, 2 - sent as usize)
+        );
+        assert_eq!((told.runs, told.events_received, told.waiting), (1, 1, 0));
+    }
 }
 
 /// A version without an outbox recorded it: the first sync sends it all the same.
@@ -249,9 +220,7 @@ fn rows_recorded_before_the_outbox_existed_are_sent_too() {
     let address = shared().database();
     let laptop = Laptop::new("old");
     laptop.run("U-1", day(0), &[101], true);
-    let file = rusqlite::Connection::open(laptop.path()).expect("its file");
-    file.execute_batch("DELETE FROM outbox").expect("no outbox");
-    drop(file);
+    laptop.alter("DELETE FROM outbox");
     let told = laptop.sync(&address);
     assert_eq!((told.runs, told.traces, told.events), (1, 1, 1));
 }
@@ -263,9 +232,8 @@ fn traces_can_be_sent_later_and_a_stopped_sync_is_continued() {
     for n in 0..3 {
         laptop.run("U-1", day(n), &[101], true);
     }
-    let stopped = laptop
-        .try_sync(&address, &mut |_| false)
-        .expect("a sync that is stopped");
+    let stopped = laptop.try_sync(&address, &mut |_| false);
+    let stopped = stopped.expect("a sync that is stopped");
     assert!(stopped.stopped);
     assert_eq!((stopped.runs, stopped.traces, stopped.waiting), (3, 0, 3));
     let rest = laptop.sync(&address);
@@ -315,10 +283,8 @@ fn texts_of_any_language_arrive() {
     let address = shared().database();
     let laptop = Laptop::new("words");
     let run = laptop.run("부품-1", day(0), &[], false);
-    let store = laptop.open();
     let text = "K3 릴레이 교체 🚆 'quoted' \\ \"double\" \u{0}zero";
-    store.add_run_note(run, "김", text, day(0)).expect("a note");
-    drop(store);
+    laptop.open().put_run_note(run, "김", text, day(0));
     assert_eq!(laptop.sync(&address).notes, 1);
     let server = read_only(&address).expect("a server");
     let notes = server.run(run).expect("the run").notes;

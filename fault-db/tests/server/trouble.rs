@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use fault_db::{Id, StoreError};
 
-use crate::laptop::{Laptop, connect, day, read_only};
+use crate::common::refused;
+use crate::laptop::{Laptop, as_owner, connect, day, read_only};
 use crate::private::{Nobody, name_of, shared};
 
 #[test]
@@ -23,11 +24,7 @@ fn an_unreachable_server_is_reported_with_the_reason() {
         (unknown, "connecting"),
     ] {
         let begun = Instant::now();
-        let away = connect(address).expect_err(address);
-        assert!(
-            matches!(away, StoreError::ServerUnreachable { .. }),
-            "{away:?}"
-        );
+        let away = refused!(connect(address), StoreError::ServerUnreachable { .. });
         let said = format!("{away} {away:?}");
         assert!(said.contains(words), "{said}");
         assert!(said.contains("postgres://ptu@"), "{said}");
@@ -40,31 +37,31 @@ fn an_unreachable_server_is_reported_with_the_reason() {
 #[test]
 fn a_missing_foreign_or_empty_server_database_is_reported_and_not_changed() {
     let missing = shared().address("no_such_database");
-    let refused = connect(&missing).expect_err("no database");
-    assert!(
-        matches!(refused, StoreError::ServerRefuses { .. }),
-        "{refused}"
+    refused!(
+        connect(&missing),
+        StoreError::ServerRefuses { .. },
+        "does not exist"
     );
-    assert!(refused.to_string().contains("does not exist"), "{refused}");
 
     let foreign = shared().empty();
     let mut client = shared().client(name_of(&foreign));
     client
         .batch_execute("CREATE TABLE meta(key text, value text); CREATE TABLE song(title text)")
         .expect("tables");
-    for refused in [connect(&foreign), read_only(&foreign)] {
-        let refused = refused.expect_err("a foreign database");
-        assert!(matches!(refused, StoreError::ServerForeign(_)), "{refused}");
+    for opened in [connect(&foreign), read_only(&foreign)] {
+        refused!(opened, StoreError::ServerForeign(_));
     }
     let tables = "SELECT count(*) FROM pg_class WHERE relname IN ('run', 'fault')";
     let made: i64 = client.query_one(tables, &[]).expect("a count").get(0);
     assert_eq!(made, 0);
 
     let empty = shared().empty();
-    for refused in [connect(&empty), read_only(&empty)] {
-        let refused = refused.expect_err("an empty database");
-        assert!(matches!(refused, StoreError::ServerEmpty(_)), "{refused}");
-        assert!(refused.to_string().contains("`ptu db server init ADDRESS`"));
+    for opened in [connect(&empty), read_only(&empty)] {
+        refused!(
+            opened,
+            StoreError::ServerEmpty(_),
+            "`ptu db server init ADDRESS`"
+        );
     }
     let tables = "SELECT count(*) FROM pg_class WHERE relnamespace = 'public'::regnamespace";
     let mut client = shared().client(name_of(&empty));
@@ -79,50 +76,36 @@ fn a_missing_foreign_or_empty_server_database_is_reported_and_not_changed() {
         .client("postgres")
         .batch_execute(&create)
         .expect("a database");
-    let refused = connect(&latin).expect_err("a database of Latin letters");
-    assert!(
-        refused.to_string().contains("createdb -E UTF8"),
-        "{refused}"
-    );
+    refused!(connect(&latin), _, "createdb -E UTF8");
 }
 
 #[test]
 fn an_older_and_a_newer_schema_are_named() {
     let address = shared().database();
-    let mut client = shared().client(name_of(&address));
-    client
-        .batch_execute("UPDATE meta SET value = '0' WHERE key = 'schema'")
-        .expect("an older schema");
-    let older = read_only(&address).expect_err("an older schema");
-    assert!(matches!(
+    as_owner(&address, "UPDATE meta SET value = '0' WHERE key = 'schema'");
+    let older = read_only(&address);
+    refused!(
         older,
-        StoreError::ServerOlderSchema { found: 0, .. }
-    ));
-    assert!(
-        older.to_string().contains("`ptu db server init ADDRESS`"),
-        "{older}"
+        StoreError::ServerOlderSchema { found: 0, .. },
+        "`ptu db server init ADDRESS`"
     );
-    client
-        .batch_execute("UPDATE meta SET value = '99' WHERE key = 'schema'")
-        .expect("a newer schema");
+    as_owner(
+        &address,
+        "UPDATE meta SET value = '99' WHERE key = 'schema'",
+    );
     for newer in [connect(&address), read_only(&address)] {
-        let newer = newer.expect_err("a newer schema").to_string();
-        assert!(newer.contains("has schema 99; update ptu"), "{newer}");
+        refused!(newer, _, "has schema 99; update ptu");
     }
 }
 
 #[test]
 fn concurrent_server_setups_create_one_set_of_tables() {
     let address = shared().empty();
-    let threads: Vec<_> = (0..6)
-        .map(|_| {
-            let address = address.clone();
-            std::thread::spawn(move || drop(shared().set_up(&address)))
-        })
-        .collect();
-    for thread in threads {
-        thread.join().expect("no panic");
-    }
+    std::thread::scope(|threads| {
+        for _ in 0..6 {
+            threads.spawn(|| shared().set_up(&address));
+        }
+    });
     let mut client = shared().client(name_of(&address));
     let names = "SELECT value FROM meta WHERE key = 'server_id'";
     let name: String = client.query_one(names, &[]).expect("one name").get(0);
@@ -136,37 +119,22 @@ fn a_read_only_store_answers_queries_and_refuses_writes() {
     let laptop = Laptop::new("reader");
     let run = laptop.run("U-1", day(0), &[101], false);
     laptop.sync(&address);
-    shared()
-        .client(name_of(&address))
-        .batch_execute(
-            "DROP ROLE IF EXISTS reader; CREATE ROLE reader LOGIN;
-             GRANT SELECT ON ALL TABLES IN SCHEMA public TO reader",
-        )
-        .expect("a reader");
+    as_owner(
+        &address,
+        "DROP ROLE IF EXISTS reader; CREATE ROLE reader LOGIN;
+         GRANT SELECT ON ALL TABLES IN SCHEMA public TO reader",
+    );
     let address = address.replace("laptop@", "reader@");
     let store = read_only(&address).expect("a server");
     assert_eq!(store.run(run).expect("the run").steps.len(), 3);
-    let refused = store
-        .add_run_note(run, "kim", "x", 0)
-        .expect_err("read-only");
-    assert!(matches!(refused, StoreError::ReadOnly(_)), "{refused}");
+    refused!(
+        store.add_run_note(run, "kim", "x", 0),
+        StoreError::ReadOnly(_)
+    );
     let store = connect(&address).expect("a server");
-    let refused = store
-        .add_run_note(run, "kim", "x", 0)
-        .expect_err("no right");
-    assert!(
-        matches!(refused, StoreError::ServerRefuses { .. }),
-        "{refused}"
-    );
-    assert!(
-        refused.to_string().contains("permission denied"),
-        "{refused}"
-    );
-    let needs_file = store.rebuild(0).expect_err("a server");
-    assert!(
-        needs_file.to_string().contains("needs a database file"),
-        "{needs_file}"
-    );
+    let noted = store.add_run_note(run, "kim", "x", 0);
+    refused!(noted, StoreError::ServerRefuses { .. }, "permission denied");
+    refused!(store.rebuild(0), _, "needs a database file");
 }
 
 /// Bytes with which a server lets a client in.
@@ -186,8 +154,7 @@ fn a_server_that_hangs_after_the_login_is_given_up_in_time() {
     });
     let address = format!("postgres://ptu@{at}/h?sslmode=disable&connect_timeout=1");
     let begun = Instant::now();
-    let away = connect(&address).expect_err("a server that hangs");
-    assert!(away.to_string().contains("no answer in time"), "{away}");
+    refused!(connect(&address), _, "no answer in time");
     assert!(begun.elapsed().as_secs() < 10);
     drop(given_up);
     server.join().expect("no panic");

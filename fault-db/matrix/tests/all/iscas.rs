@@ -3,9 +3,9 @@
 //!
 //! `tests/iscas/make.py` writes them from the circuits, and checks these against what is printed of them.
 
-use ::matrix::{Matrix, Method, Node, State, Test};
+use ::matrix::{Matrix, Method, Node};
 
-use super::matrix::{Dice, near, planned, walked};
+use super::matrix::{Dice, near, planned, test, walked, weighted};
 
 pub(super) const C17: &str = include_str!("../iscas/c17.hex");
 pub(super) const C432: &str = include_str!("../iscas/c432.hex");
@@ -16,18 +16,11 @@ pub(super) const C499: &str = include_str!("../iscas/c499.hex");
 pub(super) fn matrix(text: &str, error: f64) -> Matrix {
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
     let vectors = lines.next().and_then(|line| line.strip_prefix("vectors "));
-    let tests = vectors.expect("vectors").split(' ').map(|vector| Test {
-        id: vector.into(),
-        cost: 1.0,
-    });
-    let tests: Vec<_> = tests.collect();
-    let rows: Vec<(&str, &str)> = lines
-        .map(|line| line.split_once(' ').expect("a row"))
-        .collect();
-    let states = rows.iter().map(|(faults, _)| State {
-        id: (*faults).into(),
-        probability: 1.0 / rows.len() as f64,
-    });
+    let tests = vectors.expect("vectors").split(' ');
+    let tests: Vec<_> = tests.map(|vector| test(vector, 1.0)).collect();
+    let rows = lines.map(|line| line.split_once(' ').expect("a row"));
+    let rows: Vec<(&str, &str)> = rows.collect();
+    let states = weighted(rows.iter().map(|(faults, _)| ((*faults).into(), 1.0)));
     let cell = |digits: &str, test: usize| {
         // The bit of the first vector stands first, and the digits may have bits to spare before it.
         let place = test + 4 * digits.len() - tests.len();
@@ -42,7 +35,14 @@ pub(super) fn matrix(text: &str, error: f64) -> Matrix {
         row.collect::<Vec<_>>()
     });
     let cells = cells.collect();
-    Matrix::new(states.collect(), tests, cells).expect("a valid matrix")
+    Matrix::new(states, tests, cells).expect("a valid matrix")
+}
+
+/// So many different numbers below `all`, at random.
+pub(super) fn some(count: usize, all: usize, dice: &mut Dice) -> Vec<usize> {
+    let mut left: Vec<usize> = (0..all).collect();
+    let mut any = || left.swap_remove(dice.below(left.len() as u64) as usize);
+    (0..count).map(|_| any()).collect()
 }
 
 /// Tests in all that tell equally likely states apart one by one, at least: the length of Huffman's code.
@@ -139,15 +139,11 @@ fn greedy_trees_of_a_few_states_of_c432_and_c499_are_near_the_optimum() {
         let mut dice = Dice(20);
         let mut worst = 0.0_f64;
         for turn in 0..5 {
-            let mut left: Vec<usize> = (0..whole.states().len()).collect();
-            let some = (0..20).map(|_| left.swap_remove(dice.below(left.len() as u64) as usize));
-            let some: Vec<usize> = some.collect();
-            let states = some.iter().map(|state| State {
-                id: whole.states()[*state].id.clone(),
-                probability: 1.0 / some.len() as f64,
-            });
+            let some = some(20, whole.states().len(), &mut dice);
+            let ids = some.iter().map(|state| whole.states()[*state].id.clone());
+            let states = weighted(ids.map(|id| (id, 1.0)));
             let cells = some.iter().flat_map(|state| whole.row(*state).to_vec());
-            let part = Matrix::new(states.collect(), whole.tests().to_vec(), cells.collect());
+            let part = Matrix::new(states, whole.tests().to_vec(), cells.collect());
             let part = part.expect("a valid matrix");
             let best = planned(&part, Method::Optimal);
             assert!(best.optimal, "turn {turn}");

@@ -9,7 +9,7 @@ use diagnosis::{
 };
 use protocol::Verdict;
 
-use super::iscas::{C17, C432, C499, matrix};
+use super::iscas::{C17, C432, C499, matrix, some};
 use super::matrix::{CONFIDENCE, Dice, planned, walked};
 
 /// Shares of outcomes that are wrong.
@@ -47,14 +47,6 @@ impl Band {
         let more = self.right as f64 - self.wanted;
         more.signum() * (more.abs() - 1.0).max(0.0) / self.variance.sqrt().max(1e-9)
     }
-}
-
-/// So many different numbers below `all`, at random.
-fn some(count: usize, all: usize, dice: &mut Dice) -> Vec<usize> {
-    let mut left: Vec<usize> = (0..all).collect();
-    (0..count)
-        .map(|_| left.swap_remove(dice.below(left.len() as u64) as usize))
-        .collect()
 }
 
 /// The likeliest state and its probability after tests on a system in a state.

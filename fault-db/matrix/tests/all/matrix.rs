@@ -28,24 +28,35 @@ impl Dice {
     }
 }
 
+/// States with probabilities in proportion to these weights.
+pub(super) fn weighted(weights: impl Iterator<Item = (String, f64)>) -> Vec<State> {
+    let weights: Vec<_> = weights.collect();
+    let total: f64 = weights.iter().map(|(_, weight)| weight).sum();
+    let state = |(id, weight)| State {
+        id,
+        probability: weight / total,
+    };
+    weights.into_iter().map(state).collect()
+}
+
+pub(super) fn test(id: &str, cost: f64) -> Test {
+    Test {
+        id: id.into(),
+        cost,
+    }
+}
+
+/// The probabilities of all states.
+pub(super) fn prior(matrix: &Matrix) -> Vec<f64> {
+    matrix.states().iter().map(|s| s.probability).collect()
+}
+
 /// A matrix whose cells the dice choose; `noisy_in_ten` of ten cells are neither 0 nor 1.
 fn random(dice: &mut Dice, states: usize, tests: usize, noisy_in_ten: u64) -> Matrix {
-    let weights: Vec<f64> = (0..states).map(|_| 0.02 + dice.share()).collect();
-    let total: f64 = weights.iter().sum();
-    let states: Vec<_> = weights
-        .iter()
-        .enumerate()
-        .map(|(i, weight)| State {
-            id: format!("s{i}"),
-            probability: weight / total,
-        })
-        .collect();
-    let tests: Vec<_> = (0..tests)
-        .map(|i| Test {
-            id: format!("t{i}"),
-            cost: 0.5 + 4.0 * dice.share(),
-        })
-        .collect();
+    let weights = (0..states).map(|i| (format!("s{i}"), 0.02 + dice.share()));
+    let states = weighted(weights);
+    let tests = (0..tests).map(|i| test(&format!("t{i}"), 0.5 + 4.0 * dice.share()));
+    let tests: Vec<_> = tests.collect();
     let cells = (0..states.len() * tests.len())
         .map(|_| match dice.below(10) < noisy_in_ten {
             true => 0.02 + 0.96 * dice.share(),
@@ -123,11 +134,8 @@ pub(super) fn exhaustive_noisy(matrix: &Matrix, weights: &[f64], used: &mut Vec<
     };
     let possible: Vec<usize> = (0..weights.len()).filter(|s| weights[*s] > 0.0).collect();
     for &a in &possible {
-        let class: f64 = possible
-            .iter()
-            .filter(|b| alike(a, **b))
-            .map(|b| weights[*b])
-            .sum();
+        let class = possible.iter().filter(|b| alike(a, **b));
+        let class: f64 = class.map(|b| weights[*b]).sum();
         if class >= total * (CONFIDENCE - 1e-12) {
             return 0.0;
         }
@@ -142,9 +150,8 @@ pub(super) fn exhaustive_noisy(matrix: &Matrix, weights: &[f64], used: &mut Vec<
         };
         let parts: Vec<_> = (0..outcomes).map(part).collect();
         let shannon = |p: f64| if p > 0.0 { -p * p.log2() } else { 0.0 };
-        let all = parts
-            .iter()
-            .map(|part| shannon(part.iter().sum::<f64>() / total));
+        let sums = parts.iter().map(|part| part.iter().sum::<f64>());
+        let all = sums.map(|sum| shannon(sum / total));
         let of_state = |s: usize| (0..outcomes).map(move |o| shannon(chance(matrix, s, test, o)));
         let noise = possible
             .iter()
@@ -165,8 +172,7 @@ pub(super) fn exhaustive_noisy(matrix: &Matrix, weights: &[f64], used: &mut Vec<
 
 /// Sends every state down the tree with its probability; checks the ends and gives the cost.
 pub(super) fn walked(matrix: &Matrix, tree: &Tree) -> f64 {
-    let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
-    let mut open = vec![(0, prior, Vec::new())];
+    let mut open = vec![(0, prior(matrix), Vec::new())];
     let mut cost = 0.0;
     while let Some((place, weights, way)) = open.pop() {
         let mass: f64 = weights.iter().sum();
@@ -191,10 +197,8 @@ pub(super) fn walked(matrix: &Matrix, tree: &Tree) -> f64 {
                 assert!((leaf.reached - mass).abs() < 1e-9);
                 assert!((leaf.p - named / mass).abs() < 1e-9, "{leaf:?}");
                 if matrix.is_crisp() {
-                    assert!(
-                        (named - mass).abs() < 1e-12,
-                        "every state ends where it is named"
-                    );
+                    let off = (named - mass).abs();
+                    assert!(off < 1e-12, "every state ends where it is named");
                     let rows = |s: &usize| matrix.row(*s).to_vec();
                     let first = rows(&leaf.states[0]);
                     assert!(leaf.states.iter().all(|s| rows(s) == first));
@@ -215,6 +219,28 @@ pub(super) fn near(found: f64, wanted: f64, seed: u64) {
     );
 }
 
+/// Holds the optimal tree to a search that tries everything, and each tree to the cost that it names; the cost of the
+/// greedy tree as a multiple of the optimum, unless that is 0.
+fn compared(matrix: &Matrix, seed: u64) -> Option<f64> {
+    let all: Vec<usize> = (0..matrix.states().len()).collect();
+    let wanted = match matrix.is_crisp() {
+        true => exhaustive_crisp(matrix, &all),
+        false => exhaustive_noisy(
+            matrix,
+            &prior(matrix),
+            &mut vec![false; matrix.tests().len()],
+        ),
+    };
+    let best = planned(matrix, Method::Optimal);
+    assert!(best.optimal, "seed {seed}");
+    near(best.expected_cost, wanted, seed);
+    near(walked(matrix, &best.tree), wanted, seed);
+    let greedy = planned(matrix, Method::Greedy);
+    near(walked(matrix, &greedy.tree), greedy.expected_cost, seed);
+    assert!(greedy.expected_cost >= wanted - 1e-9, "seed {seed}");
+    (wanted > 0.0).then(|| greedy.expected_cost / wanted)
+}
+
 /// Goal: the optimal tree is optimal, its printed cost is its own, and greedy stays near it.
 /// Method: 200 matrices, half of them crisp, each against a search that tries everything.
 #[test]
@@ -229,45 +255,19 @@ fn optimum_of_200_random_matrices_is_the_exhaustive_one() {
         };
         let noisy_in_ten = if crisp { 0 } else { 1 + dice.below(10) };
         let matrix = random(&mut dice, states, tests, noisy_in_ten);
-        let all: Vec<usize> = (0..states).collect();
-        let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
-        let wanted = match matrix.is_crisp() {
-            true => exhaustive_crisp(&matrix, &all),
-            false => exhaustive_noisy(&matrix, &prior, &mut vec![false; tests]),
-        };
-        let best = planned(&matrix, Method::Optimal);
-        assert!(best.optimal, "seed {seed}");
-        near(best.expected_cost, wanted, seed);
-        near(walked(&matrix, &best.tree), wanted, seed);
-        let greedy = planned(&matrix, Method::Greedy);
-        near(walked(&matrix, &greedy.tree), greedy.expected_cost, seed);
-        assert!(greedy.expected_cost >= wanted - 1e-9, "seed {seed}");
-        if wanted > 0.0 {
-            ratios.push(greedy.expected_cost / wanted);
-        }
+        ratios.extend(compared(&matrix, seed));
     }
     let worst = ratios.iter().copied().fold(0.0, f64::max);
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
-    assert!(
-        ratios.len() > 150,
-        "most matrices have something to tell apart"
-    );
+    assert!(ratios.len() > 150, "most have something to tell apart");
     assert!(worst < 1.35 && mean < 1.01, "worst {worst}, mean {mean}");
 }
 
 /// What one test tells apart is done by hand: the cheap test first would cost more in all.
 #[test]
 fn an_expensive_test_that_halves_the_states_beats_cheap_ones_that_remove_one_each() {
-    let state = |id: &str| State {
-        id: id.into(),
-        probability: 0.25,
-    };
-    let test = |id: &str, cost: f64| Test {
-        id: id.into(),
-        cost,
-    };
     let matrix = Matrix::new(
-        ["a", "b", "c", "d"].map(state).to_vec(),
+        weighted(["a", "b", "c", "d"].map(|id| (id.into(), 0.25)).into_iter()),
         vec![test("half", 1.1), test("odd", 1.0), test("a_only", 0.9)],
         [
             [1.0, 1.0, 1.0],
@@ -292,17 +292,7 @@ fn tests_of_several_outcomes_make_the_cheapest_tree() {
         let mut dice = Dice(seed);
         let noisy_in_ten = 5 * (seed % 2);
         let matrix = random_words(&mut dice, 6, 5, noisy_in_ten);
-        let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
-        let wanted = match matrix.is_crisp() {
-            true => exhaustive_crisp(&matrix, &(0..6).collect::<Vec<_>>()),
-            false => exhaustive_noisy(&matrix, &prior, &mut vec![false; 5]),
-        };
-        let best = planned(&matrix, Method::Optimal);
-        near(best.expected_cost, wanted, seed);
-        near(walked(&matrix, &best.tree), wanted, seed);
-        let greedy = planned(&matrix, Method::Greedy);
-        near(walked(&matrix, &greedy.tree), greedy.expected_cost, seed);
-        assert!(greedy.expected_cost >= wanted - 1e-9, "seed {seed}");
+        compared(&matrix, seed);
     }
 }
 
@@ -323,10 +313,8 @@ fn a_table_with_words_is_planned_and_its_outcomes_are_weighed() {
     };
     assert_eq!(given("low").expect("an outcome").probability(1), 1.0);
     let wrong = given("lo").expect_err("none").to_string();
-    assert!(
-        wrong.contains("\"lo\"; it must be one of ok, low, high"),
-        "{wrong}"
-    );
+    let words = "\"lo\"; it must be one of ok, low, high";
+    assert!(wrong.contains(words), "{wrong}");
 }
 
 #[test]
@@ -381,20 +369,8 @@ fn outcomes_leave_the_tree_that_is_left() {
 #[test]
 fn posterior_is_bayes_rule() {
     let matrix = Matrix::new(
-        vec![
-            State {
-                id: "sound".into(),
-                probability: 0.9,
-            },
-            State {
-                id: "worn".into(),
-                probability: 0.1,
-            },
-        ],
-        vec![Test {
-            id: "noise".into(),
-            cost: 1.0,
-        }],
+        weighted([("sound".into(), 0.9), ("worn".into(), 0.1)].into_iter()),
+        vec![test("noise", 1.0)],
         vec![0.05, 0.8],
     )
     .expect("a valid matrix");
@@ -410,21 +386,14 @@ fn posterior_is_bayes_rule() {
 fn a_tree_of_a_thousand_levels_is_made_and_written() {
     let count = 1_000_usize;
     // A ratio near 1 keeps the smallest probability a normal number, and each test still peels one.
-    let weights: Vec<f64> = (0..count).map(|i| 0.7_f64.powi(i as i32)).collect();
-    let total: f64 = weights.iter().sum();
-    let states = weights.iter().enumerate().map(|(i, weight)| State {
-        id: format!("s{i}"),
-        probability: weight / total,
-    });
-    let tests = (0..count).map(|i| Test {
-        id: format!("t{i}"),
-        cost: 1.0,
-    });
+    let states = (0..count).map(|i| (format!("s{i}"), 0.7_f64.powi(i as i32)));
+    let states = weighted(states);
+    let tests = (0..count).map(|i| test(&format!("t{i}"), 1.0));
     let mut cells = vec![0.0; count * count];
     for i in 0..count {
         cells[i * count + i] = 1.0;
     }
-    let matrix = Matrix::new(states.collect(), tests.collect(), cells).expect("a valid matrix");
+    let matrix = Matrix::new(states, tests.collect(), cells).expect("a valid matrix");
     let made = planned(&matrix, Method::Greedy);
     assert_eq!(made.tree.nodes.len(), 2 * count - 1);
     // 1 − 0.7 of what is left ends at each test: 1/0.3 tests in the mean.
@@ -447,11 +416,9 @@ fn a_tree_that_is_too_large_is_cut_and_says_so() {
     );
     assert!(made.warnings.iter().any(|warning| warning.contains("cut")));
     assert!((walked(&matrix, &made.tree) - made.expected_cost).abs() < 1e-9);
-    let written: serde_json::Value = serde_json::from_str(
-        &made
-            .to_json(&matrix, &Posterior::prior(&matrix))
-            .expect("JSON"),
-    )
-    .expect("JSON");
+    let written = made
+        .to_json(&matrix, &Posterior::prior(&matrix))
+        .expect("JSON");
+    let written: serde_json::Value = serde_json::from_str(&written).expect("JSON");
     assert_eq!(written["cut_probability"].as_f64(), Some(cut));
 }

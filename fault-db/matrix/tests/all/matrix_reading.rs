@@ -69,33 +69,29 @@ fn wrong_probabilities_are_named() {
 fn wrong_costs_are_named() {
     for cost in ["-1", "0", "-0.0"] {
         let tests = format!(r#"[{{"id":"t","cost":{cost}}}]"#);
-        refused(
-            &file(STATES, &tests, OUTCOMES),
-            &["test \"t\"", "cost", "above 0"],
-        );
+        let text = file(STATES, &tests, OUTCOMES);
+        refused(&text, &["test \"t\"", "cost", "above 0"]);
     }
-    refused(
-        &file(STATES, r#"[{"id":"t"}]"#, OUTCOMES),
-        &["missing field `cost`", "line 1"],
-    );
+    let text = file(STATES, r#"[{"id":"t"}]"#, OUTCOMES);
+    refused(&text, &["missing field `cost`", "line 1"]);
 }
 
 #[test]
 fn wrong_names_and_cells_are_named() {
-    let twice = r#"[{"id":"a","p":0.5},{"id":"a","p":0.5}]"#;
-    refused(
-        &file(twice, TESTS, OUTCOMES),
-        &["state \"a\" is there twice"],
+    let twice = file(
+        r#"[{"id":"a","p":0.5},{"id":"a","p":0.5}]"#,
+        TESTS,
+        OUTCOMES,
     );
-    let twice = r#"[{"id":"t","cost":1},{"id":"t","cost":2}]"#;
-    refused(
-        &file(STATES, twice, OUTCOMES),
-        &["test \"t\" is there twice"],
+    refused(&twice, &["state \"a\" is there twice"]);
+    let twice = file(
+        STATES,
+        r#"[{"id":"t","cost":1},{"id":"t","cost":2}]"#,
+        OUTCOMES,
     );
-    refused(
-        &file(STATES, r#"[{"id":"","cost":1}]"#, "{}"),
-        &["empty id"],
-    );
+    refused(&twice, &["test \"t\" is there twice"]);
+    let nameless = file(STATES, r#"[{"id":"","cost":1}]"#, "{}");
+    refused(&nameless, &["empty id"]);
     let read = |outcomes: &str, words: &[&str]| refused(&file(STATES, TESTS, outcomes), words);
     read(r#"{"u":{"a":1}}"#, &["test \"u\""]);
     read(r#"{"t":{"c":1}}"#, &["test \"t\"", "state \"c\""]);
@@ -152,11 +148,8 @@ fn outcomes_that_no_state_explains_are_refused() {
     for word in ["contradict", "once \"t\" fails", "\"u\" passes"] {
         assert!(error.contains(word), "{error}");
     }
-    assert!(
-        given(r#"{"t":1,"t":0}"#)
-            .expect_err("twice")
-            .contains("two outcomes")
-    );
+    let twice = given(r#"{"t":1,"t":0}"#).expect_err("twice");
+    assert!(twice.contains("two outcomes"));
     assert!(given(r#"{"v":1}"#).expect_err("unknown").contains("\"v\""));
     assert_eq!(given(r#"{"t":1,"u":1}"#).expect("fits").probability(0), 1.0);
 }

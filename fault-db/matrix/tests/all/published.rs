@@ -6,22 +6,15 @@
 //! examples are written from memory, no result is quoted, and each expected value follows from the definition by
 //! trying everything.
 
-use ::matrix::{Matrix, Method, Outcome, Posterior, State, Test};
+use ::matrix::{Matrix, Method, Outcome, Posterior};
 
-use super::matrix::{exhaustive_crisp, exhaustive_noisy, near, planned};
+use super::matrix::{exhaustive_crisp, exhaustive_noisy, near, planned, prior, test, weighted};
 
 /// Probability that a component has failed, before anything is measured.
 const FAILED: f64 = 0.01;
 
-fn test(id: &str) -> Test {
-    Test {
-        id: id.into(),
-        cost: 1.0,
-    }
-}
-
 /// Probability that just the components of a set, as bits, have failed.
-fn prior(set: u32, components: u32) -> f64 {
+fn of_failed(set: u32, components: u32) -> f64 {
     let failed = set.count_ones();
     FAILED.powi(failed as i32) * (1.0 - FAILED).powi((components - failed) as i32)
 }
@@ -49,11 +42,8 @@ fn polybox() -> Vec<(u32, Vec<[i32; 3]>)> {
 #[test]
 fn the_polybox_has_four_least_sets_of_failed_parts() {
     let sets: Vec<u32> = polybox().into_iter().map(|(failed, _)| failed).collect();
-    let least = |set: &&u32| {
-        !sets
-            .iter()
-            .any(|other| other != *set && other & **set == *other)
-    };
+    let holds = |set: u32, other: u32| other != set && other & set == other;
+    let least = |set: &&u32| !sets.iter().any(|other| holds(**set, *other));
     let least: Vec<u32> = sets.iter().filter(least).copied().collect();
     let (m1, m2, m3, a1, a2) = (1, 2, 4, 8, 16);
     assert_eq!(least, [m1, m2 | m3, a1, m2 | a2]);
@@ -63,13 +53,12 @@ fn the_polybox_has_four_least_sets_of_failed_parts() {
 #[test]
 fn the_polybox_is_measured_at_x_first() {
     let candidates = polybox();
-    let weights: Vec<f64> = candidates.iter().map(|(set, _)| prior(*set, 5)).collect();
-    let total: f64 = weights.iter().sum();
-    let states = candidates.iter().zip(&weights);
-    let states = states.map(|((set, _), weight)| State {
-        id: format!("{set:05b}"),
-        probability: weight / total,
-    });
+    let weights: Vec<f64> = candidates
+        .iter()
+        .map(|(set, _)| of_failed(*set, 5))
+        .collect();
+    let names = candidates.iter().map(|(set, _)| format!("{set:05b}"));
+    let states = weighted(names.zip(weights.iter().copied()));
     // A test fails where the value is not 6; each value that agrees is as likely as any other.
     let cell = |values: &[[i32; 3]], place: usize| {
         let wrong = values.iter().filter(|value| value[place] != 6).count();
@@ -78,11 +67,10 @@ fn the_polybox_is_measured_at_x_first() {
     let cells = candidates
         .iter()
         .flat_map(|(_, values)| [0, 1, 2].map(|place| cell(values, place)));
-    let tests = ["x", "y", "z"].map(test).to_vec();
-    let matrix = Matrix::new(states.collect(), tests, cells.collect()).expect("a valid matrix");
+    let tests = ["x", "y", "z"].map(|id| test(id, 1.0)).to_vec();
+    let matrix = Matrix::new(states, tests, cells.collect()).expect("a valid matrix");
 
-    let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
-    let wanted = exhaustive_noisy(&matrix, &prior, &mut vec![false; 3]);
+    let wanted = exhaustive_noisy(&matrix, &prior(&matrix), &mut vec![false; 3]);
     for method in [Method::Optimal, Method::Greedy] {
         let made = planned(&matrix, method);
         assert_eq!(made.tree.first_test(), Some(0), "{method:?}");
@@ -93,10 +81,8 @@ fn the_polybox_is_measured_at_x_first() {
         let mut left = Vec::new();
         for ((set, values), weight) in candidates.iter().zip(&weights) {
             let so = values.iter().filter(|value| (value[0] != 6) == wrong);
-            left.push((
-                set & part != 0,
-                weight * so.count() as f64 / values.len() as f64,
-            ));
+            let share = so.count() as f64 / values.len() as f64;
+            left.push((set & part != 0, weight * share));
         }
         let all: f64 = left.iter().map(|(_, weight)| weight).sum();
         let with_part = left.iter().filter(|(has, _)| *has);
@@ -126,17 +112,12 @@ fn a_row_of_four_inverters_is_halved_twice() {
         };
         cells.extend([0, 1, 2].map(share));
         let explains = seen.len() as f64 / f64::from(1 << failed.count_ones());
-        states.push((format!("{failed:04b}"), prior(failed, 4) * explains));
+        states.push((format!("{failed:04b}"), of_failed(failed, 4) * explains));
     }
-    let total: f64 = states.iter().map(|(_, weight)| weight).sum();
-    let states = states.into_iter().map(|(id, weight)| State {
-        id,
-        probability: weight / total,
-    });
-    let tests = ["b", "c", "d"].map(test).to_vec();
-    let matrix = Matrix::new(states.collect(), tests, cells).expect("a valid matrix");
-    let prior: Vec<f64> = matrix.states().iter().map(|s| s.probability).collect();
-    let wanted = exhaustive_noisy(&matrix, &prior, &mut vec![false; 3]);
+    let tests = ["b", "c", "d"].map(|id| test(id, 1.0)).to_vec();
+    let states = weighted(states.into_iter());
+    let matrix = Matrix::new(states, tests, cells).expect("a valid matrix");
+    let wanted = exhaustive_noisy(&matrix, &prior(&matrix), &mut vec![false; 3]);
     assert!((wanted - 2.0).abs() < 0.02, "{wanted}");
     for method in [Method::Optimal, Method::Greedy] {
         let made = planned(&matrix, method);
@@ -156,13 +137,11 @@ fn the_matrix_of_five_faults_is_solved_as_by_trying_everything() {
         (0.05, [1.0, 1.0, 0.0, 0.0, 0.0]),
         (0.12, [1.0, 1.0, 1.0, 1.0, 0.0]),
     ];
-    let states = rows.iter().enumerate().map(|(i, (probability, _))| State {
-        id: format!("s{i}"),
-        probability: *probability,
-    });
-    let tests = (1..=5).map(|i| test(&format!("t{i}")));
+    let states = rows.iter().enumerate();
+    let states = weighted(states.map(|(i, (probability, _))| (format!("s{i}"), *probability)));
+    let tests = (1..=5).map(|i| test(&format!("t{i}"), 1.0));
     let cells = rows.iter().flat_map(|(_, cells)| *cells);
-    let matrix = Matrix::new(states.collect(), tests.collect(), cells.collect());
+    let matrix = Matrix::new(states, tests.collect(), cells.collect());
     let matrix = matrix.expect("a valid matrix");
     let wanted = exhaustive_crisp(&matrix, &[0, 1, 2, 3, 4, 5]);
     // As the search that tries everything has it.

@@ -81,22 +81,13 @@ impl Store {
     /// A chain was rewritten, or is not what was seen of it.
     fn copy_of(&self, other: &Store) -> Result<Option<CopyOf>, StoreError> {
         const DOING: &str = "comparing seals";
-        let look = || {
-            let own = own_file_id(&other.backend)?;
-            Ok((own, compare_all_chains(&other.backend, &self.backend)?))
-        };
-        let (own, chains) = look().map_err(|error: SqlError| other.failed(DOING, error))?;
-        let known = || {
-            Ok((
-                own_file_id(&self.backend)?,
-                known_heads::seen_by(&self.backend)?,
-            ))
-        };
-        let (ours, known) = known().map_err(|error: SqlError| self.failed(DOING, error))?;
+        let own = other.ask(DOING, own_file_id)?;
+        let chains = other.ask(DOING, |theirs| compare_all_chains(theirs, &self.backend))?;
+        let ours = self.ask(DOING, own_file_id)?;
+        let known = self.ask(DOING, known_heads::seen_by)?;
         // An older copy of this file may come back; that of another file was put back.
         let whole = own.filter(|own| Some(*own) != ours);
-        let broken = known_heads::broken(&other.backend, &known, whole);
-        let broken = broken.map_err(|error| other.failed(DOING, error))?;
+        let broken = other.ask(DOING, |theirs| known_heads::broken(theirs, &known, whole))?;
         if let Some((_, what)) = broken.into_iter().next() {
             return Err(StoreError::Altered {
                 path: other.path().to_path_buf(),

@@ -20,7 +20,7 @@ use crate::history::event_graph::{fault_of, settle};
 use crate::history::recurrence::HighWaterMark;
 use crate::id::Id;
 use crate::seal::{BY_IMPORT, known_heads};
-use trust::{is_same, is_unwritten_remainder, seal_mismatch};
+use trust::{Entry, is_same, is_unwritten_remainder, runs_of_nothing, seal_mismatch};
 
 /// The result of a merge.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -68,7 +68,7 @@ pub struct CopyOf {
 struct Merge<'a> {
     theirs: &'a Backend,
     ours: &'a Backend,
-    /// `ours` again, as a connection.
+    /// The SQLite connection of `ours`.
     conn: &'a Connection,
     applier: FileApplier<'a>,
     counts: MergeCounts,
@@ -76,19 +76,12 @@ struct Merge<'a> {
     of_nothing: BTreeSet<i64>,
     /// Runs of theirs that are refused, with all that belongs to them.
     refused_runs: BTreeSet<i64>,
-    /// State here of the other file's faults.
+    /// What became here of each fault of the other file.
     faults_here: BTreeMap<i64, LocalFault>,
     /// Ids of their runs, events and notes that are left out.
     left_out: BTreeSet<Vec<u8>>,
     /// Runs that are finished here and differ there.
     different_runs: BTreeSet<Id>,
-}
-
-/// A run, event, note or trace of theirs, and the row number of its unit, fault or run.
-struct Entry {
-    seq: i64,
-    parent: i64,
-    id: Vec<u8>,
 }
 
 impl<'a> Merge<'a> {
@@ -109,7 +102,7 @@ impl<'a> Merge<'a> {
 
     fn all(mut self, copy: Option<CopyOf>) -> SqlResult<MergeCounts> {
         let mark = HighWaterMark::of(self.ours)?;
-        self.find_orphans()?;
+        self.of_nothing = runs_of_nothing(self.theirs, &mut self.counts.refused)?;
         self.each(TableId::Run, "unit", Self::run)?;
         self.aliases()?;
         self.each(TableId::Event, "fault", Self::event)?;

@@ -4,13 +4,13 @@
 use rusqlite::params_from_iter;
 
 use super::Merge;
-use crate::backend::{Backend, SqlError, SqlResult, values};
+use crate::backend::{SqlError, SqlResult, values};
 use crate::exchange::rows::Rows;
 use crate::exchange::tables::TableId;
 use crate::exchange::to_file::LastEntries;
 use crate::id::Id;
 use crate::seal::chained;
-use crate::seal::events_and_notes::{event_digest, note_digest};
+use crate::seal::covered::Covered;
 
 /// The last entry read of the other file's chains.
 struct Last {
@@ -84,20 +84,22 @@ impl Merge<'_> {
 
     /// Whether an entry covers something else than what was stored here before the merge.
     fn is_different(&self, what: &str, id: Id, payload: &str, digest: &[u8]) -> SqlResult<bool> {
-        type DigestOf = fn(&Backend, i64, &str) -> SqlResult<[u8; 32]>;
         let LastEntries { event, note } = self.applier.before;
-        let (table, last, digest_of): (_, _, DigestOf) = match what {
-            "run" => return Ok(self.different_runs.contains(&id)),
-            "event" => ("fault_event", event, event_digest),
-            "note" => ("run_note", note, note_digest),
-            _ => return Ok(false),
+        let (kind, last) = match Covered::of(what) {
+            Some(Covered::Run) => return Ok(self.different_runs.contains(&id)),
+            Some(kind @ Covered::Event) => (kind, event),
+            Some(kind @ Covered::Note) => (kind, note),
+            None => return Ok(false),
         };
-        let known = format!("SELECT seq FROM {table} WHERE id = ?1 AND seq <= ?2");
+        let known = format!(
+            "SELECT seq FROM {} WHERE id = ?1 AND seq <= ?2",
+            kind.table()
+        );
         let known = self
             .ours
             .first(&known, &values![id, last], |row| row.get(0))?;
         Ok(match known {
-            Some(ours) => digest_of(self.ours, ours, payload)? != digest,
+            Some(ours) => kind.digest(self.ours, ours, payload)? != digest,
             None => false,
         })
     }

@@ -1,47 +1,55 @@
 //! Acceptance of runs from a file to be merged: a run must match its seals, refer to existing rows, and equal the
 //! run here.
 
-use super::{Entry, Merge};
+use std::collections::BTreeSet;
+
 use crate::backend::{Backend, SqlError, SqlResult, values};
+use crate::exchange::domain::Refusals;
 use crate::exchange::tables::{TABLES, TableId};
 use crate::id::Id;
-use crate::seal::events_and_notes::{EventPayload, event_digest, is_of_its_fault, note_digest};
+use crate::seal::covered::Covered;
 use crate::seal::run::{self, RunPayload};
 use crate::seal::{hex, trace};
 
-impl Merge<'_> {
-    /// Names rows whose parent does not exist, and marks the runs that they are part of.
-    pub(super) fn find_orphans(&mut self) -> SqlResult<()> {
-        for table in TABLES.iter().filter(|table| table.is_inserted) {
-            for column in table.columns {
-                let Some((parent, _)) = column.kind.parent() else {
-                    continue;
-                };
-                let (table, column) = (table.name, column.name);
-                let sql = format!(
-                    "SELECT count(*) FROM {table} WHERE {column} NOT IN (SELECT seq FROM {parent})"
-                );
-                let count = self.theirs.first(&sql, &[], |row| row.get::<i64>(0))?;
-                let count = count.unwrap_or(0);
-                if count > 0 {
-                    let what = format!("{count} rows of {}", table.replace('_', " "));
-                    let reason =
-                        format!("the {} they are of is not there", parent.replace('_', " "));
-                    self.counts.refused.add(what, reason);
-                }
+/// A run, event, note or trace of theirs, and the row number of its unit, fault or run.
+pub(super) struct Entry {
+    pub seq: i64,
+    pub parent: i64,
+    pub id: Vec<u8>,
+}
+
+/// Refuses rows of a file whose parent does not exist; the runs that such rows are part of, by their row numbers.
+pub(super) fn runs_of_nothing(
+    theirs: &Backend,
+    refused: &mut Refusals,
+) -> SqlResult<BTreeSet<i64>> {
+    for table in TABLES.iter().filter(|table| table.is_inserted) {
+        for column in table.columns {
+            let Some((parent, _)) = column.kind.parent() else {
+                continue;
+            };
+            let (table, column) = (table.name, column.name);
+            let sql = format!(
+                "SELECT count(*) FROM {table} WHERE {column} NOT IN (SELECT seq FROM {parent})"
+            );
+            let count = theirs.first(&sql, &[], |row| row.get::<i64>(0))?;
+            let count = count.unwrap_or(0);
+            if count > 0 {
+                let what = format!("{count} rows of {}", table.replace('_', " "));
+                let reason = format!("the {} they are of is not there", parent.replace('_', " "));
+                refused.add(what, reason);
             }
         }
-        // A sealed run is refused as a whole.
-        let of_nothing = self.theirs.select(
-            "SELECT DISTINCT run FROM measurement m WHERE NOT EXISTS
-                (SELECT 1 FROM step s WHERE s.run = m.run AND s.step_index = m.step_index)
-             UNION SELECT run FROM fault_occurrence WHERE fault NOT IN (SELECT seq FROM fault)",
-            &[],
-            |row| row.get::<i64>(0),
-        )?;
-        self.of_nothing.extend(of_nothing);
-        Ok(())
     }
+    // A sealed run is refused as a whole.
+    let runs = theirs.select(
+        "SELECT DISTINCT run FROM measurement m WHERE NOT EXISTS
+            (SELECT 1 FROM step s WHERE s.run = m.run AND s.step_index = m.step_index)
+         UNION SELECT run FROM fault_occurrence WHERE fault NOT IN (SELECT seq FROM fault)",
+        &[],
+        |row| row.get::<i64>(0),
+    )?;
+    Ok(runs.into_iter().collect())
 }
 
 /// Whether a run is only the remainder that a busy file could not take: ended without a seal, and not passed.
@@ -58,7 +66,7 @@ pub(super) fn seal_mismatch(theirs: &Backend, run: &Entry) -> SqlResult<Option<S
         (false, true) => return Ok(None),
         (false, false) => "it has a seal and no verdict: the verdict was taken away",
         (true, true) => "it has a verdict and no seal: the seal was taken away",
-        (true, false) => return Ok(changed(fits_all(theirs, run.seq, &sealed)?)),
+        (true, false) => return Ok(changed(fits_all(theirs, Covered::Run, run.seq, &sealed)?)),
     };
     Ok(Some(reason.to_owned()))
 }
@@ -75,24 +83,14 @@ fn changed(fits: bool) -> Option<String> {
 /// Why an event, note or trace of theirs, or the recordings of a run, which come together, are not taken, if
 /// they do not fit a seal there.
 pub(super) fn mismatch(theirs: &Backend, of: TableId, entry: &Entry) -> SqlResult<Option<String>> {
-    let (seq, mut fits) = (entry.seq, true);
-    match of {
-        TableId::Event => {
-            for Seal { payload, digest } in seals(theirs, "event", &entry.id)? {
-                let said = EventPayload::of(&payload);
-                fits &= event_digest(theirs, seq, &payload)? == digest[..]
-                    && is_of_its_fault(theirs, seq, said.as_ref())?;
-            }
-        }
-        TableId::Note => {
-            for Seal { payload, digest } in seals(theirs, "note", &entry.id)? {
-                fits &= note_digest(theirs, seq, &payload)? == digest[..];
-            }
-        }
-        TableId::Trace => fits = trace_fits(theirs, entry)?,
+    let kind = match of {
+        TableId::Event => Covered::Event,
+        TableId::Note => Covered::Note,
+        TableId::Trace => return Ok(changed(trace_fits(theirs, entry)?)),
         _ => return recordings_mismatch(theirs, entry),
-    }
-    Ok(changed(fits))
+    };
+    let sealed = seals(theirs, kind.word(), &entry.id)?;
+    Ok(changed(fits_all(theirs, kind, entry.seq, &sealed)?))
 }
 
 /// Whether a trace has the digest that the seals of its run list.
@@ -159,9 +157,9 @@ fn seals(backend: &Backend, what: &str, id: &[u8]) -> SqlResult<Vec<Seal>> {
     })
 }
 
-fn fits_all(backend: &Backend, run: i64, seals: &[Seal]) -> SqlResult<bool> {
-    for seal in seals {
-        if run::digest(backend, run, &seal.payload)? != seal.digest[..] {
+fn fits_all(backend: &Backend, kind: Covered, row: i64, seals: &[Seal]) -> SqlResult<bool> {
+    for Seal { payload, digest } in seals {
+        if !kind.fits(backend, row, payload, digest)? {
             return Ok(false);
         }
     }
@@ -178,7 +176,7 @@ pub(super) fn is_same(ours: &Backend, here: i64, theirs: &Backend, run: &Entry) 
     // Entries of an imported log may stand under different runs here and there; each side is held to its seal.
     let of_log = |seal: &Seal| seal.payload.contains("\"entries\"");
     if sealed.iter().any(of_log) {
-        if !fits_all(theirs, run.seq, &sealed)? {
+        if !fits_all(theirs, Covered::Run, run.seq, &sealed)? {
             return Ok(false);
         }
     } else {
@@ -192,5 +190,5 @@ pub(super) fn is_same(ours: &Backend, here: i64, theirs: &Backend, run: &Entry) 
     // A row changed by hand still has its old seal; a row sealed again by hand has another digest.
     let known = seals(ours, "run", &run.id)?;
     sealed.retain(|seal| !known.contains(seal));
-    fits_all(ours, here, &sealed)
+    fits_all(ours, Covered::Run, here, &sealed)
 }

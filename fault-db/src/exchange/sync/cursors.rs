@@ -4,11 +4,11 @@
 //! changes nothing where they are known.
 
 use super::outcome::SyncOptions;
-use crate::backend::{Backend, SqlResult, values};
+use crate::backend::{Backend, SqlResult, from_row, values};
 use crate::id::Id;
 
 /// Positions in a file's outbox, and in a server's events.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Cursors {
     pub sent: i64,
     pub sent_traces: i64,
@@ -38,9 +38,12 @@ pub(super) fn register_laptop(
     let found = backend.first(
         "SELECT number, through, traces_through, told FROM meet_laptop(?1, ?2, ?3)",
         &values![file_id, options.laptop, clock_offset_us],
-        |row| Ok((row.get(0)?, cursors(row.get(1)?, row.get(2)?, row.get(3)?))),
+        |row| {
+            let cursors = from_row!(row => Cursors: _, sent, sent_traces, received);
+            Ok((row.get(0)?, cursors))
+        },
     )?;
-    let (seq, cursors) = found.unwrap_or((0, cursors(0, 0, 0)));
+    let (seq, cursors) = found.unwrap_or_default();
     Ok(FileRecord {
         seq,
         cursors,
@@ -53,9 +56,9 @@ pub(super) fn load(file: &Backend, server_id: Id) -> SqlResult<Cursors> {
     let found = file.first(
         "SELECT sent, sent_traces, received FROM sync_server WHERE id = ?1",
         &values![server_id],
-        |row| Ok(cursors(row.get(0)?, row.get(1)?, row.get(2)?)),
+        |row| Ok(from_row!(row => Cursors: sent, sent_traces, received)),
     )?;
-    Ok(found.unwrap_or(cursors(0, 0, 0)))
+    Ok(found.unwrap_or_default())
 }
 
 /// Whether the file has ever been synced with any server.
@@ -110,18 +113,10 @@ impl Cursors {
 
     /// Cursors of what both sides have stored.
     pub fn minimum(self, other: Self) -> Self {
-        cursors(
-            self.sent.min(other.sent),
-            self.sent_traces.min(other.sent_traces),
-            self.received.min(other.received),
-        )
-    }
-}
-
-fn cursors(sent: i64, sent_traces: i64, received: i64) -> Cursors {
-    Cursors {
-        sent,
-        sent_traces,
-        received,
+        Self {
+            sent: self.sent.min(other.sent),
+            sent_traces: self.sent_traces.min(other.sent_traces),
+            received: self.received.min(other.received),
+        }
     }
 }

@@ -14,7 +14,7 @@ mod outcome;
 mod receive;
 mod seal_chains;
 
-use crate::backend::{Backend, Server, SqlError, SqlResult, values};
+use crate::backend::{Backend, Server, SqlError, values};
 use crate::error::StoreError;
 use crate::exchange::tables::TableId;
 use crate::exchange::to_server::ServerApplier;
@@ -46,15 +46,14 @@ impl Store {
         const DOING: &str = "beginning a sync";
         let mut file_id = self.file_id()?;
         let wire = server.server()?;
-        let id = server_id(&server.backend).map_err(|error| server.failed(DOING, error))?;
+        let id = server.ask(DOING, server_id)?;
         let id = id.ok_or_else(|| StoreError::ServerForeign(server.path().to_path_buf()))?;
-        let known = self.change(DOING, |file| {
-            let prepare = || {
+        let known = self.change(DOING, |_| {
+            self.ask(DOING, |file| {
                 outbox::enqueue_interrupted_runs(self)?;
                 outbox::enqueue_rows_before_outbox(file)?;
                 cursors::load(file, id)
-            };
-            prepare().map_err(|error| self.failed(DOING, error))
+            })
         })?;
         if options.as_copy {
             let (minted, at_us) = (self.mint()?, (options.now_us)());
@@ -69,9 +68,10 @@ impl Store {
         if let Some(stands) = &chains.refused {
             return Err(chain_error(self.path(), stands));
         }
-        let laptop = server.change(DOING, |backend| {
-            let met = cursors::register_laptop(backend, file_id, options);
-            met.map_err(|error| server.failed(DOING, error))
+        let laptop = server.change(DOING, |_| {
+            server.ask(DOING, |server| {
+                cursors::register_laptop(server, file_id, options)
+            })
         })?;
         let mut sync = Sync {
             file: self,
@@ -141,11 +141,11 @@ impl Sync<'_> {
             // Read first: an entry recorded from now on may be a trace whose run was not sent.
             let reach = match until {
                 Some(reach) => reach,
-                None => self.of_file(SENDING, batch::last)?,
+                None => self.file.ask(SENDING, batch::last)?,
             };
             let after = *self.cursors.of(traces);
             let entries = |file: &Backend| batch::entries(file, traces, after, reach);
-            let entries = self.of_file(SENDING, entries)?;
+            let entries = self.file.ask(SENDING, entries)?;
             if entries.is_empty() || self.outcome.stopped {
                 return Ok(reach);
             }
@@ -200,8 +200,8 @@ impl Sync<'_> {
     }
 
     fn receive(&mut self, options: &mut SyncOptions<'_>) -> Result<(), StoreError> {
-        let until = self.of_server(RECEIVING, receive::last)?;
-        let new = self.of_server(RECEIVING, |backend| {
+        let until = self.server.ask(RECEIVING, receive::last)?;
+        let new = self.server.ask(RECEIVING, |backend| {
             receive::fresh(backend, self.laptop.seq)
         })?;
         let scope = receive::PullScope {
@@ -227,26 +227,27 @@ impl Sync<'_> {
         }
         self.cursors.received = until;
         self.server.change(RECEIVING, |_| {
-            receive::acknowledge(self.wire, self.laptop.seq, &new, until)
-                .map_err(|error| self.server.failed(RECEIVING, error))
+            self.server.ask(RECEIVING, |_| {
+                receive::acknowledge(self.wire, self.laptop.seq, &new, until)
+            })
         })?;
         self.save(options)
     }
 
     /// Receives where the chains of all laptops end. A chain there that is not what this file has seen of it is named.
     fn receive_heads(&mut self, now_us: i64) -> Result<(), StoreError> {
-        let known = self.of_file(RECEIVING, known_heads::of_file)?;
+        let known = self.file.ask(RECEIVING, known_heads::of_file)?;
         let broken = |server: &Backend| known_heads::broken(server, &known, None);
-        for (id, _) in self.of_server(RECEIVING, broken)? {
+        for (id, _) in self.server.ask(RECEIVING, broken)? {
             let (what, id) = ("chain", id);
             self.outcome.different.push(Difference { what, id });
         }
         let heads = |server: &Backend| known_heads::of_server(server, now_us);
-        let heads = self.of_server(RECEIVING, heads)?;
-        self.file.change(RECEIVING, |file| {
-            let keep = |head| known_heads::keep(file, head);
-            let kept: SqlResult<()> = heads.iter().try_for_each(keep);
-            kept.map_err(|error| self.file.failed(RECEIVING, error))
+        let heads = self.server.ask(RECEIVING, heads)?;
+        self.file.change(RECEIVING, |_| {
+            self.file.ask(RECEIVING, |file| {
+                (heads.iter()).try_for_each(|head| known_heads::keep(file, head))
+            })
         })
     }
 
@@ -259,8 +260,9 @@ impl Sync<'_> {
     ) -> Result<u64, StoreError> {
         let mut after = Some(after);
         while let Some(from) = after {
-            let batch =
-                self.of_server(RECEIVING, |backend| receive::events(backend, scope, from))?;
+            let batch = self
+                .server
+                .ask(RECEIVING, |backend| receive::events(backend, scope, from))?;
             after = batch.next;
             self.outcome.refused.extend(batch.refused);
             let events = batch.set.rows(TableId::Event).count();
@@ -268,8 +270,8 @@ impl Sync<'_> {
                 continue;
             }
             let added = self.file.write(RECEIVING, |conn| {
-                receive::add(&self.file.backend, conn, &batch.set)
-                    .map_err(|error| self.file.failed(RECEIVING, error))
+                self.file
+                    .ask(RECEIVING, |file| receive::add(file, conn, &batch.set))
             })?;
             self.outcome.add(added);
             done += events as u64;
@@ -288,9 +290,10 @@ impl Sync<'_> {
         const DOING: &str = "remembering a sync";
         let address = self.server.path().to_string_lossy().into_owned();
         let now_us = (options.now_us)();
-        self.file.change(DOING, |file| {
-            cursors::save(file, self.id, &address, self.cursors, now_us)
-                .map_err(|error| self.file.failed(DOING, error))
+        self.file.change(DOING, |_| {
+            self.file.ask(DOING, |file| {
+                cursors::save(file, self.id, &address, self.cursors, now_us)
+            })
         })
     }
 
@@ -302,26 +305,10 @@ impl Sync<'_> {
     fn entries_waiting(&self, traces: bool) -> Result<u64, StoreError> {
         let sql = "SELECT count(*) FROM outbox WHERE seq > ?1 AND (what = 'trace') = ?2";
         let after = *{ self.cursors }.of(traces);
-        let found = self.of_file("counting what waits", |file| {
+        let found = self.file.ask("counting what waits", |file| {
             file.first(sql, &values![after, traces], |row| row.get(0))
         })?;
         Ok(found.unwrap_or_default())
-    }
-
-    fn of_file<T>(
-        &self,
-        doing: &'static str,
-        ask: impl FnOnce(&Backend) -> SqlResult<T>,
-    ) -> Result<T, StoreError> {
-        ask(&self.file.backend).map_err(|error| self.file.failed(doing, error))
-    }
-
-    fn of_server<T>(
-        &self,
-        doing: &'static str,
-        ask: impl FnOnce(&Backend) -> SqlResult<T>,
-    ) -> Result<T, StoreError> {
-        ask(&self.server.backend).map_err(|error| self.server.failed(doing, error))
     }
 }
 

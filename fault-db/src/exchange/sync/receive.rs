@@ -3,7 +3,7 @@
 use rusqlite::Connection;
 
 use super::outcome::SyncOutcome;
-use crate::backend::{Backend, Server, SqlError, SqlResult, values};
+use crate::backend::{Backend, Server, SqlError, SqlResult, from_row, values};
 use crate::exchange::change_set::{ChangeSet, MOST_ENTRIES};
 use crate::exchange::columns::Kind;
 use crate::exchange::domain::Refusals;
@@ -127,10 +127,7 @@ pub(super) fn fresh(backend: &Backend, laptop: i64) -> SqlResult<Vec<NewFault>> 
     let fresh =
         "SELECT fault, fresh FROM laptop_fault WHERE laptop = ?1 AND fresh > 0 ORDER BY fault";
     backend.select(fresh, &values![laptop], |row| {
-        Ok(NewFault {
-            fault: row.get(0)?,
-            times: row.get(1)?,
-        })
+        Ok(from_row!(row => NewFault: fault, times))
     })
 }
 

@@ -33,7 +33,7 @@ impl Identity {
         system::identity(&std::fs::metadata(path).ok()?)
     }
 
-    /// Whether it is the same file, by whichever name.
+    /// Whether both are the same file, even under different names.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         (self.device, self.number) == (other.device, other.number)
     }

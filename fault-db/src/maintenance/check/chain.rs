@@ -7,35 +7,30 @@ use super::signatures::{KeyUse, KeyUses};
 use super::{Damage, Findings, Remarks};
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
-use crate::seal::events_and_notes::{EventPayload, event_digest, is_of_its_fault, note_digest};
+use crate::seal::covered::Covered;
+use crate::seal::events_and_notes::EventPayload;
+use crate::seal::run::RunPayload;
 use crate::seal::{
-    BEGUN, PRUNED, PrunedPayload, RECOUNTED, RecountedPayload, hex, known_heads, own_file_id, run,
-    statement_digest, trace,
+    BEGUN, PRUNED, PrunedPayload, RECOUNTED, RecountedPayload, known_heads, own_file_id, samples,
+    statement_digest,
 };
 use crate::signature::{SIGNATURE, read_signature};
 
 /// Data collected while the chains are read.
 #[derive(Default)]
-pub(super) struct ChainSummary {
+struct ChainSummary {
     /// Seals of runs.
     runs: u32,
     /// Runs, events and notes sealed as found, since they came without a seal.
     found: u32,
     /// Traces and recordings named in a run's seal that do not exist, and whether another file made the seal.
     missing: BTreeMap<(Id, Option<i64>), bool>,
-    /// Traces and recordings deleted by a prune, with their digests.
-    pruned: BTreeSet<(Id, Option<i64>, String)>,
+    /// Traces and recordings deleted by a prune.
+    pruned: BTreeSet<(Id, Option<i64>)>,
     /// Whether the file's own chain has its first entry.
     is_begun: bool,
     /// Keys that signed entries.
     keys: KeyUses,
-}
-
-impl ChainSummary {
-    /// Traces and recordings that a seal names and that are not there.
-    pub fn missing(&self) -> impl Iterator<Item = (Id, Option<i64>)> {
-        self.missing.keys().copied()
-    }
 }
 
 /// Checks all chains; the number of runs checked, and who signed.
@@ -66,9 +61,8 @@ pub(super) fn check(
         }
     }
     if let Backend::File(_) = backend {
-        let told: BTreeSet<_> = summary.pruned.iter().map(|(id, n, _)| (*id, *n)).collect();
         for (missing, came) in &summary.missing {
-            if told.contains(missing) {
+            if summary.pruned.contains(missing) {
                 continue;
             }
             let samples = (*missing).into();
@@ -106,129 +100,71 @@ fn check_entry(
     if matches!(&seal.what[..], "run" | "note") {
         remarks.extend(clock_error(backend, seal.origin, seal.ordinal)?);
     }
-    match (&seal.what[..], seal.row) {
-        (what @ ("run" | "event" | "note"), None) => {
-            found.add(Damage::Unsealed(seal.place(), what.to_owned()));
-        }
-        ("run", Some(run)) => {
-            summary.runs += 1;
-            if run::digest(backend, run, &seal.payload)? != seal.digest[..] {
-                found.add(Damage::Changed("run", id));
-            }
-            let payload = run::RunPayload::of(&seal.payload).unwrap_or_default();
-            summary.found += u32::from(payload.found.is_some());
-            let came = own != Some(seal.origin);
-            check_traces_and_recordings(backend, (id, run, came), &payload, summary, found)?;
-        }
-        ("event", Some(event)) => {
-            let payload = EventPayload::of(&seal.payload);
-            let fits = event_digest(backend, event, &seal.payload)? == seal.digest[..];
-            if !fits || !is_of_its_fault(backend, event, payload.as_ref())? {
-                found.add(Damage::Changed("event", id));
-            }
-            summary.found += u32::from(payload.is_some_and(|payload| payload.found.is_some()));
-        }
-        ("note", Some(note)) => {
-            if note_digest(backend, note, &seal.payload)? != seal.digest[..] {
-                found.add(Damage::Changed("note", id));
-            }
-            summary.found += u32::from(!seal.payload.is_empty());
-        }
-        (what, _) => {
-            if statement_digest(what, id, &seal.payload) != seal.digest[..] {
-                found.add(Damage::SealChanged(seal.place()));
-            }
-            match what {
-                PRUNED => {
-                    if let Ok(payload) = serde_json::from_str::<PrunedPayload>(&seal.payload) {
-                        summary
-                            .pruned
-                            .insert((id, payload.recording, payload.sha256));
-                    }
-                }
-                BEGUN if own == Some(seal.origin) => summary.is_begun = true,
-                SIGNATURE => match read_signature(backend, id, &seal.payload)? {
-                    Ok(statement) => summary.keys.add(&statement),
-                    Err(wrong) => found.add(Damage::Signature(seal.place(), wrong)),
-                },
-                RECOUNTED => {
-                    if let Ok(payload) = serde_json::from_str::<RecountedPayload>(&seal.payload) {
-                        // What another file has counted again is a finding there.
-                        match own == Some(seal.origin) {
-                            true => found.add(Damage::Recounted(payload.at_us, payload.differed)),
-                            false => remarks.push(payload.text()),
-                        }
-                    }
-                }
-                _ => {}
-            }
-        }
+    let Some(kind) = Covered::of(&seal.what) else {
+        return check_statement(backend, seal, own, summary, found, remarks);
+    };
+    let Some(row) = seal.row else {
+        found.add(Damage::Unsealed(seal.place(), seal.what.clone()));
+        return Ok(());
+    };
+    if !kind.fits(backend, row, &seal.payload, &seal.digest)? {
+        found.add(Damage::Changed(kind.word(), id));
     }
+    let is_found = match kind {
+        Covered::Run => {
+            summary.runs += 1;
+            let payload = RunPayload::of(&seal.payload).unwrap_or_default();
+            let held = samples::hold(backend, (id, row), &payload)?;
+            found.add_all(held.changed);
+            let came = own != Some(seal.origin);
+            let missing = held.missing.into_iter().map(|missing| (missing, came));
+            summary.missing.extend(missing);
+            payload.found.is_some()
+        }
+        Covered::Event => {
+            let payload = EventPayload::of(&seal.payload);
+            payload.is_some_and(|payload| payload.found.is_some())
+        }
+        Covered::Note => !seal.payload.is_empty(),
+    };
+    summary.found += u32::from(is_found);
     Ok(())
 }
 
-/// Checks the traces and recordings of a run against its seal.
-pub(super) fn check_traces_and_recordings(
+/// Checks an entry whose payload is its whole content.
+fn check_statement(
     backend: &Backend,
-    (id, run, came): (Id, i64, bool),
-    payload: &run::RunPayload,
+    seal: &Seal,
+    own: Option<Id>,
     summary: &mut ChainSummary,
     found: &mut Findings<'_>,
+    remarks: &mut Remarks,
 ) -> SqlResult<()> {
-    let traces = backend.select(
-        "SELECT seq, id, recording FROM trace WHERE run = ?1",
-        &values![run],
-        |row| {
-            Ok((
-                row.get::<i64>(0)?,
-                row.get::<Id>(1)?,
-                row.get::<Option<i64>>(2)?,
-            ))
+    if statement_digest(&seal.what, seal.id, &seal.payload) != seal.digest[..] {
+        found.add(Damage::SealChanged(seal.place()));
+    }
+    match &seal.what[..] {
+        PRUNED => {
+            if let Ok(payload) = serde_json::from_str::<PrunedPayload>(&seal.payload) {
+                summary.pruned.insert((seal.id, payload.recording));
+            }
+        }
+        BEGUN if own == Some(seal.origin) => summary.is_begun = true,
+        SIGNATURE => match read_signature(backend, seal.id, &seal.payload)? {
+            Ok(statement) => summary.keys.add(&statement),
+            Err(wrong) => found.add(Damage::Signature(seal.place(), wrong)),
         },
-    )?;
-    for said in &payload.traces {
-        let Ok(of) = said.id.parse::<Id>() else {
-            continue;
-        };
-        match traces.iter().find(|(_, trace, _)| *trace == of) {
-            None => {
-                // Two laptops that read the same record of a unit: the seal of the other's run covers it.
-                let elsewhere = "SELECT 1 FROM trace WHERE id = ?1";
-                if !backend.has(elsewhere, &values![of])? {
-                    summary.missing.insert((of, None), came);
-                }
-            }
-            Some((seq, _, recording)) => {
-                if hex(&trace::digest(backend, *seq)?) != said.sha256
-                    || *recording != said.recording
-                {
-                    found.add(Damage::TraceChanged(of));
+        RECOUNTED => {
+            if let Ok(payload) = serde_json::from_str::<RecountedPayload>(&seal.payload) {
+                let recounted = Damage::Recounted(payload.at_us, payload.differed);
+                // What another file has counted again is a finding there.
+                match own == Some(seal.origin) {
+                    true => found.add(recounted),
+                    false => remarks.push(recounted.to_string()),
                 }
             }
         }
-    }
-    for (_, of, _) in &traces {
-        if !payload.traces.iter().any(|said| said.id == of.to_string()) {
-            found.add(Damage::TraceAdded(*of, id));
-        }
-    }
-    let recordings = trace::recordings(backend, run)?;
-    for said in &payload.recordings {
-        let ordinal = said.ordinal;
-        if !recordings.contains(&ordinal) {
-            summary.missing.insert((id, Some(ordinal)), came);
-        } else if hex(&trace::recording_digest(backend, run, ordinal)?) != said.sha256 {
-            found.add(Damage::RecordingChanged(ordinal, id));
-        }
-    }
-    for ordinal in recordings {
-        if !payload
-            .recordings
-            .iter()
-            .any(|said| said.ordinal == ordinal)
-        {
-            found.add(Damage::RecordingAdded(ordinal, id));
-        }
+        _ => {}
     }
     Ok(())
 }

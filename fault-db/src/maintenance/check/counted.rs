@@ -7,7 +7,7 @@ use rusqlite::Connection;
 
 use super::derived::faults_that_differ;
 use super::{Damage, Derived, Findings};
-use crate::backend::SqlResult;
+use crate::backend::{Backend, SqlResult};
 use crate::error::StoreError;
 use crate::history::event_graph::recompute_fault;
 use crate::schema::{DERIVED, WORDS};
@@ -69,20 +69,20 @@ const DIFFERENCES: [(Derived, &str); 6] = [
 ];
 
 /// Compares the tables with a recount.
-pub(super) fn check(conn: &Connection, mut found: Findings<'_>) -> rusqlite::Result<()> {
-    in_snapshot(conn, || compare(conn, |detail| found.add(detail)))
+pub(super) fn check(conn: &Connection, mut found: Findings<'_>) -> SqlResult<()> {
+    in_snapshot(conn, || Ok(compare(conn, |detail| found.add(detail))?))
 }
 
 /// Runs `work` in one snapshot of the file, and rolls the temporary tables back; others may write meanwhile.
 pub(super) fn in_snapshot(
     conn: &Connection,
-    work: impl FnOnce() -> rusqlite::Result<()>,
-) -> rusqlite::Result<()> {
+    work: impl FnOnce() -> SqlResult<()>,
+) -> SqlResult<()> {
     with_sorting_on_disk(conn, || {
         conn.execute_batch("BEGIN")?;
         let done = work();
         let ended = conn.execute_batch("ROLLBACK");
-        done.and(ended)
+        done.and(Ok(ended?))
     })
 }
 
@@ -110,50 +110,43 @@ fn compare(conn: &Connection, mut found: impl FnMut(Damage)) -> rusqlite::Result
 /// Recounts everything; what differed.
 pub(super) fn rebuild(store: &Store, at_us: i64) -> Result<Vec<String>, StoreError> {
     const DOING: &str = "filling the derived tables again";
-    let failed = |error| store.failed(DOING, error);
     let conn = store.file()?;
     let id = store.mint()?;
-    with_sorting_on_disk(conn, || {
-        Ok(store.write(DOING, |conn| {
-            let mut differed = Vec::new();
-            compare(conn, |detail| differed.push(detail.to_string())).map_err(failed)?;
-            for (table, _) in TABLES {
-                let drop = format!("DROP TABLE temp.{table}");
-                conn.execute_batch(&drop).map_err(failed)?;
-            }
-            let mut faults = Vec::new();
-            faults_that_differ(conn, |fault, id| faults.push((fault, id))).map_err(failed)?;
-            if let Some((_, id)) = faults.first() {
-                let count = faults.len();
-                differed.push(format!(
-                    "{count} faults, first {id}, were not as their occurrences and events say"
-                ));
-            }
-            let work = || -> SqlResult<()> {
-                for (fault, _) in &faults {
-                    recompute_fault(&store.backend, *fault)?;
-                }
-                if !differed.is_empty() {
-                    let differed = differed.clone();
-                    let payload = RecountedPayload { at_us, differed };
-                    append_statement(&store.backend, RECOUNTED, id, &payload)?;
-                }
-                Ok(())
-            };
-            work().map_err(|error| store.failed(DOING, error))?;
-            conn.execute_batch(DERIVED).map_err(failed)?;
-            conn.execute_batch(WORDS).map_err(failed)?;
-            Ok(differed)
-        }))
-    })
-    .map_err(failed)?
+    let rebuild = |file: &Backend| {
+        let mut differed = Vec::new();
+        compare(conn, |detail| differed.push(detail.to_string()))?;
+        for (table, _) in TABLES {
+            conn.execute_batch(&format!("DROP TABLE temp.{table}"))?;
+        }
+        let faults = faults_that_differ(file)?;
+        if let Some((_, id)) = faults.first() {
+            let count = faults.len();
+            differed.push(format!(
+                "{count} faults, first {id}, were not as their occurrences and events say"
+            ));
+        }
+        for (fault, _) in &faults {
+            recompute_fault(file, *fault)?;
+        }
+        if !differed.is_empty() {
+            let differed = differed.clone();
+            let payload = RecountedPayload { at_us, differed };
+            append_statement(file, RECOUNTED, id, &payload)?;
+        }
+        conn.execute_batch(DERIVED)?;
+        conn.execute_batch(WORDS)?;
+        Ok(differed)
+    };
+    let sorting = |_: &Backend| {
+        with_sorting_on_disk(conn, || {
+            Ok(store.write(DOING, |_| store.ask(DOING, rebuild)))
+        })
+    };
+    store.ask(DOING, sorting)?
 }
 
 /// Lets SQLite sort on disk: a whole history does not fit in memory.
-fn with_sorting_on_disk<T>(
-    conn: &Connection,
-    work: impl FnOnce() -> rusqlite::Result<T>,
-) -> rusqlite::Result<T> {
+fn with_sorting_on_disk<T>(conn: &Connection, work: impl FnOnce() -> SqlResult<T>) -> SqlResult<T> {
     let kept: i64 = conn.query_row("PRAGMA temp_store", [], |row| row.get(0))?;
     conn.execute_batch("PRAGMA temp_store = FILE")?;
     let done = work();

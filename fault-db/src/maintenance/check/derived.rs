@@ -1,8 +1,7 @@
 //! Checks the rows of faults and units against the occurrences, events and runs they are derived from.
 
-use rusqlite::Connection;
-
 use super::{Advice, Damage, Findings, Problem, ProblemKind};
+use crate::backend::{Backend, SqlResult};
 use crate::history::graph_sql::RECOMPUTE_FAULT;
 
 /// Damage of the row with an id.
@@ -22,36 +21,29 @@ const CONTRADICTS: [(Contradiction, &str); 4] = [
 ];
 
 /// Runs all checks in one snapshot of the file.
-pub(super) fn check(conn: &Connection, problems: &mut Vec<Problem>) -> rusqlite::Result<()> {
+pub(super) fn check(file: &Backend, problems: &mut Vec<Problem>) -> SqlResult<()> {
     let mut found = Findings::new(problems, ProblemKind::Fault, Advice::Altered);
     for (damage, sql) in CONTRADICTS {
-        super::each_text(conn, sql, |of| found.add(damage(of)))?;
+        found.add_all(file.select(sql, &[], |row| Ok(damage(row.get(0)?)))?);
     }
     drop(found);
     let mut found = Findings::new(problems, ProblemKind::Count, Advice::Rebuild);
-    faults_that_differ(conn, |_, id| {
-        found.add(Damage::FaultDerived(id));
-    })
+    let differ = faults_that_differ(file)?.into_iter();
+    found.add_all(differ.map(|(_, id)| Damage::FaultDerived(id)));
+    Ok(())
 }
 
-/// Passes the row number and id of each fault whose derived columns are wrong. An unqualified name means the
-/// temporary table: the file itself is only read.
-pub(super) fn faults_that_differ(
-    conn: &Connection,
-    mut take: impl FnMut(i64, String),
-) -> rusqlite::Result<()> {
-    conn.execute_batch(&format!(
-        "CREATE TEMP TABLE fault AS SELECT * FROM main.fault; {RECOMPUTE_FAULT}"
-    ))?;
-    let mut differ = conn.prepare(
+/// The row number and id of each fault whose derived columns are wrong. An unqualified name means the temporary
+/// table: the file itself is only read.
+pub(super) fn faults_that_differ(file: &Backend) -> SqlResult<Vec<(i64, String)>> {
+    file.execute("CREATE TEMP TABLE fault AS SELECT * FROM main.fault", &[])?;
+    file.execute(RECOMPUTE_FAULT, &[])?;
+    let differ = file.select(
         "SELECT seq, lower(hex(id)) FROM (SELECT * FROM main.fault EXCEPT SELECT * FROM temp.fault)
          ORDER BY seq",
+        &[],
+        |row| Ok((row.get(0)?, row.get(1)?)),
     )?;
-    let mut rows = differ.query([])?;
-    while let Some(row) = rows.next()? {
-        take(row.get(0)?, row.get(1)?);
-    }
-    drop(rows);
-    drop(differ);
-    conn.execute_batch("DROP TABLE temp.fault")
+    file.execute("DROP TABLE temp.fault", &[])?;
+    Ok(differ)
 }

@@ -2,7 +2,6 @@
 
 mod chain;
 mod counted;
-mod damage;
 mod derived;
 mod seal_entry;
 mod server;
@@ -11,26 +10,20 @@ mod verify;
 
 use std::sync::Arc;
 
-use rusqlite::Connection;
 use serde::Serialize;
 
 use crate::backend::Backend;
-use crate::error::StoreError;
+use crate::error::{Advice, Damage, Derived, ProblemKind, Samples, StoreError};
 use crate::history::recording::check_recordings;
-use crate::id::Id;
-use crate::schema::SCHEMA_VERSION;
-use crate::schema::guard;
 use crate::seal::SealHead;
 use crate::store::Store;
-pub use damage::{
-    Advice, Damage, Derived, ProblemKind, Samples, SchemaObject, SealPlace, WrongSignature,
-};
 pub use signatures::KeyUse;
 pub use verify::Verification;
-pub(crate) use verify::has_its_traces;
+
+const DOING: &str = "checking";
 
 /// The result of a check.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CheckReport {
     /// Runs checked against their seals.
     pub runs: u32,
@@ -90,6 +83,10 @@ impl<'a> Findings<'a> {
         }
     }
 
+    fn add_all(&mut self, details: impl IntoIterator<Item = Damage>) {
+        details.into_iter().for_each(|detail| self.add(detail));
+    }
+
     fn say(&mut self, detail: Damage) {
         self.problems.push(Problem {
             kind: self.kind,
@@ -119,31 +116,18 @@ impl Store {
         if let Backend::Server(_) = &self.backend {
             return server::check(self);
         }
-        let conn = self.file()?;
-        let mut problems = Vec::new();
-        let failed = |error| self.failed("checking", error);
-
+        let mut report = CheckReport::default();
         let integrity = format!("PRAGMA integrity_check({MAX_FINDINGS})");
-        let mut found = Findings::new(&mut problems, ProblemKind::Integrity, Advice::FromBackup);
-        each_text(conn, &integrity, |detail| {
+        let problems = &mut report.problems;
+        let mut found = Findings::new(problems, ProblemKind::Integrity, Advice::FromBackup);
+        for detail in self.select(DOING, &integrity, &[], |row| row.get::<String>(0))? {
             if detail != "ok" {
                 found.add(Damage::Told(detail));
             }
-        })
-        .map_err(failed)?;
+        }
         drop(found);
-        let is_damaged = !problems.is_empty();
-
-        let mut report = CheckReport {
-            runs: 0,
-            traces: 0,
-            recordings: 0,
-            problems,
-            remarks: Vec::new(),
-            head: None,
-            signed: Vec::new(),
-        };
-        match self.check_rows(conn, &mut report) {
+        let is_damaged = !report.problems.is_empty();
+        match self.check_rows(&mut report) {
             Err(StoreError::Stopped) => return Err(StoreError::Stopped),
             // SQLite's findings are worth more than the place where reading failed.
             Err(error) if is_damaged => report.problems.push(Problem {
@@ -156,22 +140,22 @@ impl Store {
         Ok(report)
     }
 
-    fn check_rows(&self, conn: &Connection, report: &mut CheckReport) -> Result<(), StoreError> {
-        let failed = |error| self.failed("checking", error);
+    fn check_rows(&self, report: &mut CheckReport) -> Result<(), StoreError> {
         let problems = &mut report.problems;
         let mut found = Findings::new(problems, ProblemKind::Schema, Advice::ForeignObject);
-        let foreign_objects = guard::foreign_objects(conn, SCHEMA_VERSION).map_err(failed)?;
-        foreign_objects
-            .into_iter()
-            .for_each(|detail| found.add(detail));
+        found.add_all(self.foreign_objects()?);
         drop(found);
 
         let mut found = Findings::new(problems, ProblemKind::ForeignKey, Advice::FromBackup);
-        no_parents(conn, |detail| found.add(detail)).map_err(failed)?;
+        let orphans = "SELECT rowid, \"table\", parent FROM pragma_foreign_key_check";
+        found.add_all(self.select(DOING, orphans, &[], |row| {
+            Ok(Damage::NoParent(row.get(0)?, row.get(1)?, row.get(2)?))
+        })?);
         drop(found);
 
         let mut found = Findings::new(problems, ProblemKind::Trace, Advice::Lost);
-        for id in trace_ids(conn).map_err(failed)? {
+        let traces = "SELECT id FROM trace ORDER BY seq";
+        for id in self.select(DOING, traces, &[], |row| row.get(0))? {
             report.traces += 1;
             match self.trace(id) {
                 Ok(_) => {}
@@ -184,22 +168,23 @@ impl Store {
         drop(found);
 
         let mut found = Findings::new(problems, ProblemKind::Recording, Advice::Lost);
-        let (recordings, wrong) = check_recordings(conn).map_err(failed)?;
+        let (recordings, wrong) = self.ask(DOING, check_recordings)?;
         report.recordings = recordings;
-        wrong
-            .into_iter()
-            .for_each(|detail| found.add(Damage::Told(detail)));
+        found.add_all(wrong.into_iter().map(Damage::Told));
         drop(found);
 
         let found = Findings::new(problems, ProblemKind::Seal, Advice::Altered);
-        let runs = chain::check(&self.backend, found, &mut report.remarks);
-        (report.runs, report.signed) =
-            runs.map_err(|error| self.failed("checking seals", error))?;
+        (report.runs, report.signed) = self.ask("checking seals", |file| {
+            chain::check(file, found, &mut report.remarks)
+        })?;
         report.head = self.head()?;
 
         let found = Findings::new(problems, ProblemKind::Derived, Advice::Rebuild);
-        counted::check(conn, found).map_err(failed)?;
-        counted::in_snapshot(conn, || derived::check(conn, &mut report.problems)).map_err(failed)
+        let conn = self.file()?;
+        self.ask(DOING, |_| counted::check(conn, found))?;
+        self.ask(DOING, |file| {
+            counted::in_snapshot(conn, || derived::check(file, problems))
+        })
     }
 
     /// Recomputes everything that follows from other rows: repairs, packed faults, sums of measured values, search
@@ -209,28 +194,4 @@ impl Store {
     pub fn rebuild(&self, at_us: i64) -> Result<Vec<String>, StoreError> {
         counted::rebuild(self, at_us)
     }
-}
-
-fn no_parents(conn: &Connection, mut take: impl FnMut(Damage)) -> rusqlite::Result<()> {
-    let sql = "SELECT rowid, \"table\", parent FROM pragma_foreign_key_check";
-    let mut select = conn.prepare(sql)?;
-    let mut rows = select.query([])?;
-    while let Some(row) = rows.next()? {
-        take(Damage::NoParent(row.get(0)?, row.get(1)?, row.get(2)?));
-    }
-    Ok(())
-}
-
-fn each_text(conn: &Connection, sql: &str, mut take: impl FnMut(String)) -> rusqlite::Result<()> {
-    let mut select = conn.prepare(sql)?;
-    let mut rows = select.query([])?;
-    while let Some(row) = rows.next()? {
-        take(row.get(0)?);
-    }
-    Ok(())
-}
-
-fn trace_ids(conn: &Connection) -> rusqlite::Result<Vec<Id>> {
-    let mut select = conn.prepare("SELECT id FROM trace ORDER BY seq")?;
-    select.query_map([], |row| row.get(0))?.collect()
 }

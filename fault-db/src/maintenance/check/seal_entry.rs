@@ -1,7 +1,7 @@
 //! Reads the entries of the chains in order, and checks each one's position and hash.
 
-use super::damage::{Damage, SealPlace, time};
-use crate::backend::{Backend, SqlResult, from_row, values};
+use crate::backend::{Backend, Row, SqlResult, from_row, values};
+use crate::error::{Damage, SealPlace, time};
 use crate::id::Id;
 use crate::seal::chained;
 
@@ -82,13 +82,23 @@ pub(super) fn seals_after(backend: &Backend, last: Option<&Seal>) -> SqlResult<V
         (&last.origin.as_bytes()[..], last.ordinal)
     });
     let sql = format!(
-        "SELECT s.origin, s.ordinal, s.what, s.id, s.says, s.digest, s.hash,
-            CASE s.what WHEN 'run' THEN (SELECT r.seq FROM run r WHERE r.id = s.id)
-                WHEN 'event' THEN (SELECT e.seq FROM fault_event e WHERE e.id = s.id)
-                WHEN 'note' THEN (SELECT n.seq FROM run_note n WHERE n.id = s.id) END
-         FROM seal s WHERE (s.origin, s.ordinal) > (?1, ?2) ORDER BY s.origin, s.ordinal LIMIT {SEALS_PER_BATCH}"
+        "{SEALS} WHERE (s.origin, s.ordinal) > (?1, ?2) ORDER BY s.origin, s.ordinal LIMIT {SEALS_PER_BATCH}"
     );
-    backend.select(&sql, &values![origin, ordinal], |row| {
-        Ok(from_row!(row => Seal: origin, ordinal, what, id, payload, digest, hash, row))
-    })
+    backend.select(&sql, &values![origin, ordinal], seal)
+}
+
+/// The seals of this kind and id, in all chains.
+pub(super) fn seals_of(backend: &Backend, what: &str, id: Id) -> SqlResult<Vec<Seal>> {
+    let sql = format!("{SEALS} WHERE s.id = ?1 AND s.what = ?2 ORDER BY s.origin, s.ordinal");
+    backend.select(&sql, &values![id, what], seal)
+}
+
+const SEALS: &str = "SELECT s.origin, s.ordinal, s.what, s.id, s.says, s.digest, s.hash,
+        CASE s.what WHEN 'run' THEN (SELECT r.seq FROM run r WHERE r.id = s.id)
+            WHEN 'event' THEN (SELECT e.seq FROM fault_event e WHERE e.id = s.id)
+            WHEN 'note' THEN (SELECT n.seq FROM run_note n WHERE n.id = s.id) END
+     FROM seal s";
+
+fn seal(row: Row<'_>) -> SqlResult<Seal> {
+    Ok(from_row!(row => Seal: origin, ordinal, what, id, payload, digest, hash, row))
 }

@@ -2,7 +2,6 @@
 //! append-only.
 
 use super::{Advice, CheckReport, Damage, Findings, ProblemKind, chain};
-use crate::backend::SqlResult;
 use crate::error::StoreError;
 use crate::store::Store;
 
@@ -18,33 +17,16 @@ const OFF: &str = "
     ORDER BY 1, 2";
 
 pub(super) fn check(store: &Store) -> Result<CheckReport, StoreError> {
-    let mut report = CheckReport {
-        runs: 0,
-        traces: 0,
-        recordings: 0,
-        problems: Vec::new(),
-        remarks: Vec::new(),
-        head: None,
-        signed: Vec::new(),
-    };
-    let backend = &store.backend;
-    let mut found = Findings::new(
-        &mut report.problems,
-        ProblemKind::Schema,
-        Advice::GuardsOfServer,
-    );
-    let looked = backend.each(OFF, &[], |row| -> SqlResult<()> {
-        found.add(Damage::NoGuard(row.get(1)?, row.get(0)?));
-        Ok(())
-    });
-    looked.map_err(|error| store.failed(DOING, error))?;
+    let mut report = CheckReport::default();
+    let problems = &mut report.problems;
+    let mut found = Findings::new(problems, ProblemKind::Schema, Advice::GuardsOfServer);
+    found.add_all(store.select(DOING, OFF, &[], |row| {
+        Ok(Damage::NoGuard(row.get(1)?, row.get(0)?))
+    })?);
     drop(found);
-    let found = Findings::new(
-        &mut report.problems,
-        ProblemKind::Seal,
-        Advice::SealsOfServer,
-    );
-    let checked = chain::check(backend, found, &mut report.remarks);
-    (report.runs, report.signed) = checked.map_err(|error| store.failed(DOING, error))?;
+    let found = Findings::new(problems, ProblemKind::Seal, Advice::SealsOfServer);
+    (report.runs, report.signed) = store.ask(DOING, |server| {
+        chain::check(server, found, &mut report.remarks)
+    })?;
     Ok(report)
 }

@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::backend::Backend;
 use crate::error::{QueryLimit, StoreError};
 use crate::id::Id;
+use crate::seal::hex;
 use crate::store::Store;
 
 /// A value of a result.
@@ -29,7 +30,7 @@ impl SqlValue {
     pub(crate) fn of_bytes(bytes: &[u8]) -> Self {
         Self::Text(match <[u8; 16]>::try_from(bytes) {
             Ok(id) => Id::from_bytes(id).to_string(),
-            Err(_) => bytes.iter().map(|byte| format!("{byte:02x}")).collect(),
+            Err(_) => hex(bytes),
         })
     }
 

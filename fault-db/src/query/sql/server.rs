@@ -25,34 +25,39 @@ pub(super) fn answer(
     if sql.trim().trim_end_matches(';').is_empty() {
         return Err(refused("it is empty"));
     }
-    let found = server.with_client(|client| {
-        let mut transaction = client.build_transaction().read_only(true).start()?;
+    let failed = |error| classify(path, error);
+    server.with_client(|client| {
+        let transaction = client.build_transaction().read_only(true).start();
+        let mut transaction = transaction.map_err(failed)?;
         if let Some(most_ms) = bounds.server_ms {
-            transaction.batch_execute(&format!("SET LOCAL statement_timeout = {most_ms}"))?;
+            let limit = format!("SET LOCAL statement_timeout = {most_ms}");
+            transaction.batch_execute(&limit).map_err(failed)?;
         }
-        let statement = transaction.prepare(sql)?;
+        let statement = transaction.prepare(sql).map_err(failed)?;
         let columns: Vec<_> = (statement.columns().iter())
             .map(|column| column.name().to_owned())
             .collect();
+        // A statement without columns is no query.
         if columns.is_empty() {
-            return Ok(Answered::Otherwise);
+            return Err(refused("it would do more than read"));
         }
-        let portal = transaction.bind(&statement, &[])?;
+        let portal = transaction.bind(&statement, &[]).map_err(failed)?;
         let (mut rows, mut bytes, mut truncated) = (Vec::new(), 0, false);
         let mut at_once = 1;
         loop {
             // The server's own time limit applies to each fetch.
             if !goes_on() {
-                return Ok(Answered::TooMuch(QueryLimit::Stopped));
+                return Err(exceeds(QueryLimit::Stopped));
             }
-            let some = transaction.query_portal(&portal, at_once)?;
+            let some = transaction.query_portal(&portal, at_once);
+            let some = some.map_err(failed)?;
             let is_last = some.len() < at_once as usize;
             at_once = (at_once * 2).min(ROWS_AT_ONCE);
             for row in &some {
-                let values = values(row, columns.len());
-                bytes += values.iter().flatten().map(SqlValue::bytes).sum::<usize>();
+                let values = values(path, row, &columns)?;
+                bytes += values.iter().map(SqlValue::bytes).sum::<usize>();
                 if bytes > MOST_RESULT_BYTES && rows.is_empty() {
-                    return Ok(Answered::TooMuch(QueryLimit::Row));
+                    return Err(exceeds(QueryLimit::Row));
                 }
                 truncated = rows.len() == bounds.rows || bytes > MOST_RESULT_BYTES;
                 if truncated {
@@ -61,44 +66,32 @@ pub(super) fn answer(
                 rows.push(values);
             }
             if truncated || is_last {
-                return Ok(Answered::Rows(columns, rows, truncated));
+                return Ok(QueryResult {
+                    columns,
+                    rows,
+                    truncated,
+                });
             }
         }
-    });
-    let found = found.map_err(|error| classify(path, error))?;
-    let (columns, rows, truncated) = match found {
-        Answered::Rows(columns, rows, truncated) => (columns, rows, truncated),
-        Answered::Otherwise => return Err(refused("it would do more than read")),
-        Answered::TooMuch(limit) => return Err(exceeds(limit)),
-    };
-    let rows = rows.into_iter().collect::<Result<_, _>>();
-    let rows = rows.map_err(|error| match error {
-        SqlError::Value { column, reason } => {
-            StoreError::QueryFailed(format!("column {}: {reason}", columns[column]))
-        }
-        other => StoreError::from_sql(path, DOING, other),
-    })?;
-    Ok(QueryResult {
-        columns,
-        rows,
-        truncated,
     })
 }
 
-/// The outcome of a query.
-enum Answered {
-    /// Column names, rows, and whether there are more rows.
-    Rows(Vec<String>, Vec<Result<Vec<SqlValue>, SqlError>>, bool),
-    /// A statement without columns is no query.
-    Otherwise,
-    /// A limit was exceeded.
-    TooMuch(QueryLimit),
-}
-
-fn values(row: &postgres::Row, columns: usize) -> Result<Vec<SqlValue>, SqlError> {
-    (0..columns)
-        .map(|column| Row::Server(row).field(column).map(value))
-        .collect()
+fn values(
+    path: &Path,
+    row: &postgres::Row,
+    columns: &[String],
+) -> Result<Vec<SqlValue>, StoreError> {
+    let field = |column: usize| match Row::Server(row).field(column) {
+        Ok(field) => Ok(value(field)),
+        Err(SqlError::Value { column, reason }) => {
+            let column = &columns[column];
+            Err(StoreError::QueryFailed(format!(
+                "column {column}: {reason}"
+            )))
+        }
+        Err(other) => Err(StoreError::from_sql(path, DOING, other)),
+    };
+    (0..columns.len()).map(field).collect()
 }
 
 /// Errors of the server keep their kind; all others are attributed to the query.

@@ -131,8 +131,8 @@ impl Store {
             }
         };
         let spans: Vec<_> = spans.iter().map(within).collect();
-        let counted = in_file::count(&self.backend, &resolved, query, &spans)
-            .map_err(|error| self.failed(DOING, error))?;
+        let count = |file: &Backend| in_file::count(file, &resolved, query, &spans);
+        let counted = self.ask(DOING, count)?;
         let in_spans = counted.into_iter().zip(&spans);
         let in_spans = in_spans.map(|(counted, span)| {
             let exposure = observed.within(span.since_us, span.until_us);
@@ -191,16 +191,14 @@ impl Store {
         query: &StatQuery,
         span: &CountedSpan,
     ) -> Result<CountsByKey, StoreError> {
-        let backend = &self.backend;
-        let counted = match backend {
+        self.ask(DOING, |backend| match backend {
             Backend::File(_) => {
                 let spans = std::slice::from_ref(span);
-                in_file::count(backend, resolved, query, spans)
-                    .map(|mut counted| counted.pop().unwrap_or_default())
+                let mut counted = in_file::count(backend, resolved, query, spans)?;
+                Ok(counted.pop().unwrap_or_default())
             }
             Backend::Server(_) => on_server::count(backend, resolved, query, &span.bins),
-        };
-        counted.map_err(|error| self.failed(DOING, error))
+        })
     }
 
     /// The first and the last time of any run, occurrence or event, µs since 1970. `None` for an empty

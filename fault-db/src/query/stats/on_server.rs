@@ -1,10 +1,11 @@
 //! Counts on a server, in SQL: it groups its rows faster than it returns them.
 
 use super::super::fault_filter::{FilteredTable, Resolved};
+use super::super::filter::Conditions;
 use super::cases::{Case, CaseRepair, RepairTimes, cases_of};
-use super::counts::{Bins, CountsByKey, Key, Repairs, Units};
+use super::counts::{Bins, Counts, CountsByKey, Key, Repairs, Units};
 use super::{StatKey, StatQuery};
-use crate::backend::{Backend, SqlResult, from_row};
+use crate::backend::{Backend, Row, SqlResult, from_row};
 
 /// Counts what the filter selects, in its span of time.
 pub(super) fn count(
@@ -62,16 +63,30 @@ fn occurrences(
         counts.seen_at(row.get(3)?);
         Ok(())
     })?;
-    let sql = format!(
-        "SELECT {column}, count(DISTINCT x.unit) FROM fault_occurrence x {} GROUP BY 1",
-        seen.sql()
-    );
-    backend.each(&sql, seen.values(), |row| {
-        let counts = counted.entry(Key::from_field(row.field(0)?)).or_default();
+    let units = "count(DISTINCT x.unit)";
+    let of = ("fault_occurrence", &seen);
+    by_key(backend, by, of, units, &mut counted, |counts, row| {
         counts.units = Units::Number(row.get(1)?);
         Ok(())
     })?;
     Ok(counted)
+}
+
+/// Adds what `add` takes from the columns asked for of each key, from column 1 on.
+fn by_key(
+    backend: &Backend,
+    by: StatKey,
+    (table, conditions): (&str, &Conditions),
+    columns: &str,
+    counted: &mut CountsByKey,
+    mut add: impl FnMut(&mut Counts, Row<'_>) -> SqlResult<()>,
+) -> SqlResult<()> {
+    let (key, which) = (by.column(), conditions.sql());
+    let sql = format!("SELECT {key}, {columns} FROM {table} x {which} GROUP BY 1");
+    backend.each(&sql, conditions.values(), |row| {
+        let key = Key::from_field(row.field(0)?);
+        add(counted.entry(key).or_default(), row)
+    })
 }
 
 /// Adds the faults first seen, those closed, and those last seen that are not closed.
@@ -81,42 +96,34 @@ fn add_faults(
     by: StatKey,
     counted: &mut CountsByKey,
 ) -> SqlResult<()> {
-    let column = by.column();
-    let opened = resolved.conditions_at(backend, FilteredTable::Faults, "first_at_us");
-    let sql = format!(
-        "SELECT {column}, count(*) FROM fault x {} GROUP BY 1",
-        opened.sql()
-    );
-    backend.each(&sql, opened.values(), |row| {
-        counted
-            .entry(Key::from_field(row.field(0)?))
-            .or_default()
-            .opened = row.get(1)?;
+    let at = |at| resolved.conditions_at(backend, FilteredTable::Faults, at);
+    let opened = ("fault", &at("first_at_us"));
+    by_key(backend, by, opened, "count(*)", counted, |counts, row| {
+        counts.opened = row.get(1)?;
         Ok(())
     })?;
-    let mut closed = resolved.conditions_at(backend, FilteredTable::Faults, "closed_at_us");
+    let mut closed = at("closed_at_us");
     closed.require("x.closed_at_us IS NOT NULL");
-    let sql = format!(
-        "SELECT {column}, count(*), sum(CASE WHEN x.repairs = 0 THEN 1 ELSE 0 END)
-         FROM fault x {} GROUP BY 1",
-        closed.sql()
-    );
-    backend.each(&sql, closed.values(), |row| {
-        let counts = counted.entry(Key::from_field(row.field(0)?)).or_default();
+    let numbers = "count(*), sum(CASE WHEN x.repairs = 0 THEN 1 ELSE 0 END)";
+    let closed = ("fault", &closed);
+    by_key(backend, by, closed, numbers, counted, |counts, row| {
         (counts.closed, counts.closed_without_repair) = (row.get(1)?, row.get(2)?);
         Ok(())
     })?;
-    let mut not_closed = resolved.conditions_at(backend, FilteredTable::Faults, "last_at_us");
+    let mut not_closed = at("last_at_us");
     not_closed.require("x.state <> 'closed'");
-    let sql = format!(
-        "SELECT {column}, count(*) FROM fault x {} GROUP BY 1",
-        not_closed.sql()
-    );
-    backend.each(&sql, not_closed.values(), |row| {
-        let key = Key::from_field(row.field(0)?);
-        counted.entry(key).or_default().not_closed = row.get(1)?;
-        Ok(())
-    })
+    let not_closed = ("fault", &not_closed);
+    by_key(
+        backend,
+        by,
+        not_closed,
+        "count(*)",
+        counted,
+        |counts, row| {
+            counts.not_closed = row.get(1)?;
+            Ok(())
+        },
+    )
 }
 
 /// Adds the repairs, and how many of them are too recent to be judged.
@@ -133,16 +140,13 @@ fn add_repairs(
         conditions.place(times.young_us),
     );
     let is_back = format!("coalesce(x.back_at_us - x.at_us < {within}, false)");
-    let sql = format!(
-        "SELECT {}, count(*), CAST(sum(x.at_us - x.opened_at_us) AS BIGINT),
+    let numbers = format!(
+        "count(*), CAST(sum(x.at_us - x.opened_at_us) AS BIGINT),
             sum(CASE WHEN {is_back} THEN 1 ELSE 0 END),
-            sum(CASE WHEN NOT {is_back} AND x.at_us >= {young} THEN 1 ELSE 0 END)
-         FROM repair x {} GROUP BY 1",
-        query.by.column(),
-        conditions.sql()
+            sum(CASE WHEN NOT {is_back} AND x.at_us >= {young} THEN 1 ELSE 0 END)"
     );
-    backend.each(&sql, conditions.values(), |row| {
-        let counts = counted.entry(Key::from_field(row.field(0)?)).or_default();
+    let of = ("repair", &conditions);
+    by_key(backend, query.by, of, &numbers, counted, |counts, row| {
         counts.repairs = from_row!(row => Repairs: _, all, us, back, young);
         Ok(())
     })

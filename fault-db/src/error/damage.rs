@@ -6,7 +6,7 @@ use std::sync::Arc;
 use chrono::DateTime;
 use serde::{Serialize, Serializer};
 
-use crate::error::StoreError;
+use super::StoreError;
 use crate::id::Id;
 use crate::signature::SignatureError;
 use crate::values::text_enum::text_enum;
@@ -85,10 +85,10 @@ pub enum Damage {
     /// The own chain has no first entry.
     #[error("the beginning of this file's own chain of seals is not there: it was taken out")]
     NoBeginning,
-    /// An entry of a file's chain is not the one that was known, and when: 0 is here.
+    /// An entry of a file's chain differs from the one seen at this time; 0: in this file.
     #[error("the chain of file {} was rewritten: entry {} is not the one that was known {}", (.0).short(), .1, at(*.2))]
     Rewritten(Id, i64, i64),
-    /// An entry of a file's chain that was known is not there, and when it was: 0 is here.
+    /// An entry of a file's chain that was seen at this time is missing; 0: in this file.
     #[error("the chain of file {} was cut: entry {}, which was known {}, is not there", (.0).short(), .1, at(*.2))]
     Cut(Id, i64, i64),
     /// One of the events or notes has no seal.
@@ -284,7 +284,7 @@ fn row(number: Option<i64>) -> String {
 }
 
 /// A time of this many µs since 1970.
-pub(super) fn time(at_us: i64) -> String {
+pub(crate) fn time(at_us: i64) -> String {
     let at = DateTime::from_timestamp_micros(at_us).unwrap_or_default();
     at.format("%Y-%m-%d %H:%M:%S UTC").to_string()
 }
