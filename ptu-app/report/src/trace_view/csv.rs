@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 use std::ops::Range;
 
-use fault_db::{Channel, TraceData};
+use fault_db::TraceData;
 
 use super::Axis;
-use crate::trace_io::csv::{put_headings, put_sample, put_time};
+use crate::trace_io::csv::{put_headings, put_row};
 
 /// Time in seconds from the trigger, the way in metres where one is asked for, then a column a channel;
 /// an unknown sample is empty.
@@ -29,32 +29,15 @@ fn put(
     rows: Range<usize>,
     distance: Option<&Axis>,
 ) -> io::Result<()> {
-    let known = || {
-        channels
-            .iter()
-            .filter(|place| **place < trace.columns.len())
-    };
-    let before: &[&str] = if distance.is_some() {
-        &["distance_m"]
-    } else {
-        &[]
-    };
-    let named = known().map(|place| -> &Channel { &trace.channels[*place] });
-    put_headings(out, before, named)?;
+    let signal = |place: &usize| Some((trace.channels.get(*place)?, trace.columns.get(*place)?));
+    let known = || channels.iter().filter_map(signal);
+    put_headings(out, distance.is_some(), known().map(|(channel, _)| channel))?;
     let trigger = i64::from(trace.trigger_row.unwrap_or(0));
     for row in rows.start..rows.end.min(trace.rows()) {
-        put_time(
-            out,
-            (row as i64 - trigger) * trace.period_us,
-            trace.period_us,
-        )?;
-        if let Some(axis) = distance {
-            write!(out, ",{:.2}", axis.at(row))?;
-        }
-        for place in known() {
-            put_sample(out, &trace.channels[*place], trace.columns[*place][row])?;
-        }
-        out.write_all(b"\n")?;
+        let time_us = (row as i64 - trigger) * trace.period_us;
+        let distance_m = distance.map(|axis| axis.at(row));
+        let samples = known().map(|(channel, column)| (channel, column[row]));
+        put_row(out, (time_us, trace.period_us), distance_m, samples)?;
     }
     Ok(())
 }
