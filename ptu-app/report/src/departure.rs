@@ -19,7 +19,7 @@ const VALID_US: i64 = 86_400_000_000;
 /// Most steps that were not run of which each is named.
 const MOST_NAMED: usize = 3;
 
-/// What a run is worth as a departure test.
+/// Whether and until when a run holds as a departure test.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Departure {
@@ -31,24 +31,24 @@ pub struct Departure {
     pub why_not: Vec<[String; 2]>,
 }
 
-/// A sentence of both languages, with what is filled in as that language has it.
-fn both(sentence: impl Fn(&'static Words) -> String) -> [String; 2] {
-    [Language::English, Language::Korean].map(|language| sentence(language.words()))
-}
-
 impl Departure {
-    /// Of a run in which departure tests were due; a good one is these alone, whole, on a real unit without injected faults,
-    /// all passed, and signed.
+    /// Of a run in which departure tests were due. A run holds that is of departure tests alone, whole, on a real unit without
+    /// injected faults, passed and signed.
     pub fn of(run: &RunDetail) -> Option<Self> {
         let is_departure = |path: &str| path.starts_with(DEPARTURE);
         if !run.scripts.iter().any(|script| is_departure(&script.path)) {
             return None;
         }
-        let mut why_not = Vec::new();
-        if !run.scripts.iter().all(|script| is_departure(&script.path)) {
-            why_not.push(both(|words| words.verify.with_others.into()));
-        }
         let run_of = &run.run;
+        let finished_us = run_of.finished_at_us.unwrap_or(run_of.started_at_us);
+        let mut departure = Self {
+            unit: run_of.unit_serial.clone(),
+            until_us: finished_us.saturating_add(VALID_US),
+            why_not: Vec::new(),
+        };
+        if !run.scripts.iter().all(|script| is_departure(&script.path)) {
+            departure.add(|words| words.verify.with_others.into());
+        }
         let counts = counts_of(run_of);
         let skipped = standing(&run.steps).filter(|step| step.verdict == Verdict::Skipped);
         // Of many that were not run the number tells more than their names.
@@ -61,46 +61,37 @@ impl Departure {
                 Verdict::Skipped => |words| words.verify.step_skipped,
                 _ => |words| words.verify.step_not_tested,
             };
-            let said = both(|words| fill(said(words), &[("step", &words.record(step))]));
-            if !why_not.contains(&said) {
-                why_not.push(said);
-            }
+            departure.add(|words| fill(said(words), &[("step", &words.record(step))]));
         }
         if counts.not_run() > 0 && !named {
             let of: [(&str, &dyn Display); 2] = [("n", &counts.not_run()), ("of", &counts.planned)];
-            why_not.push(both(|words| fill(words.verify.steps_not_run, &of)));
+            departure.add(|words| fill(words.verify.steps_not_run, &of));
         }
         let evidence = run_of.evidence.as_deref().and_then(Evidence::of);
         if run_of.continues.is_some() || evidence.is_none_or(|evidence| evidence.is_part) {
-            why_not.push(both(|words| words.verify.is_part.into()));
+            departure.add(|words| words.verify.is_part.into());
         }
         if let Some(faults) = run_of.injected.as_ref().filter(|faults| !faults.is_empty()) {
-            why_not.push(both(|words| {
-                fill(words.verify.with_faults, &[("faults", faults)])
-            }));
+            departure.add(|words| fill(words.verify.with_faults, &[("faults", faults)]));
         }
         if is_practice(&run_of.source, None) {
-            why_not.push(both(|words| words.verify.of_simulated.into()));
+            departure.add(|words| words.verify.of_simulated.into());
         }
-        if run_of.verdict != Some(Verdict::Passed) && why_not.is_empty() {
-            why_not.push(both(|words| words.verify.no_pass.into()));
+        if run_of.verdict != Some(Verdict::Passed) && departure.why_not.is_empty() {
+            departure.add(|words| words.verify.no_pass.into());
         }
         if run.signature.is_none() {
-            why_not.push(both(|words| words.verify.departure_unsigned.into()));
+            departure.add(|words| words.verify.departure_unsigned.into());
         }
-        Some(Self {
-            unit: run_of.unit_serial.clone(),
-            until_us: run_of
-                .finished_at_us
-                .unwrap_or(run_of.started_at_us)
-                .saturating_add(VALID_US),
-            why_not,
-        })
+        Some(departure)
     }
 
-    /// One more reason for which it does not hold.
+    /// Adds a reason for which it does not hold, once, with what is filled in as each language has it.
     pub fn add(&mut self, why: impl Fn(&'static Words) -> String) {
-        self.why_not.push(both(why));
+        let why = Language::ALL.map(|language| why(language.words()));
+        if !self.why_not.contains(&why) {
+            self.why_not.push(why);
+        }
     }
 
     /// A later departure test of this unit that failed ends it.
@@ -119,19 +110,17 @@ impl Departure {
             if is_real && Self::of(&store.run(later.id)?).is_some() {
                 let at = local_zoned(later.started_at_us);
                 let of: [(&str, &dyn Display); 2] = [("run", &later.id.short()), ("at", &at)];
-                let said = both(|words| fill(words.verify.later_failed, &of));
-                self.why_not.push(said);
+                self.add(|words| fill(words.verify.later_failed, &of));
             }
         }
         Ok(())
     }
 
-    /// It holds now, or why it does not.
+    /// The same at the present time, at which it may be too old.
     pub fn now(mut self) -> Self {
         if self.why_not.is_empty() && now_us() > self.until_us {
             let at = local_zoned(self.until_us);
-            let said = both(|words| fill(words.verify.was_valid_until, &[("at", &at)]));
-            self.why_not.push(said);
+            self.add(|words| fill(words.verify.was_valid_until, &[("at", &at)]));
         }
         self
     }
@@ -143,7 +132,7 @@ impl Departure {
         said.collect()
     }
 
-    /// What it is worth, as a fact with its name.
+    /// Name and text of the fact that it holds until a time, or does not hold.
     pub fn fact(&self, words: &Words) -> (String, String) {
         match self.why_not.is_empty() {
             true => (words.report.valid_until.into(), local_zoned(self.until_us)),

@@ -59,7 +59,7 @@ pub fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<Month>, Failure>
 /// Distance that trains with known readings ran in a month, and the faults first seen on them meanwhile.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OnTheWay {
-    /// Distance of all of them, km.
+    /// Distance that all these trains ran, km.
     pub km: f64,
     pub trains: u32,
     /// Their faults, counted as those of the month are.

@@ -3,7 +3,7 @@
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 use ptu_runs::drive::{Case, DriveBench, Driven};
 
-use super::facts::{Fact, conditions, off, title};
+use super::facts::{Fact, conditions, standing, title};
 use super::plots::{plots, plots_of_many};
 use super::{Outcomes, Results, tables};
 use crate::plot::Plot;
@@ -52,9 +52,8 @@ impl Printed for Results {
             short: said.title.into(),
             number: format!("{} {seed}", words.content("Seed")),
             program: format!("ptu {}", env!("CARGO_PKG_VERSION")),
-            at_us: 0,
-            across: None,
             blocks,
+            ..Paper::default()
         }
     }
 }
@@ -93,25 +92,7 @@ fn verdict(run: &Driven, alone: bool, words: &Words) -> Block {
         ending = format!("{}: {ending}", run.case.controller.name());
     }
     let tone = if run.aligned() { Tone::Good } else { Tone::Bad };
-    Block::Verdict(tone, ending, stop(run, words))
-}
-
-fn stop(run: &Driven, words: &Words) -> String {
-    let said = &words.drive;
-    let Some(error) = run.outcome.stop_error_m else {
-        return said.did_not_stop.to_owned();
-    };
-    let tolerance_m = run.case.tolerance_m();
-    let wording = match (error > 0.0, error.abs() <= tolerance_m) {
-        (false, true) => said.before_within,
-        (false, false) => said.before_outside,
-        (true, true) => said.past_within,
-        (true, false) => said.past_outside,
-    };
-    let size = off(error.abs());
-    let size = size.trim_start_matches('+');
-    let tolerance_cm = format!("{:.0}", tolerance_m * 100.0);
-    fill(wording, &[("error", &size), ("tolerance", &tolerance_cm)])
+    Block::Verdict(tone, ending, standing(run, words))
 }
 
 /// Many runs of one case.
@@ -251,7 +232,7 @@ mod tests {
                     texts.extend(table.columns.iter().map(|column| column.name.clone()));
                     let cells = table.rows.iter().flat_map(|row| &row.cells);
                     texts.extend(cells.filter_map(|(cell, _)| match cell {
-                        Cell::Text(_, text) | Cell::Verdict(_, text) => Some(text.clone()),
+                        Cell::Text(_, text) => Some(text.clone()),
                         Cell::Gauge(_) => None,
                     }));
                 }

@@ -9,7 +9,7 @@ mod svg;
 
 use maud::Markup;
 
-pub use mark::{Anchor, Mark, Role};
+pub use mark::{Anchor, Mark, Role, Style};
 pub use raster::{Raster, colour};
 
 use mark::room;
@@ -34,15 +34,6 @@ const BESIDE_TICKS: f64 = 26.0;
 /// Line in the legend, and what is free around it.
 const SAMPLE: f64 = 20.0;
 const SAMPLE_ROOM: f64 = 34.0;
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Style {
-    Line,
-    Dashed,
-    Dots,
-    /// Bars from 0, as wide as points are apart.
-    Bars,
-}
 
 #[derive(Clone, Debug)]
 pub struct Series {
@@ -107,20 +98,6 @@ struct Edges {
 }
 
 impl Plot {
-    /// Shades where cars slip or slide.
-    pub fn shade_slides<R>(
-        &mut self,
-        rows: &[R],
-        sliding: impl Fn(&R) -> bool,
-        x: impl Fn(&R) -> f64,
-    ) {
-        self.shaded = rows
-            .chunk_by(|a, b| sliding(a) == sliding(b))
-            .filter(|stretch| sliding(&stretch[0]))
-            .map(|stretch| (x(&stretch[0]), x(&stretch[stretch.len() - 1])))
-            .collect();
-    }
-
     /// The drawing for a page.
     pub fn svg(&self) -> Markup {
         svg::svg(&self.title, self.size(WIDTH), &self.marks(WIDTH))

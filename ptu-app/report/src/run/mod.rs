@@ -24,8 +24,6 @@ mod the_run;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
-
 use fault_db::{Id, RunDetail, TraceData};
 
 pub use case::{CaseSheet, Repair, Standing, case_json};
@@ -35,6 +33,7 @@ pub use paper::{Paper, Printed};
 pub use pdf::pdf;
 pub use sources::in_words as source_in_words;
 
+use crate::naming::PartNames;
 use ptu_runs::failure::Trouble;
 use ptu_runs::run_diagnosis::Answer;
 
@@ -48,8 +47,7 @@ pub struct Sheet {
     pub more_traces: usize,
     /// Diagnosis of the unit's parts, or why there is none.
     pub diagnosis: Result<Answer, Trouble>,
-    /// Names of parts in English and Korean, by their short name.
-    pub parts: BTreeMap<String, [String; 2]>,
+    pub parts: PartNames,
 }
 
 /// A trace on a test sheet.

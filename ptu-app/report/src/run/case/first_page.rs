@@ -18,7 +18,7 @@ const MOST_ROWS: usize = 8;
 const MOST_LETTERS: usize = 180;
 
 impl CaseSheet {
-    /// The first page, and as many rows of the comparison as it has room for.
+    /// The first page, and the number of rows of the comparison for which it has room.
     pub(super) fn first_page(&self, words: &Words) -> (Vec<Block>, usize) {
         let make = |rows| (self.with_rows(rows, words), rows);
         let mut fewer = (1..=MOST_ROWS).rev().map(make);
