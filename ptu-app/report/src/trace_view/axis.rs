@@ -4,7 +4,7 @@ use fault_db::TraceData;
 
 use super::Window;
 
-/// Signals that tell where the train is, the truest first, m.
+/// Signals with the place of the train, m, the true place before the place that the unit reports.
 const POSITIONS: [&str; 2] = ["train_position", "position"];
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,6 +89,25 @@ impl Axis {
         })
     }
 
+    /// An axis on which each row lies at its own place.
+    pub fn places(at_m: Vec<f64>) -> Self {
+        Self::Distance {
+            at_m,
+            rows_back: 0,
+            back_m: 0.0,
+        }
+    }
+
+    /// The axis of a trace that lies this many rows later; `None` when no signal of the trace tells a distance.
+    pub fn of(kind: Kind, trace: &TraceData, later_rows: i64) -> Option<Self> {
+        let trigger = i64::from(trace.trigger_row.unwrap_or(0));
+        let zero_row = trigger.saturating_sub(later_rows);
+        match kind {
+            Kind::Time => Some(Self::time(trace, zero_row)),
+            Kind::Distance => Self::distance(trace, zero_row),
+        }
+    }
+
     pub fn kind(&self) -> Kind {
         match self {
             Self::Time { .. } => Kind::Time,
@@ -115,7 +134,7 @@ impl Axis {
         }
     }
 
-    /// All of it, the time for which the last row holds included.
+    /// The whole axis, with the time for which the last row holds.
     pub fn whole(&self) -> Window {
         let (from, to) = (self.at(0), self.at(self.rows()));
         // A train that stands still has run no way.
@@ -150,7 +169,7 @@ impl Axis {
         }
     }
 
-    /// Smallest distance between two places; less is none.
+    /// Distance below which two places are one.
     fn crumb(&self) -> f64 {
         match self {
             Self::Time { period_us, .. } => *period_us as f64 * 1e-9,

@@ -8,10 +8,8 @@ use std::sync::Arc;
 use super::listing::OpenTrace;
 use super::statistics::{self, Statistics};
 use super::view::{Summary, TraceView};
-use super::{Axis, Kind, VisibleRange, Window, choose};
+use super::{Axis, Kind, OverlayTrace, VisibleRange, Window, choose};
 use crate::ticks;
-pub use behind::OverlayTrace;
-use behind::behind_axis;
 
 /// Fewest rows in view.
 const FEWEST_ROWS: f64 = 8.0;
@@ -38,15 +36,15 @@ pub struct Lane {
     pub joined: bool,
 }
 
-/// Before the name of a signal that is to be drawn in the lane of the one above it, where signals are listed.
+/// Sign before a listed signal that is drawn in the lane of the signal above it.
 const JOINED: char = '+';
 
-/// The signal of an entry of such a list.
+/// Name of the signal in an entry of a list of signals.
 pub fn bare(entry: &str) -> &str {
     entry.strip_prefix(JOINED).unwrap_or(entry)
 }
 
-/// The entry of the same signal in a lane of its own, or in that of the one above it.
+/// The entry of the same signal, moved into the lane of the signal above it or back into a lane of its own.
 pub fn toggled(entry: &str) -> String {
     match entry.strip_prefix(JOINED) {
         Some(alone) => alone.to_owned(),
@@ -67,7 +65,7 @@ pub struct TracePlot {
     pub behind: Option<OverlayTrace>,
     /// Views before each zoom, the latest last.
     before: Vec<Window>,
-    /// Statistics of these rows, by lane; empty until asked for.
+    /// Rows, and their statistics by lane; empty until somebody asks for statistics.
     said: (Range<usize>, Vec<Option<Statistics>>),
 }
 
@@ -103,7 +101,7 @@ impl TracePlot {
         if self.axis.kind() == kind {
             return true;
         }
-        let Some(axis) = axis(&self.opened.view, kind, 0) else {
+        let Some(axis) = Axis::of(kind, self.opened.view.data(), 0) else {
             return false;
         };
         self.before.clear();
@@ -114,7 +112,7 @@ impl TracePlot {
         }
         self.axis = axis;
         if let Some(behind) = &mut self.behind {
-            behind.axis = behind_axis(&behind.overlay.view, kind, behind.shift_rows);
+            behind.set_axis(kind);
         }
         true
     }
@@ -309,15 +307,6 @@ fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
         Kind::Distance => LEAST_WAY_M,
     };
     VisibleRange::new(axis.whole(), least)
-}
-
-/// Axis of a trace, with 0 this many rows before the trigger.
-fn axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Option<Axis> {
-    let zero_row = (view.trigger_row() as i64).saturating_sub(shift_rows);
-    match kind {
-        Kind::Time => Some(Axis::time(view.data(), zero_row)),
-        Kind::Distance => Axis::distance(view.data(), zero_row),
-    }
 }
 
 #[cfg(test)]
