@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use crate::trace_notes::TraceNote;
 use ptu_runs::clock::rfc3339;
 
-/// The name it is kept under in files that have named metadata.
+/// Name of the description in files that have named metadata.
 pub const NAME: &str = "ptu.trace";
 
-/// Whose trace it is, when it was recorded, and what its signals are; of a part of a trace that part's.
+/// Unit, time and signals of a trace, or of the part of a trace that a file holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TraceInfo {
     pub trace_id: String,

@@ -25,7 +25,7 @@ pub struct Aligned {
     pub window_s: (f64, f64),
     /// Whether the file's samples came at the trace's own rows.
     pub is_row_by_row: bool,
-    /// Whether the file is of another time, and its beginning was laid at the trace's.
+    /// Whether the file is of another time, so that its beginning was laid at the beginning of the trace.
     pub laid_at_begin: bool,
 }
 

@@ -13,7 +13,7 @@ use ptu_runs::failure::{Asked, Failure};
 /// Rows that are in memory at once, of all signals.
 const ROWS_AT_ONCE: usize = 4096;
 
-/// A span of time in seconds from the trigger; an end that is not given is that of the trace.
+/// A span of time in seconds from the trigger; an end that is not given is the end of the trace.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seconds {
     from: Option<f64>,
@@ -49,7 +49,7 @@ impl Seconds {
     /// The rows at these times, both ends included.
     ///
     /// # Errors
-    /// The trace has none there; its own span is told.
+    /// The trace has no row there; the error names the span of the trace.
     pub fn rows(&self, head: &TraceHead) -> Result<Range<usize>, Failure> {
         let trigger = i64::from(head.trigger_row.unwrap_or(0));
         let period_s = head.period_us as f64 / 1e6;

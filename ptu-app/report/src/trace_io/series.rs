@@ -69,7 +69,7 @@ impl Table {
     }
 }
 
-/// Refuses a file that memory is not meant for, by what it has so far.
+/// Refuses a file with more signals or samples than are held in memory.
 pub(super) fn check_size(file: &Path, signals: usize, samples: usize) -> Result<(), Failure> {
     let more = if signals > MOST_SIGNALS {
         format!("{MOST_SIGNALS} signals")
@@ -97,7 +97,7 @@ pub(super) fn in_order(table: &mut Table) {
     }
 }
 
-/// A number of unknown kind, as which a signal is taken that no trace has.
+/// Channel of a signal that no trace has: a number without a unit.
 pub(super) fn plain(name: &str) -> Channel {
     Channel {
         name: name.to_owned(),
