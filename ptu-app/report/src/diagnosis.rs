@@ -99,21 +99,19 @@ pub fn diagnosis_text(answer: &Answer, all: bool, words: &Words) -> String {
     }
     for (probability, possible) in ranked(d, if all { usize::MAX } else { MOST_PARTS }) {
         let percent = 100.0 * probability;
-        let _ = match possible {
+        match possible {
             Possible::NoFault => {
-                writeln!(text, "\n{percent:5.1} %  {}", words.diagnosis.no_fault)
+                text += &format!("\n{percent:5.1} %  {}\n", words.diagnosis.no_fault);
             }
             Possible::Part(c) if all => {
-                let _ = writeln!(text, "\n{percent:5.1} %  {}", c.lru);
+                text += &format!("\n{percent:5.1} %  {}\n", c.lru);
                 faults_text(&mut text, (answer, c), probability, words);
-                Ok(())
             }
             Possible::Part(c) => {
                 part_text(&mut text, d, c, words);
                 reasons_text(&mut text, (answer, c), false, words);
-                Ok(())
             }
-        };
+        }
     }
     let shown = ranked(d, MOST_PARTS);
     let likely = |lru: &String| {

@@ -22,7 +22,7 @@ mod steps;
 mod the_run;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use fault_db::{Id, RunDetail, TraceData};
 

@@ -137,13 +137,11 @@ fn columns(
     })?;
     let (unit, is_utc) = match values {
         Values::Times { unit, is_utc } => (unit, is_utc),
-        Values::Numbers(_) => (asked.unit(time.name(), None), false),
-        _ => {
-            return Err(wrong(
-                file,
-                &format!("column \"{}\" has no times", time.name()),
-            ));
+        Values::Words => {
+            let what = format!("column \"{}\" has no times", time.name());
+            return Err(wrong(file, &what));
         }
+        _ => (asked.unit(time.name(), None), false),
     };
     let mut signals = Vec::new();
     for (at, column) in all.iter().enumerate() {

@@ -8,21 +8,12 @@ use fault_db::TraceData;
 use super::Axis;
 use crate::trace_io::csv::{put_headings, put_row};
 
-/// Time in seconds from the trigger, the way in metres where one is asked for, then a column a channel;
-/// an unknown sample is empty.
+/// Writes the time in seconds from the trigger, the way in metres where one is asked for, then a column a channel; an
+/// unknown sample is empty.
+///
+/// # Errors
+/// `out` fails.
 pub fn csv(
-    trace: &TraceData,
-    channels: &[usize],
-    rows: Range<usize>,
-    distance: Option<&Axis>,
-) -> String {
-    let mut text = Vec::new();
-    // Memory takes all that is written to it, and numbers and names are text.
-    let _ = put(&mut text, trace, channels, rows, distance);
-    String::from_utf8(text).unwrap_or_default()
-}
-
-fn put(
     out: &mut impl Write,
     trace: &TraceData,
     channels: &[usize],
@@ -56,10 +47,15 @@ mod tests {
         data.trigger_row = Some(2);
         data.channels[0].unit = "km/h".into();
         let axis = Axis::distance(&data, 2);
+        let text = |channels: &[usize], rows, distance| {
+            let mut text = Vec::new();
+            csv(&mut text, &data, channels, rows, distance).expect("written");
+            String::from_utf8(text).expect("text")
+        };
         let expected = "\u{feff}time_s,speed_kmh\n-0.050,2.5\n0.000,\n";
-        assert_eq!(csv(&data, &[0], 1..3, None), expected);
+        assert_eq!(text(&[0], 1..3, None), expected);
         let expected = "\u{feff}time_s,distance_m,train_position,speed_kmh\n0.050,1.00,3,4\n";
-        assert_eq!(csv(&data, &[1, 0], 3..9, axis.as_ref()), expected);
-        assert_eq!(csv(&data, &[], 0..0, None), "\u{feff}time_s\n");
+        assert_eq!(text(&[1, 0], 3..9, axis.as_ref()), expected);
+        assert_eq!(text(&[], 0..0, None), "\u{feff}time_s\n");
     }
 }

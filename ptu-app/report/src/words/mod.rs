@@ -43,6 +43,7 @@ pub use traces::Traces;
 use std::borrow::Cow;
 
 use btu_rig::procedure::Procedure;
+use protocol::signal::Signal;
 
 /// Declares one part of the catalogue: `key: "English", "한국어";` per wording. `{name}` in a wording
 /// is filled in by [`fill`].
@@ -152,6 +153,18 @@ impl Words {
         }
     }
 
+    /// A text as it is written in English; in Korean what is said in its place, if there is anything.
+    fn or_korean<'a>(
+        &self,
+        text: &'a str,
+        korean: impl FnOnce() -> Option<String>,
+    ) -> Cow<'a, str> {
+        match self.language {
+            Language::English => Cow::Borrowed(text),
+            Language::Korean => korean().map_or(Cow::Borrowed(text), Cow::Owned),
+        }
+    }
+
     /// Title of a procedure, in this language if the script has it.
     pub fn title<'a>(&self, procedure: &'a Procedure) -> &'a str {
         match (self.language, &procedure.title_ko) {
@@ -162,11 +175,7 @@ impl Words {
 
     /// Name of a recorded signal in few words; in English its name in scripts and tables.
     pub fn signal<'a>(&self, name: &'a str) -> Cow<'a, str> {
-        let said = match self.language {
-            Language::English => None,
-            Language::Korean => say::condition::signal(name),
-        };
-        said.map_or(Cow::Borrowed(name), Cow::Owned)
+        self.or_korean(name, || Signal::from_name(name).map(say::condition::name))
     }
 
     /// Name of a part of the catalogue.
@@ -176,11 +185,7 @@ impl Words {
 
     /// A state of a signal, as it is stored.
     pub fn state<'a>(&self, signal: &str, label: &'a str) -> Cow<'a, str> {
-        let said = match self.language {
-            Language::English => None,
-            Language::Korean => say::condition::state(signal, label),
-        };
-        said.map_or(Cow::Borrowed(label), Cow::Owned)
+        self.or_korean(label, || say::condition::state(signal, label))
     }
 
     /// Unit of a measured value: SI units as they are, words in this language.
@@ -196,12 +201,10 @@ impl Words {
 
     /// Name of a measurement, which scripts give, but for those of the unit's self-test.
     pub fn measurement<'a>(&self, name: &'a str) -> Cow<'a, str> {
-        let korean = || match self.language {
-            Language::English => None,
-            Language::Korean => content::measurement(name),
-        };
-        let said = self.bench.self_test_item(name).or_else(korean);
-        said.map_or(Cow::Borrowed(name), Cow::Owned)
+        match self.bench.self_test_item(name) {
+            Some(item) => Cow::Owned(item),
+            None => self.or_korean(name, || content::measurement(name)),
+        }
     }
 }
 

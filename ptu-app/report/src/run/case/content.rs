@@ -35,11 +35,9 @@ impl CaseSheet {
         let fits = fewer.find(|blocks| page::count(blocks) <= PAGES);
         blocks.extend(fits.unwrap_or_else(|| make(0)));
         if self.with_annex {
-            let report = &words.report;
-            let after = self.after.as_ref().map(|sheet| (sheet, report.after));
-            for (sheet, when) in [(&self.before, report.before)].into_iter().chain(after) {
-                blocks.extend(annex(sheet, when, words));
-            }
+            let when = [words.report.before, words.report.after];
+            let runs = self.sheets().zip(when);
+            blocks.extend(runs.flat_map(|(sheet, when)| annex(sheet, when, words)));
         }
         blocks
     }
