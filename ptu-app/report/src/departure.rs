@@ -19,21 +19,21 @@ const VALID_US: i64 = 86_400_000_000;
 /// Most steps that were not run of which each is named.
 const MOST_NAMED: usize = 3;
 
-/// Whether and until when a run holds as a departure test.
+/// A run as a departure test: until when it is valid, or why it is not.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Departure {
     /// Serial number of the unit.
     pub unit: String,
-    /// Until when it holds, µs.
+    /// End of the time for which the test is valid, µs.
     pub until_us: i64,
-    /// Why it does not hold, in English and Korean.
+    /// Reasons for which the test is not valid, in English and Korean.
     pub why_not: Vec<[String; 2]>,
 }
 
 impl Departure {
-    /// Of a run in which departure tests were due. A run holds that is of departure tests alone, whole, on a real unit without
-    /// injected faults, passed and signed.
+    /// Of a run in which departure tests were due. The test is valid if the run was of departure tests alone, whole, on a real
+    /// unit without injected faults, passed and signed.
     pub fn of(run: &RunDetail) -> Option<Self> {
         let is_departure = |path: &str| path.starts_with(DEPARTURE);
         if !run.scripts.iter().any(|script| is_departure(&script.path)) {
@@ -86,7 +86,7 @@ impl Departure {
         Some(departure)
     }
 
-    /// Adds a reason for which it does not hold, once, with what is filled in as each language has it.
+    /// Adds a reason for which the test is not valid, in both languages; a reason that is known already is not added again.
     pub fn add(&mut self, why: impl Fn(&'static Words) -> String) {
         let why = Language::ALL.map(|language| why(language.words()));
         if !self.why_not.contains(&why) {
@@ -94,7 +94,7 @@ impl Departure {
         }
     }
 
-    /// A later departure test of this unit that failed ends it.
+    /// Adds a reason for each later departure test of this unit that failed.
     ///
     /// # Errors
     /// The store cannot be read.
@@ -116,7 +116,7 @@ impl Departure {
         Ok(())
     }
 
-    /// The same at the present time, at which it may be too old.
+    /// The test as it stands now: with a reason if its time is over.
     pub fn now(mut self) -> Self {
         if self.why_not.is_empty() && now_us() > self.until_us {
             let at = local_zoned(self.until_us);
@@ -125,14 +125,14 @@ impl Departure {
         self
     }
 
-    /// Why it does not hold; empty where it does.
+    /// Reasons for which the test is not valid; empty if it is valid.
     pub fn why_not(&self, words: &Words) -> Vec<&str> {
         let place = usize::from(words.language == Language::Korean);
         let said = self.why_not.iter().map(|why| why[place].as_str());
         said.collect()
     }
 
-    /// Name and text of the fact that it holds until a time, or does not hold.
+    /// Name and text of the fact: until when the test is valid, or why it is not.
     pub fn fact(&self, words: &Words) -> (String, String) {
         match self.why_not.is_empty() {
             true => (words.report.valid_until.into(), local_zoned(self.until_us)),

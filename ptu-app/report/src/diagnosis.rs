@@ -64,7 +64,7 @@ pub fn shown_reasons(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<
         .collect()
 }
 
-/// All of them, held against the dictionary.
+/// All reasons, held against the dictionary.
 fn details(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<String> {
     let detail = |reason: &Reason| {
         let said = || words.reason(reason, &answer.run);
@@ -73,8 +73,8 @@ fn details(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<String> {
     reasons.iter().map(detail).collect()
 }
 
-/// For people. Three parts at most, each by its likeliest fault and the reasons that convince most, or all of them with
-/// what the dictionary has if `all`; the part that was asked about alone if one was.
+/// Text for people: three parts at most, each by its likeliest fault and the reasons that convince most; with `all` all parts
+/// and all reasons, held against the dictionary; of the part that was asked about alone, if one was.
 pub fn diagnosis_text(answer: &Answer, all: bool, words: &Words) -> String {
     let d = &answer.diagnosis;
     let run = &answer.run.run;

@@ -4,7 +4,7 @@ use ptu_runs::run_diagnosis::RepairProof;
 
 use crate::words::{Words, fill};
 
-/// One sentence for the repairs that are proven, and one for those that are not, by what is missing; empty without any.
+/// One sentence on the proven repairs, and one for each way in which repairs are not proven; empty without a repair.
 /// Several faults share a sentence, which tells the least favourable figures.
 pub fn proof_text(proofs: &[RepairProof], words: &Words) -> String {
     let report = &words.report;

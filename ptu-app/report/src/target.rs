@@ -87,7 +87,7 @@ impl Target {
         whole_file::write(&self.path, self.kind(), content?)
     }
 
-    /// A sheet of paper. Letters that it has as codes are told.
+    /// A sheet of paper. A note on stderr names the letters that stand on it as codes.
     fn on_paper(&self, sheet: &impl Printed, words: &Words) -> Result<Vec<u8>, Failure> {
         let (document, coded) = run::pdf(sheet, words)?;
         if !coded.is_empty() {

@@ -104,7 +104,8 @@ pub fn export_history(store: &Store, to: &Path) -> Result<Exported, Failure> {
     Ok(done)
 }
 
-/// Months that have rows of a view, each with what tells other rows; one month of any time if it has no time.
+/// Months that have rows of a view, each with a text that differs if its rows differ; one month without a name if the view has
+/// no time.
 fn months(store: &Store, view: &View) -> Result<BTreeMap<String, String>, Failure> {
     let Some(time) = view.time else {
         return Ok(BTreeMap::from([(String::new(), String::new())]));

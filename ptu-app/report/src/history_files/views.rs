@@ -6,7 +6,7 @@ pub(super) struct View {
     pub time: Option<&'static str>,
     /// Order of its rows, complete; the first column tells the rows of one history from those of another.
     pub order: &'static str,
-    /// Rows are added to it, and none of them ever changes.
+    /// Rows are added to the view, and a row never changes.
     pub is_final: bool,
     /// Names of the columns, as a question in SQL has them.
     pub columns: &'static str,
@@ -40,7 +40,7 @@ impl Kind {
     }
 }
 
-/// All of them: what `fault-db/VIEWS.md` describes.
+/// All views that `fault-db/VIEWS.md` describes.
 pub(super) const VIEWS: &[View] = &[
     View {
         name: "runs",

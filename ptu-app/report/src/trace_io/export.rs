@@ -56,7 +56,7 @@ pub fn export(chosen: &TracePart<'_>, to: &Path, force: bool) -> Result<(), Fail
             let document = csv::description(&name, &chosen.about);
             writeln!(description, "{document:#}").map_err(|error| cannot_write(&beside, &error))?;
             put_csv(&mut file, chosen, to)?;
-            // Both are whole before the first of them takes its place.
+            // Both files are whole before the first one takes its place.
             description.settle()?;
             file.settle()?;
             description.finish()?;

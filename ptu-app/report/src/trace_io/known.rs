@@ -19,7 +19,7 @@ pub(super) const OWN: &str = " (own column)";
 pub(super) struct Known {
     pub channel: Channel,
     words: HashMap<String, f64>,
-    /// Whether it is one of the signals that were known, not just a number of that name.
+    /// Whether a trace has the signal; else it is a number with the name of a column.
     pub is_of_a_trace: bool,
 }
 

@@ -89,10 +89,10 @@ impl<W: Write + Seek> RunMcap<W> {
         Ok(())
     }
 
-    /// Ends the file; what it was written to.
+    /// Ends the file; returns the writer that was given to `begin`.
     ///
     /// # Errors
-    /// Some of it could not be written.
+    /// A part of the file could not be written.
     pub fn finish(mut self, outcome: Option<&Outcome>) -> Result<W, McapError> {
         if let Some(outcome) = outcome {
             let last = self.lines.finished(outcome);

@@ -10,7 +10,7 @@ use super::times::Columns;
 use super::{csv_read, mcap_read, parquet_read};
 use ptu_runs::failure::{Failure, FileTrouble};
 
-/// A file has at most this many signals; a trace of ours has a few hundred.
+/// Most signals that are read of a file; a trace of this program has a few hundred.
 const MOST_SIGNALS: usize = 4096;
 
 /// Signals that were sampled together.
@@ -63,7 +63,7 @@ pub fn import(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import,
 }
 
 impl Table {
-    /// Samples in it: the times are a column, too.
+    /// Number of samples in the table, in which the times are a column, too.
     pub(super) fn samples(&self) -> usize {
         self.times_us.len().saturating_mul(self.columns.len() + 1)
     }

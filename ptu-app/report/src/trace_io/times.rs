@@ -12,7 +12,7 @@ pub struct Columns {
     pub names: Vec<(String, String)>,
     /// Heading of the times.
     pub time: Option<String>,
-    /// Unit of the times; else their heading says it.
+    /// Unit of the times; `None` = as their heading says.
     pub unit: Option<TimeUnit>,
 }
 
@@ -29,7 +29,7 @@ pub enum TimeUnit {
     Nanoseconds,
 }
 
-/// A time, µs, and whether it is one of the calendar (UTC, since 1970).
+/// A time, µs: since 1970 (UTC), or from the trigger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Time {
     pub us: i64,

@@ -70,7 +70,7 @@ impl Axis {
         let (mut farthest, mut rows_back, mut back_m) = (first * sign, 0, 0.0_f64);
         let mut at_m: Vec<f64> = Vec::with_capacity(column.len());
         for m in column {
-            // Where it is not known the train stays where it was.
+            // Where the place is not known the train stays where it was.
             if *m * sign > farthest {
                 farthest = *m * sign;
             } else if *m * sign < farthest {
@@ -147,7 +147,7 @@ impl Axis {
         self.first_from(place + self.crumb()).checked_sub(1)
     }
 
-    /// Rows of which something is in view: the one that still holds when it begins is one of them.
+    /// Rows in view, with the row that still holds when the view begins.
     pub fn rows_in(&self, window: Window) -> std::ops::Range<usize> {
         let first = self.row_at(window.from).unwrap_or(0);
         let last = self.row_at(window.to).map_or(0, |row| row + 1);
@@ -177,7 +177,7 @@ impl Axis {
         }
     }
 
-    /// Sets the first rows of this many columns.
+    /// Fills `edges` with the first row of each of this many columns.
     pub fn edges(&self, window: Window, columns: usize, edges: &mut Edges) {
         let place = |column: usize| window.at(column as f64 / columns.max(1) as f64);
         edges.rows.clear();

@@ -43,8 +43,8 @@ pub fn usual(view: &TraceView) -> Vec<String> {
         .collect()
 }
 
-/// Activity of a signal around the trigger: a quantity by the share of all it ever did, from 0 to 1; a
-/// choice or bit 1 when it changed, and hardly more when it did so often.
+/// Activity of a signal around the trigger: of a quantity its range there as a share of its whole range, from 0 to 1; of a
+/// choice or bit 2 after one change, and nearer to 1 the more changes there were.
 fn activity(view: &TraceView, place: usize) -> f64 {
     let around = (AROUND_S * 1e6 / view.data().period_us.max(1) as f64) as usize;
     let trigger = view.trigger_row();

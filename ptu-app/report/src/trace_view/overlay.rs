@@ -14,7 +14,7 @@ use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::replay::{Comparison, Deviation, Original, Rule, compare, good_twin, rule_between};
 
-/// A trace that another is compared with.
+/// Source of the trace with which a trace is compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OverlaySource {
     /// The trace of a sound unit under the same stimuli.

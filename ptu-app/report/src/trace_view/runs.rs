@@ -57,7 +57,7 @@ impl Runs {
         known.windows(2).filter(|two| two[0].1 != two[1].1).count()
     }
 
-    /// Rows per known value among these rows, by value.
+    /// Number of these rows for each known value, by value.
     pub fn shares(&self, rows: Range<usize>) -> Vec<(f64, usize)> {
         let mut shares: BTreeMap<i64, usize> = BTreeMap::new();
         let mut run = self.run_at(rows.start);

@@ -30,7 +30,7 @@ pub struct Lane {
     pub signal: String,
     /// Where the signal is in the trace; `None` = the trace lacks it.
     pub place: Option<usize>,
-    /// Size it was given, 1 = as usual.
+    /// Height as a multiple of the usual height.
     pub stretch: f32,
     /// The signal is drawn in the lane of the signal above it.
     pub joined: bool,
@@ -52,7 +52,7 @@ pub fn toggled(entry: &str) -> String {
     }
 }
 
-/// A trace as it is looked at.
+/// A trace with all that a person has chosen to see of it.
 #[derive(Debug)]
 pub struct TracePlot {
     pub opened: Arc<OpenTrace>,
@@ -70,7 +70,7 @@ pub struct TracePlot {
 }
 
 impl TracePlot {
-    /// All of a trace over time, with these signals; with the usual ones if there are none.
+    /// The whole trace over time, with these signals; with the usual signals if the list is empty.
     pub fn new(opened: Arc<OpenTrace>, signals: &[String]) -> Self {
         let axis = Axis::time(opened.view.data(), opened.view.trigger_row() as i64);
         let mut scene = Self {
@@ -117,7 +117,7 @@ impl TracePlot {
         true
     }
 
-    /// Shows these signals from top to bottom; the usual ones if there are none.
+    /// Shows these signals from top to bottom; the usual signals if the list is empty.
     pub fn set_signals(&mut self, signals: &[String]) {
         let usual;
         let signals = if signals.is_empty() {
@@ -152,7 +152,7 @@ impl TracePlot {
         self.lanes.iter().map(entry).collect()
     }
 
-    /// Whether a signal can be drawn in the lane of the one above it: both are quantities of the same unit.
+    /// Whether a signal can be drawn in the lane of the signal above it: both are quantities of the same unit.
     pub fn can_join(&self, lane: usize) -> bool {
         let unit = |lane: usize| {
             let place = self.lanes.get(lane)?.place?;
@@ -287,7 +287,7 @@ impl TracePlot {
         }
     }
 
-    /// Statistics by lane over those rows; `None` for a signal the trace lacks.
+    /// Statistics by lane over [`stretch_rows`](Self::stretch_rows); `None` for a signal that the trace lacks.
     pub fn statistics(&mut self) -> &[Option<Statistics>] {
         let (rows, _) = self.stretch_rows();
         if self.said.0 != rows || self.said.1.len() != self.lanes.len() {

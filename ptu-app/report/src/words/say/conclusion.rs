@@ -215,7 +215,7 @@ pub(super) fn tells(next: &NextCheck, names: &[Lru]) -> Both {
     }
 }
 
-/// Named parts, one of which it is.
+/// Named parts of which one has failed.
 fn one_or_other(named: &[Both]) -> Both {
     joined(named, [" or ", " 또는 "])
 }

@@ -37,7 +37,7 @@ pub(super) fn fault_text(text: &FaultText) -> Both {
     }
 }
 
-/// The step, and what it measured beyond a limit, or else what it found first, or its result.
+/// The step with its value beyond a limit, or else with its first finding, or else with its result.
 pub(super) fn step_found(step: &StepReason, run: &RunDetail) -> Both {
     let is_it = |record: &&fault_db::StepRecord| {
         record.procedure == step.check.procedure && record.name == step.check.step
