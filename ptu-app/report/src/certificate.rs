@@ -58,7 +58,7 @@ impl Block {
     /// The page that begins so with this certificate, in its one form.
     fn page(&self, begins: &str) -> String {
         let json = canonical_json(&serde_json::to_value(self).unwrap_or_default());
-        // No sign of JSON's own: nothing in it ends the element.
+        // JSON needs no `<` of its own: nothing in the text ends the element.
         let json = json.replace('<', "\\u003c");
         format!("{begins}{BEGIN}{json}{END}{PAGE_END}")
     }

@@ -19,36 +19,36 @@ const VALID_US: i64 = 86_400_000_000;
 /// Most steps that were not run of which each is named.
 const MOST_NAMED: usize = 3;
 
-/// What a run is worth as a departure test.
+/// A run as a departure test: until when it is valid, or why it is not.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Departure {
     /// Serial number of the unit.
     pub unit: String,
-    /// Until when it holds, µs.
+    /// End of the time for which the test is valid, µs.
     pub until_us: i64,
-    /// Why it does not hold, in English and Korean.
+    /// Reasons for which the test is not valid, in English and Korean.
     pub why_not: Vec<[String; 2]>,
 }
 
-/// A sentence of both languages, with what is filled in as that language has it.
-fn both(sentence: impl Fn(&'static Words) -> String) -> [String; 2] {
-    [Language::English, Language::Korean].map(|language| sentence(language.words()))
-}
-
 impl Departure {
-    /// Of a run in which departure tests were due; a good one is these alone, whole, on a real unit without injected faults,
-    /// all passed, and signed.
+    /// Of a run in which departure tests were due. The test is valid if the run was of departure tests alone, whole, on a real
+    /// unit without injected faults, passed and signed.
     pub fn of(run: &RunDetail) -> Option<Self> {
         let is_departure = |path: &str| path.starts_with(DEPARTURE);
         if !run.scripts.iter().any(|script| is_departure(&script.path)) {
             return None;
         }
-        let mut why_not = Vec::new();
-        if !run.scripts.iter().all(|script| is_departure(&script.path)) {
-            why_not.push(both(|words| words.verify.with_others.into()));
-        }
         let run_of = &run.run;
+        let finished_us = run_of.finished_at_us.unwrap_or(run_of.started_at_us);
+        let mut departure = Self {
+            unit: run_of.unit_serial.clone(),
+            until_us: finished_us.saturating_add(VALID_US),
+            why_not: Vec::new(),
+        };
+        if !run.scripts.iter().all(|script| is_departure(&script.path)) {
+            departure.add(|words| words.verify.with_others.into());
+        }
         let counts = counts_of(run_of);
         let skipped = standing(&run.steps).filter(|step| step.verdict == Verdict::Skipped);
         // Of many that were not run the number tells more than their names.
@@ -61,49 +61,40 @@ impl Departure {
                 Verdict::Skipped => |words| words.verify.step_skipped,
                 _ => |words| words.verify.step_not_tested,
             };
-            let said = both(|words| fill(said(words), &[("step", &words.record(step))]));
-            if !why_not.contains(&said) {
-                why_not.push(said);
-            }
+            departure.add(|words| fill(said(words), &[("step", &words.record(step))]));
         }
         if counts.not_run() > 0 && !named {
             let of: [(&str, &dyn Display); 2] = [("n", &counts.not_run()), ("of", &counts.planned)];
-            why_not.push(both(|words| fill(words.verify.steps_not_run, &of)));
+            departure.add(|words| fill(words.verify.steps_not_run, &of));
         }
         let evidence = run_of.evidence.as_deref().and_then(Evidence::of);
         if run_of.continues.is_some() || evidence.is_none_or(|evidence| evidence.is_part) {
-            why_not.push(both(|words| words.verify.is_part.into()));
+            departure.add(|words| words.verify.is_part.into());
         }
         if let Some(faults) = run_of.injected.as_ref().filter(|faults| !faults.is_empty()) {
-            why_not.push(both(|words| {
-                fill(words.verify.with_faults, &[("faults", faults)])
-            }));
+            departure.add(|words| fill(words.verify.with_faults, &[("faults", faults)]));
         }
         if is_practice(&run_of.source, None) {
-            why_not.push(both(|words| words.verify.of_simulated.into()));
+            departure.add(|words| words.verify.of_simulated.into());
         }
-        if run_of.verdict != Some(Verdict::Passed) && why_not.is_empty() {
-            why_not.push(both(|words| words.verify.no_pass.into()));
+        if run_of.verdict != Some(Verdict::Passed) && departure.why_not.is_empty() {
+            departure.add(|words| words.verify.no_pass.into());
         }
         if run.signature.is_none() {
-            why_not.push(both(|words| words.verify.departure_unsigned.into()));
+            departure.add(|words| words.verify.departure_unsigned.into());
         }
-        Some(Self {
-            unit: run_of.unit_serial.clone(),
-            until_us: run_of
-                .finished_at_us
-                .unwrap_or(run_of.started_at_us)
-                .saturating_add(VALID_US),
-            why_not,
-        })
+        Some(departure)
     }
 
-    /// One more reason for which it does not hold.
+    /// Adds a reason for which the test is not valid, in both languages; a reason that is known already is not added again.
     pub fn add(&mut self, why: impl Fn(&'static Words) -> String) {
-        self.why_not.push(both(why));
+        let why = Language::ALL.map(|language| why(language.words()));
+        if !self.why_not.contains(&why) {
+            self.why_not.push(why);
+        }
     }
 
-    /// A later departure test of this unit that failed ends it.
+    /// Adds a reason for each later departure test of this unit that failed.
     ///
     /// # Errors
     /// The store cannot be read.
@@ -119,31 +110,29 @@ impl Departure {
             if is_real && Self::of(&store.run(later.id)?).is_some() {
                 let at = local_zoned(later.started_at_us);
                 let of: [(&str, &dyn Display); 2] = [("run", &later.id.short()), ("at", &at)];
-                let said = both(|words| fill(words.verify.later_failed, &of));
-                self.why_not.push(said);
+                self.add(|words| fill(words.verify.later_failed, &of));
             }
         }
         Ok(())
     }
 
-    /// It holds now, or why it does not.
+    /// The test as it stands now: with a reason if its time is over.
     pub fn now(mut self) -> Self {
         if self.why_not.is_empty() && now_us() > self.until_us {
             let at = local_zoned(self.until_us);
-            let said = both(|words| fill(words.verify.was_valid_until, &[("at", &at)]));
-            self.why_not.push(said);
+            self.add(|words| fill(words.verify.was_valid_until, &[("at", &at)]));
         }
         self
     }
 
-    /// Why it does not hold; empty where it does.
+    /// Reasons for which the test is not valid; empty if it is valid.
     pub fn why_not(&self, words: &Words) -> Vec<&str> {
         let place = usize::from(words.language == Language::Korean);
         let said = self.why_not.iter().map(|why| why[place].as_str());
         said.collect()
     }
 
-    /// What it is worth, as a fact with its name.
+    /// Name and text of the fact: until when the test is valid, or why it is not.
     pub fn fact(&self, words: &Words) -> (String, String) {
         match self.why_not.is_empty() {
             true => (words.report.valid_until.into(), local_zoned(self.until_us)),

@@ -64,7 +64,7 @@ pub fn shown_reasons(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<
         .collect()
 }
 
-/// All of them, held against the dictionary.
+/// All reasons, held against the dictionary.
 fn details(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<String> {
     let detail = |reason: &Reason| {
         let said = || words.reason(reason, &answer.run);
@@ -73,8 +73,8 @@ fn details(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<String> {
     reasons.iter().map(detail).collect()
 }
 
-/// For people. Three parts at most, each by its likeliest fault and the reasons that convince most, or all of them with
-/// what the dictionary has if `all`; the part that was asked about alone if one was.
+/// Text for people: three parts at most, each by its likeliest fault and the reasons that convince most; with `all` all parts
+/// and all reasons, held against the dictionary; of the part that was asked about alone, if one was.
 pub fn diagnosis_text(answer: &Answer, all: bool, words: &Words) -> String {
     let d = &answer.diagnosis;
     let run = &answer.run.run;
@@ -99,21 +99,19 @@ pub fn diagnosis_text(answer: &Answer, all: bool, words: &Words) -> String {
     }
     for (probability, possible) in ranked(d, if all { usize::MAX } else { MOST_PARTS }) {
         let percent = 100.0 * probability;
-        let _ = match possible {
+        match possible {
             Possible::NoFault => {
-                writeln!(text, "\n{percent:5.1} %  {}", words.diagnosis.no_fault)
+                text += &format!("\n{percent:5.1} %  {}\n", words.diagnosis.no_fault);
             }
             Possible::Part(c) if all => {
-                let _ = writeln!(text, "\n{percent:5.1} %  {}", c.lru);
+                text += &format!("\n{percent:5.1} %  {}\n", c.lru);
                 faults_text(&mut text, (answer, c), probability, words);
-                Ok(())
             }
             Possible::Part(c) => {
                 part_text(&mut text, d, c, words);
                 reasons_text(&mut text, (answer, c), false, words);
-                Ok(())
             }
-        };
+        }
     }
     let shown = ranked(d, MOST_PARTS);
     let likely = |lru: &String| {

@@ -25,7 +25,7 @@ pub fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<Month>, Failure>
         return Ok(Vec::new());
     };
     // Before the history there is nothing, and after now only what a computer with a fast clock recorded:
-    // a span that reaches farther has no months there, and no count is another for it.
+    // a span that reaches farther has no months there, and the same counts.
     let end_us = query.now_us.max(last_us.saturating_add(1));
     let since_us = query
         .filter
@@ -59,10 +59,10 @@ pub fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<Month>, Failure>
 /// Distance that trains with known readings ran in a month, and the faults first seen on them meanwhile.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OnTheWay {
-    /// Distance of all of them, km.
+    /// Distance that all these trains ran, km.
     pub km: f64,
     pub trains: u32,
-    /// Their faults, counted as those of the month are.
+    /// Faults of these trains, counted as the faults of the month are.
     pub faults: u32,
 }
 

@@ -143,6 +143,14 @@ fn measurement_json(measurement: &MeasurementRecord, evidence: Option<&Evidence>
     })
 }
 
+/// A measured value with its limits and its verdict.
+pub(crate) fn value_json(measured: &MeasurementRecord) -> Value {
+    json!({
+        "value": measured.value, "low": measured.low, "high": measured.high,
+        "verdict": measured.verdict.as_str(),
+    })
+}
+
 fn run_fault_json(fault: &RunFault) -> Value {
     json!({
         "id": fault.id.to_string(),

@@ -11,7 +11,7 @@ use crate::shares::{percent, share_json};
 /// Pairs of parts, and answers, that are listed.
 const MOST_LISTED: usize = 20;
 
-/// Both, by what was left out.
+/// Figures with fault modes left out of the dictionary, and with parts left out.
 pub fn left_out_json(left_out: &LeftOut) -> Value {
     let of = |figures: &UnseenFigures| {
         let mut json = figures_json(figures);
@@ -80,7 +80,7 @@ pub fn other_faults_json(faults: &OtherFaults) -> Value {
     json
 }
 
-/// For people; `what` they are.
+/// Text of these figures; `what` names the faults.
 pub fn other_faults_text(what: &str, faults: &OtherFaults) -> String {
     let Share { of, all } = faults.detected;
     let mut text = format!("\n{what}: {of} of {all} runs detected\n");

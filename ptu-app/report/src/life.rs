@@ -25,7 +25,7 @@ pub fn title(life: &Life, words: &Words) -> String {
     format!("{name}: {span}")
 }
 
-/// Where it was, since when and until when.
+/// Place or unit, first and last time there, and number of runs.
 pub fn stay(of: LifeOf, stay: &Stay, words: &Words, parts: &PartNames) -> [String; 4] {
     let place = match of {
         LifeOf::Unit => stay.place.clone(),

@@ -126,10 +126,8 @@ pub fn signal(name: &str, words: &Words) -> String {
 /// Meaning of a fault's code: the event's text, or the stored name as words for a fault that a tester found.
 pub fn event(code: i64, name: &str, words: &Words) -> String {
     let known = u16::try_from(code).ok().and_then(Event::from_code);
-    let text = known.map(|event| match words.language {
-        Language::English => event.definition().text,
-        Language::Korean => event.definition().text_ko,
-    });
+    let text = known.map(Event::definition);
+    let text = text.map(|event| words.choose([event.text, event.text_ko]));
     let by_name = || words.content(&spoken(name)).into_owned();
     text.map_or_else(by_name, str::to_owned)
 }

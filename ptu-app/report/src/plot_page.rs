@@ -15,18 +15,15 @@ pub struct PlotPage {
 impl Printed for PlotPage {
     fn paper(&self, _words: &Words) -> Paper {
         Paper {
-            name: "",
-            unit: String::new(),
             short: self.plot.title.clone(),
             number: self.plot.y_label.clone(),
             program: format!("ptu {}", env!("CARGO_PKG_VERSION")),
-            at_us: 0,
-            across: None,
             blocks: vec![
                 Block::Title(self.plot.title.clone(), String::new()),
                 Block::Plot(Box::new(self.plot.clone())),
                 Block::Text(Tone::Soft, self.made.clone()),
             ],
+            ..Paper::default()
         }
     }
 }

@@ -4,45 +4,19 @@ use ptu_runs::run_diagnosis::RepairProof;
 
 use crate::words::{Words, fill};
 
-/// Proofs of a repair by runs that passed.
-#[derive(Clone, Copy, PartialEq)]
-enum Group {
-    Proven,
-    /// Further runs of this kind can prove the repair.
-    Claimed,
-    /// The fault does not show in such runs.
-    NotShown,
-}
-
-impl Group {
-    fn of(proof: &RepairProof) -> Self {
-        match proof.says.more {
-            Some(0) => Self::Proven,
-            Some(_) => Self::Claimed,
-            None => Self::NotShown,
-        }
-    }
-}
-
-/// One sentence for the repairs that are proven, and one for those that are not, by what is missing; empty without any.
+/// One sentence on the proven repairs, and one for each way in which repairs are not proven; empty without a repair.
 /// Several faults share a sentence, which tells the least favourable figures.
 pub fn proof_text(proofs: &[RepairProof], words: &Words) -> String {
     let report = &words.report;
-    let sentence = |of_group: Group| {
-        let wording = match of_group {
-            Group::Proven => report.repair_proven,
-            Group::Claimed => report.repair_claimed,
-            Group::NotShown => report.repair_not_shown,
-        };
-        let group: Vec<_> = proofs
-            .iter()
-            .filter(|proof| Group::of(proof) == of_group)
-            .collect();
+    let sentence = |wording: &str, is_of_group: fn(Option<u32>) -> bool| {
+        let group = proofs.iter().filter(|proof| is_of_group(proof.says.more));
+        let group: Vec<_> = group.collect();
         let first = group.first()?;
-        let hidden = group.iter().map(|proof| match of_group {
-            Group::Proven => proof.says.hidden,
-            Group::Claimed | Group::NotShown => proof.says.hidden_in_last,
+        let hidden = group.iter().map(|proof| match proof.says.more {
+            Some(0) => proof.says.hidden,
+            _ => proof.says.hidden_in_last,
         });
+        let hidden = format!("{:.0}", 100.0 * hidden.fold(0.0, f64::max));
         let mut faults = format!("{} {}", first.fault.short(), first.code_name);
         if group.len() > 1 {
             faults += &fill(report.and_others, &[("n", &(group.len() - 1))]);
@@ -54,16 +28,20 @@ pub fn proof_text(proofs: &[RepairProof], words: &Words) -> String {
             &[
                 ("fault", &faults),
                 ("passed", &passed.unwrap_or_default()),
-                (
-                    "hidden",
-                    &format!("{:.0}", 100.0 * hidden.fold(0.0, f64::max)),
-                ),
+                ("hidden", &hidden),
                 ("more", &more.unwrap_or_default()),
             ],
         ))
     };
-    let groups = [Group::Proven, Group::Claimed, Group::NotShown];
-    let sentences: Vec<_> = groups.into_iter().filter_map(sentence).collect();
+    // Of the last group the fault does not show in runs of this kind, however many there are.
+    let sentences = [
+        sentence(report.repair_proven, |more| more == Some(0)),
+        sentence(report.repair_claimed, |more| {
+            more.is_some_and(|more| more > 0)
+        }),
+        sentence(report.repair_not_shown, |more| more.is_none()),
+    ];
+    let sentences: Vec<_> = sentences.into_iter().flatten().collect();
     sentences.join("\n")
 }
 

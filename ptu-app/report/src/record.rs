@@ -1,4 +1,4 @@
-//! A recorded run beside what it should have been, as text and as JSON.
+//! A recorded run beside the run of a sound unit, as text and as JSON.
 
 use serde_json::{Value, json};
 

@@ -7,7 +7,7 @@ use ptu_runs::signal::{
 use ptu_runs::table::Table as TextTable;
 
 use crate::plot::{AxisMark, Plot, Raster, Series, Style};
-use crate::run::block::{self, Align, Block, Column, Row, RowKind, Tone};
+use crate::run::block::{self, Align, Block, Column, Row, Tone};
 use crate::run::{Paper, Printed};
 use crate::words::{Words, fill};
 
@@ -211,13 +211,11 @@ impl Printed for Recording {
         blocks.push(Block::Text(Tone::Soft, self.made.clone()));
         Paper {
             name: said.report,
-            unit: String::new(),
             short: self.file.clone(),
             number: self.file.clone(),
             program: format!("ptu {}", env!("CARGO_PKG_VERSION")),
-            at_us: 0,
-            across: None,
             blocks,
+            ..Paper::default()
         }
     }
 }
@@ -236,9 +234,7 @@ fn table(sources: &[Source], words: &Words) -> block::Table {
     let rows = sources.iter();
     block::Table {
         columns: columns.collect(),
-        rows: rows
-            .map(|source| Row::words(RowKind::Head, row(source, words)))
-            .collect(),
+        rows: rows.map(|source| Row::words(row(source, words))).collect(),
     }
 }
 

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use fault_db::{Id, RunDetail, Store};
 use maud::Markup;
 use protocol::display_text;
+use serde_json::Value;
 
 use crate::certificate::attach;
 use crate::json::{json_text, run_json};
@@ -86,7 +87,7 @@ impl Target {
         whole_file::write(&self.path, self.kind(), content?)
     }
 
-    /// A sheet of paper. Letters that it has as codes are told.
+    /// A sheet of paper. A note on stderr names the letters that stand on it as codes.
     fn on_paper(&self, sheet: &impl Printed, words: &Words) -> Result<Vec<u8>, Failure> {
         let (document, coded) = run::pdf(sheet, words)?;
         if !coded.is_empty() {
@@ -125,7 +126,7 @@ impl Target {
 /// Writes reports of a run. What only test sheets say is gathered when one is asked for.
 ///
 /// # Errors
-/// The database cannot be read, or files cannot be written: all others are.
+/// The database cannot be read, or a file cannot be written; the other files are written all the same.
 pub fn write(
     targets: &[Target],
     store: &Store,
@@ -142,7 +143,7 @@ pub fn write(
     let signatures = store.signatures(run.run.id)?;
     let signer = store.signer();
     let content = |target: &Target| {
-        let mut content = content(target, run, sheet.as_ref(), language)?;
+        let mut content = content(target, run, sheet.as_ref(), || run_json(run), language)?;
         if target.is_html() {
             let page = String::from_utf8_lossy(&content).into_owned();
             if signer.is_some() {
@@ -172,7 +173,7 @@ fn refuse_changed(store: &Store, run: Id) -> Result<(), Failure> {
 /// Writes reports of a case.
 ///
 /// # Errors
-/// Files cannot be written: all others are.
+/// A file cannot be written; the other files are written all the same.
 pub fn write_case(targets: &[Target], case: &CaseSheet, language: Language) -> Result<(), Failure> {
     let write = |target: &Target| target.write(case_content(target, case, language));
     Failure::of_all(targets.iter().map(write))
@@ -187,13 +188,8 @@ pub fn case_content(
     case: &CaseSheet,
     language: Language,
 ) -> Result<Vec<u8>, Failure> {
-    let words = language.words();
-    match target.format {
-        Format::Html => Ok(run::html(case, words).into_bytes()),
-        Format::Pdf => target.on_paper(case, words),
-        Format::Json => Ok(json_text(&run::case_json(case))?.into_bytes()),
-        Format::Csv | Format::Junit => content(target, &case.last().run, None, language),
-    }
+    let (run, json) = (&case.last().run, || run::case_json(case));
+    content(target, run, Some(case), json, language)
 }
 
 /// A report of two runs. Tables are those of the second one.
@@ -205,19 +201,19 @@ pub fn comparison_content(
     of: &RunComparison,
     language: Language,
 ) -> Result<Vec<u8>, Failure> {
-    let words = language.words();
-    match target.format {
-        Format::Html => Ok(run::html(of, words).into_bytes()),
-        Format::Pdf => target.on_paper(of, words),
-        Format::Json => Ok(json_text(&run::comparison_json(of))?.into_bytes()),
-        Format::Csv | Format::Junit => content(target, &of.b, None, language),
-    }
+    content(
+        target,
+        &of.b,
+        Some(of),
+        || run::comparison_json(of),
+        language,
+    )
 }
 
 /// Writes reports of two runs.
 ///
 /// # Errors
-/// Files cannot be written: all others are.
+/// A file cannot be written; the other files are written all the same.
 pub fn write_comparison(
     targets: &[Target],
     of: &RunComparison,
@@ -240,7 +236,7 @@ pub fn run_content(
 ) -> Result<Vec<u8>, Failure> {
     let gather = || Sheet::gather(store, directory, run.run.id);
     let sheet = target.is_sheet().then(gather).transpose()?;
-    content(target, run, sheet.as_ref(), language)
+    content(target, run, sheet.as_ref(), || run_json(run), language)
 }
 
 /// Writes a report to its begun file, or beside it where the name is taken; returns the path.
@@ -262,10 +258,12 @@ pub(crate) fn page_text(page: Markup) -> String {
     display_text::lines(&page.into_string()).into_owned()
 }
 
+/// A report in the target's format: of a sheet for people, as JSON, or the tables of a run.
 fn content(
     target: &Target,
     run: &RunDetail,
-    sheet: Option<&Sheet>,
+    sheet: Option<&impl Printed>,
+    json: impl Fn() -> Value,
     language: Language,
 ) -> Result<Vec<u8>, Failure> {
     let words = language.words();
@@ -275,7 +273,7 @@ fn content(
         // Whoever asks for a sheet has gathered it.
         (Format::Html | Format::Pdf, None) => String::new(),
         (Format::Csv, _) => csv::csv(run),
-        (Format::Json, _) => json_text(&run_json(run))?,
+        (Format::Json, _) => json_text(&json())?,
         (Format::Junit, _) => junit::junit(run)?,
     };
     Ok(text.into_bytes())

@@ -9,7 +9,7 @@ pub struct Ticks {
 }
 
 impl Ticks {
-    /// Ticks of an axis from one value to another, about `about` of them and never many more.
+    /// Ticks of an axis from one value to another, about `about` ticks and never many more.
     pub fn of((low, high): (f64, f64), about: f64) -> Self {
         let step = round_step((high - low).max(f64::MIN_POSITIVE) / about.max(1.0));
         Self::with_step(step, (low, high))

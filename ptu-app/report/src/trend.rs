@@ -15,9 +15,9 @@ pub struct Trend {
     /// Value by value, or day by day.
     pub course: TimeSeries,
     pub process: Option<Process>,
-    /// Procedures that measure it.
+    /// Procedures with this measurement.
     pub procedures: Vec<String>,
-    /// Steps that measured it in the latest runs, with their limits.
+    /// Steps with this measurement in the latest runs, with their limits.
     pub steps: Vec<TrendStep>,
 }
 
@@ -63,7 +63,7 @@ impl Trend {
 }
 
 impl TimeSeries {
-    /// Names of the days: those of a fleet are counted in UTC, and begin the evening before in its west.
+    /// Names of the days. Days of a fleet are counted in UTC; west of Greenwich such a day begins the evening before.
     pub fn day_name(&self) -> fn(i64) -> String {
         match self {
             Self::Points(_) => local_day,

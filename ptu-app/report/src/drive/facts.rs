@@ -1,10 +1,11 @@
 //! Sentences of reports on a run: its end, on which train and bench, under which conditions.
 
 use btu_rig::conditions::{Conditions, Disturbance};
-use btu_rig::drive::Outcome;
 
 use ptu_runs::drive::monte_carlo::Trial;
 use ptu_runs::drive::{Case, Driven};
+
+use crate::words::{Language, Words, fill};
 
 /// A name and its value.
 pub type Fact = (&'static str, String);
@@ -27,25 +28,32 @@ pub fn stop(trial: &Trial) -> String {
     }
 }
 
-/// Sentence that says how a drive ended.
+/// Sentence that says how a drive ended, in English.
 pub fn ending(run: &Driven) -> String {
-    let tolerance_cm = run.case.tolerance_m() * 100.0;
-    let Outcome {
-        ending,
-        stop_error_m,
-        ..
-    } = &run.outcome;
-    match stop_error_m {
-        Some(error) => {
-            let side = if *error > 0.0 { "past" } else { "before" };
-            let verdict = if run.aligned() { "within" } else { "outside" };
-            format!(
-                "{ending}, {} {side} the stop point, {verdict} ±{tolerance_cm:.0} cm",
-                off(error.abs()).trim_start_matches('+')
-            )
-        }
+    let ending = &run.outcome.ending;
+    match run.outcome.stop_error_m {
+        Some(_) => format!("{ending}, {}", standing(run, Language::English.words())),
         None => ending.to_string(),
     }
+}
+
+/// Where the train stands, before or past the stop point.
+pub fn standing(run: &Driven, words: &Words) -> String {
+    let said = &words.drive;
+    let Some(error) = run.outcome.stop_error_m else {
+        return said.did_not_stop.to_owned();
+    };
+    let tolerance_m = run.case.tolerance_m();
+    let wording = match (error > 0.0, error.abs() <= tolerance_m) {
+        (false, true) => said.before_within,
+        (false, false) => said.before_outside,
+        (true, true) => said.past_within,
+        (true, false) => said.past_outside,
+    };
+    let size = off(error.abs());
+    let size = size.trim_start_matches('+');
+    let tolerance_cm = format!("{:.0}", tolerance_m * 100.0);
+    fill(wording, &[("error", &size), ("tolerance", &tolerance_cm)])
 }
 
 /// Section and controller of a case.

@@ -41,9 +41,9 @@ impl Results {
 }
 
 pub enum Outcomes {
-    /// Cases, each once.
+    /// Cases that were driven once each.
     Single(Vec<Driven>),
-    /// Cases, each many times.
+    /// Cases that were driven many times each.
     Many(Vec<MonteCarlo>),
 }
 

@@ -3,7 +3,7 @@
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 use ptu_runs::drive::{Case, DriveBench, Driven};
 
-use super::facts::{Fact, conditions, off, title};
+use super::facts::{Fact, conditions, standing, title};
 use super::plots::{plots, plots_of_many};
 use super::{Outcomes, Results, tables};
 use crate::plot::Plot;
@@ -14,47 +14,40 @@ use crate::words::{Words, fill};
 impl Printed for Results {
     fn paper(&self, words: &Words) -> Paper {
         let said = &words.drive;
-        let (name, bench, seed) = match &self.outcomes {
-            Outcomes::Single(runs) => {
-                let case = runs.first().map(|run| &run.case);
-                let seed = case.map_or(0, |case| case.seed);
-                (said.report, case.map(|case| &case.bench), seed)
-            }
-            Outcomes::Many(many) => {
-                let case = many.first().map(|many| &many.case);
-                let seed = case.map_or(0, |case| case.seed);
-                (said.many, case.map(|case| &case.bench), seed)
-            }
-        };
-        let unit = words.report.simulated_unit;
-        let mut blocks = vec![Block::Title(name.into(), unit.into())];
-        match &self.outcomes {
+        let mut blocks = Vec::new();
+        let (name, case) = match &self.outcomes {
             Outcomes::Single(runs) => {
                 let section = |run: &Driven| run.case.plan.section.section;
-                let groups = runs.chunk_by(|a, b| section(a) == section(b));
-                for (place, group) in groups.enumerate() {
-                    if place > 0 {
+                for group in runs.chunk_by(|a, b| section(a) == section(b)) {
+                    if !blocks.is_empty() {
                         blocks.push(Block::NewPage);
                     }
                     blocks.extend(of_section(group, words));
                 }
+                (said.report, runs.first().map(|run| &run.case))
             }
             Outcomes::Many(many) => {
                 blocks.extend(many.iter().flat_map(|many| of_many(many, words)));
+                (said.many, many.first().map(|many| &many.case))
             }
-        }
+        };
+        let unit = words.report.simulated_unit;
+        blocks.insert(0, Block::Title(name.into(), unit.into()));
         if let Some(made) = &self.made {
             blocks.push(Block::Text(Tone::Soft, made.clone()));
         }
         Paper {
             name,
-            unit: bench.map_or_else(String::new, |bench| bench.config.content.name.clone()),
+            unit: case.map_or_else(String::new, |case| case.bench.config.content.name.clone()),
             short: said.title.into(),
-            number: format!("{} {seed}", words.content("Seed")),
+            number: format!(
+                "{} {}",
+                words.content("Seed"),
+                case.map_or(0, |case| case.seed)
+            ),
             program: format!("ptu {}", env!("CARGO_PKG_VERSION")),
-            at_us: 0,
-            across: None,
             blocks,
+            ..Paper::default()
         }
     }
 }
@@ -93,25 +86,7 @@ fn verdict(run: &Driven, alone: bool, words: &Words) -> Block {
         ending = format!("{}: {ending}", run.case.controller.name());
     }
     let tone = if run.aligned() { Tone::Good } else { Tone::Bad };
-    Block::Verdict(tone, ending, stop(run, words))
-}
-
-fn stop(run: &Driven, words: &Words) -> String {
-    let said = &words.drive;
-    let Some(error) = run.outcome.stop_error_m else {
-        return said.did_not_stop.to_owned();
-    };
-    let tolerance_m = run.case.tolerance_m();
-    let wording = match (error > 0.0, error.abs() <= tolerance_m) {
-        (false, true) => said.before_within,
-        (false, false) => said.before_outside,
-        (true, true) => said.past_within,
-        (true, false) => said.past_outside,
-    };
-    let size = off(error.abs());
-    let size = size.trim_start_matches('+');
-    let tolerance_cm = format!("{:.0}", tolerance_m * 100.0);
-    fill(wording, &[("error", &size), ("tolerance", &tolerance_cm)])
+    Block::Verdict(tone, ending, standing(run, words))
 }
 
 /// Many runs of one case.
@@ -163,7 +138,8 @@ fn facts(mut known: Vec<Fact>, case: &Case, words: &Words) -> Block {
     let length_m = section.stop_m - section.start_m;
     known.push(("Length to the stop point", format!("{length_m:.2} m")));
     known.extend(made_of(&case.bench, case.seed));
-    Block::Facts(in_language(known, words))
+    let said = |(name, value): Fact| (words.content(name).into_owned(), value);
+    Block::Facts(known.into_iter().map(said).collect())
 }
 
 /// The files that a bench was made of, with their check sums, the keys changed, and the seed.
@@ -180,11 +156,6 @@ fn made_of(bench: &DriveBench, seed: u64) -> Vec<Fact> {
     }
     made.push(("Seed", seed.to_string()));
     made
-}
-
-fn in_language(facts: Vec<Fact>, words: &Words) -> Vec<(String, String)> {
-    let said = |(name, value): Fact| (words.content(name).into_owned(), value);
-    facts.into_iter().map(said).collect()
 }
 
 /// A plot with all its words in one language.
@@ -212,7 +183,8 @@ mod tests {
     use ptu_runs::stop::Stop;
 
     use super::*;
-    use crate::run::block::Cell;
+    use crate::run::page::pages;
+    use crate::run::tests::words_of;
     use crate::words::Language;
 
     fn sheet(controllers: &[ControllerKind]) -> Results {
@@ -235,53 +207,24 @@ mod tests {
         Results::of_runs(drive_all(cases, 2, &Stop::default(), &mut |_| {}))
     }
 
-    /// Everything that is read on the pages.
-    fn texts(blocks: &[Block]) -> Vec<String> {
-        let mut texts = Vec::new();
-        for block in blocks {
-            match block {
-                Block::Title(a, b) | Block::Subheading(a, b) | Block::Verdict(_, a, b) => {
-                    texts.extend([a.clone(), b.clone()]);
-                }
-                Block::Heading(text) | Block::Text(_, text) => texts.push(text.clone()),
-                Block::Facts(facts) => {
-                    texts.extend(facts.iter().flat_map(|(a, b)| [a.clone(), b.clone()]));
-                }
-                Block::Table(table) => {
-                    texts.extend(table.columns.iter().map(|column| column.name.clone()));
-                    let cells = table.rows.iter().flat_map(|row| &row.cells);
-                    texts.extend(cells.filter_map(|(cell, _)| match cell {
-                        Cell::Text(_, text) | Cell::Verdict(_, text) => Some(text.clone()),
-                        Cell::Gauge(_) => None,
-                    }));
-                }
-                Block::Plot(plot) => {
-                    texts.extend([&plot.title, &plot.x_label, &plot.y_label].map(Clone::clone));
-                    texts.extend(plot.series.iter().map(|series| series.name.clone()));
-                    texts.extend(plot.places.iter().map(|place| place.name.clone()));
-                }
-                Block::NewPage | Block::Code(..) | Block::Signatures(..) => {}
-            }
-        }
-        texts
-    }
-
     /// Goal: a Korean reader meets no English in the report of a run. Method: runs of all controllers and of one alone; what is
     /// left in small Latin letters are names of controllers, files, events and keys of a configuration, and units.
     #[test]
     fn a_korean_report_of_automatic_runs_has_no_english() {
-        const NAMES: [&str; 5] = ["servo", "fuzzy", "pss", "ato", "controller"];
+        const NAMES: [&str; 6] = ["servo", "fuzzy", "pss", "ato", "controller", "ptu"];
         for controllers in [&[ControllerKind::Servo][..], &ControllerKind::ALL] {
-            let paper = sheet(controllers).paper(Language::Korean.words());
-            let texts = texts(&paper.blocks);
-            assert!(texts.len() > 100, "{texts:?}");
-            let is_english = |text: &&String| {
-                let mut words = text.split(|letter: char| !letter.is_ascii_alphanumeric());
-                let is_small = |word: &str| word.chars().all(|letter| letter.is_ascii_lowercase());
-                words.any(|word| word.len() > 2 && is_small(word) && !NAMES.contains(&word))
+            let pages = pages(&sheet(controllers), Language::Korean.words()).expect("pages");
+            let said: Vec<_> = pages.iter().map(|page| words_of(page)).collect();
+            assert!(said.concat().len() > 5_000, "{said:?}");
+            let is_english = |word: &&str| {
+                let is_small = word.chars().all(|letter| letter.is_ascii_lowercase());
+                word.len() > 2 && is_small && !NAMES.contains(word)
             };
-            let english: Vec<_> = texts.iter().filter(is_english).collect();
-            assert!(english.is_empty(), "{english:#?}");
+            for page in said {
+                let words = page.split(|letter: char| !letter.is_ascii_alphanumeric());
+                let english: Vec<_> = words.filter(is_english).collect();
+                assert!(english.is_empty(), "{english:?} in {page}");
+            }
         }
     }
 }

@@ -85,12 +85,21 @@ pub fn plots(runs: &[Driven]) -> Vec<Plot> {
             .filter(|plot| plot.title.starts_with("Speed"))
             .zip([TIME, PLACE])
         {
-            plot.shade_slides(&run.outcome.rows, |row| row.sliding, x);
+            plot.shaded = slides(&run.outcome.rows, x);
         }
         plots.push(forces(run));
     }
     plots.extend(last_metres(runs));
     plots
+}
+
+/// Where cars slip or slide, from the first row of each stretch to its last.
+fn slides(rows: &[Row], x: Of) -> Vec<(f64, f64)> {
+    let stretches = rows.chunk_by(|a, b| a.sliding == b.sliding);
+    let sliding = stretches.filter(|stretch| stretch[0].sliding);
+    sliding
+        .map(|stretch| (x(&stretch[0]), x(&stretch[stretch.len() - 1])))
+        .collect()
 }
 
 /// The unavoidable jerk of the standstill itself is left out, as in the figures.

@@ -3,7 +3,7 @@
 use btu_rig::drive::{Figure, Landmark, Metrics};
 
 use super::facts::{conditions, off, stop};
-use crate::run::block::{self, Align, Column, RowKind};
+use crate::run::block::{self, Align, Column};
 use crate::words::Words;
 use ptu_runs::drive::Driven;
 use ptu_runs::drive::monte_carlo::{MonteCarlo, percentile};
@@ -72,9 +72,7 @@ impl Table {
         };
         block::Table {
             columns: headings.iter().enumerate().map(column).collect(),
-            rows: (rows.iter().cloned())
-                .map(|row| block::Row::words(RowKind::Head, row))
-                .collect(),
+            rows: rows.iter().cloned().map(block::Row::words).collect(),
         }
     }
 }

@@ -104,16 +104,16 @@ pub fn export_history(store: &Store, to: &Path) -> Result<Exported, Failure> {
     Ok(done)
 }
 
-/// Months that have rows of a view, each with what tells other rows; one month of any time if it has no time.
+/// Months that have rows of a view, each with a text that differs if its rows differ; one month without a name if the view has
+/// no time.
 fn months(store: &Store, view: &View) -> Result<BTreeMap<String, String>, Failure> {
     let Some(time) = view.time else {
         return Ok(BTreeMap::from([(String::new(), String::new())]));
     };
-    let key = view.order.split(',').next().unwrap_or(time);
+    let key = view.order.split(',').next().unwrap_or_default();
     let months = format!(
-        "SELECT substr({label}, 1, 7), count(*), min({key}), max({key}) FROM {name} GROUP BY substr({label}, 1, 7)",
-        label = view.label,
-        name = view.name
+        "SELECT substr({time}, 1, 7), count(*), min({key}), max({key}) FROM {} GROUP BY substr({time}, 1, 7)",
+        view.name
     );
     let found = ask(store, &months, MOST_MONTHS)?;
     let row = |row: Vec<SqlValue>| {
@@ -139,16 +139,12 @@ fn word(value: &SqlValue) -> String {
 
 /// The bytes of a month's file.
 fn partition(store: &Store, view: &View, month: &str) -> Result<Vec<u8>, Failure> {
-    let names: Vec<_> = view.columns.iter().map(|(name, _)| *name).collect();
-    let of_month = match view.time {
-        Some(_) => format!("WHERE substr({}, 1, 7) = '{month}'", view.label),
-        None => String::new(),
-    };
+    let of_month = view.time.map_or_else(String::new, |time| {
+        format!("WHERE substr({time}, 1, 7) = '{month}'")
+    });
     let question = format!(
         "SELECT {} FROM {} {of_month} ORDER BY {}",
-        names.join(", "),
-        view.name,
-        view.order
+        view.columns, view.name, view.order
     );
     let mut file = Partition::begin(view)?;
     let mut from = 0;
@@ -199,7 +195,6 @@ fn remove_others(folder: &Path, months: &BTreeSet<String>) -> std::io::Result<us
 fn views_sql() -> String {
     let mut sql = String::from("-- In this folder: duckdb -init views.sql\n");
     for view in VIEWS {
-        let names: Vec<_> = view.columns.iter().map(|(name, _)| *name).collect();
         let place = match view.time {
             Some(_) => format!("{}/*/{PART}", view.name),
             None => format!("{}/{PART}", view.name),
@@ -207,8 +202,7 @@ fn views_sql() -> String {
         let _ = writeln!(
             sql,
             "CREATE VIEW {} AS SELECT {} FROM read_parquet('{place}');",
-            view.name,
-            names.join(", ")
+            view.name, view.columns
         );
     }
     sql

@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use fault_db::SqlValue;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
-use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::data_type::{ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
 use super::views::{Kind, View};
+use crate::trace_io::schema_column;
 use ptu_runs::failure::{Failure, FileTrouble, Why};
 
 pub(super) struct Partition<'a> {
@@ -40,22 +41,38 @@ impl<'a> Partition<'a> {
         let view = self.view;
         let failed = |error: ParquetError| failed(view, &error);
         let mut group = self.file.next_row_group().map_err(failed)?;
-        let mut columns = view.columns.iter().enumerate();
-        while let Some(mut writer) = group.next_column().map_err(failed)? {
-            let Some((place, (name, kind))) = columns.next() else {
+        for (place, name) in view.columns().enumerate() {
+            let Some(mut column) = group.next_column().map_err(failed)? else {
                 break;
             };
             let values = rows
                 .iter()
                 .map(|row| row.get(place).unwrap_or(&SqlValue::Null));
-            put_column(&mut writer, *kind, values).map_err(|why| match why {
-                Refused::Value(value) => Failure::bench(FileTrouble::OddValue(
-                    format!("{}.{name}", view.name),
-                    format!("{value:?}"),
-                )),
-                Refused::File(error) => failed(error),
-            })?;
-            writer.close().map_err(failed)?;
+            let values: Vec<_> = values.collect();
+            let written = match Kind::of(name) {
+                Kind::Whole => put_values::<Int64Type>(&mut column, &values, |value| match value {
+                    SqlValue::Integer(number) => Some(*number),
+                    _ => None,
+                }),
+                Kind::Number => {
+                    put_values::<DoubleType>(&mut column, &values, |value| match value {
+                        SqlValue::Integer(number) => Some(*number as f64),
+                        SqlValue::Real(number) => Some(*number),
+                        _ => None,
+                    })
+                }
+                Kind::Text => {
+                    put_values::<ByteArrayType>(&mut column, &values, |value| match value {
+                        SqlValue::Text(text) => Some(text.as_bytes().to_vec().into()),
+                        _ => None,
+                    })
+                }
+            };
+            if let Some(odd) = written.map_err(failed)? {
+                let (column, value) = (format!("{}.{name}", view.name), format!("{odd:?}"));
+                return Err(Failure::bench(FileTrouble::OddValue(column, value)));
+            }
+            column.close().map_err(failed)?;
         }
         group.close().map_err(failed)?;
         Ok(())
@@ -74,75 +91,40 @@ fn failed(view: &View, error: &ParquetError) -> Failure {
     ))
 }
 
-enum Refused {
-    Value(SqlValue),
-    File(ParquetError),
-}
-
-impl From<ParquetError> for Refused {
-    fn from(error: ParquetError) -> Self {
-        Self::File(error)
-    }
-}
-
-fn put_column<'v>(
+/// Writes the values of a column, as `of` has them; returns the first value that is of another type.
+fn put_values<'v, T: DataType>(
     column: &mut SerializedColumnWriter<'_>,
-    kind: Kind,
-    values: impl Iterator<Item = &'v SqlValue> + Clone,
-) -> Result<(), Refused> {
-    let is_known = |value: &SqlValue| i16::from(*value != SqlValue::Null);
-    let known: Vec<i16> = values.clone().map(is_known).collect();
-    let known = Some(known.as_slice());
-    let values = values.filter(|value| **value != SqlValue::Null);
-    let refused = |value: &SqlValue| Refused::Value(value.clone());
-    match kind {
-        Kind::Whole => {
-            let whole = |value: &SqlValue| match value {
-                SqlValue::Integer(number) => Ok(*number),
-                other => Err(refused(other)),
-            };
-            let all = values.map(whole).collect::<Result<Vec<_>, _>>()?;
-            column.typed::<Int64Type>().write_batch(&all, known, None)?;
-        }
-        Kind::Number => {
-            let number = |value: &SqlValue| match value {
-                SqlValue::Integer(number) => Ok(*number as f64),
-                SqlValue::Real(number) => Ok(*number),
-                other => Err(refused(other)),
-            };
-            let all = values.map(number).collect::<Result<Vec<_>, _>>()?;
-            column
-                .typed::<DoubleType>()
-                .write_batch(&all, known, None)?;
-        }
-        Kind::Text => {
-            let text = |value: &SqlValue| match value {
-                SqlValue::Text(text) => Ok(ByteArray::from(text.clone().into_bytes())),
-                other => Err(refused(other)),
-            };
-            let all = values.map(text).collect::<Result<Vec<_>, _>>()?;
-            column
-                .typed::<ByteArrayType>()
-                .write_batch(&all, known, None)?;
+    values: &[&'v SqlValue],
+    of: impl Fn(&SqlValue) -> Option<T::T>,
+) -> Result<Option<&'v SqlValue>, ParquetError> {
+    let is_known = |value: &SqlValue| *value != SqlValue::Null;
+    let known: Vec<i16> = values
+        .iter()
+        .map(|value| i16::from(is_known(value)))
+        .collect();
+    let mut written = Vec::new();
+    for value in values.iter().copied().filter(|value| is_known(value)) {
+        match of(value) {
+            Some(value) => written.push(value),
+            None => return Ok(Some(value)),
         }
     }
-    Ok(())
+    let batch = column
+        .typed::<T>()
+        .write_batch(&written, Some(&known), None);
+    batch.map(|_| None)
 }
 
 fn schema(view: &View) -> Result<Type, ParquetError> {
-    let field = |(name, kind): &(&str, Kind)| {
-        let (physical, logical) = match kind {
+    let field = |name: &str| {
+        let (physical, logical) = match Kind::of(name) {
             Kind::Whole => (Physical::INT64, None),
             Kind::Number => (Physical::DOUBLE, None),
             Kind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
         };
-        let field = Type::primitive_type_builder(name, physical)
-            .with_repetition(Repetition::OPTIONAL)
-            .with_logical_type(logical)
-            .build();
-        field.map(Arc::new)
+        schema_column(name, Repetition::OPTIONAL, physical, logical)
     };
-    let fields: Vec<_> = view.columns.iter().map(field).collect::<Result<_, _>>()?;
+    let fields: Vec<_> = view.columns().map(field).collect::<Result<_, _>>()?;
     Type::group_type_builder(view.name)
         .with_fields(fields)
         .build()

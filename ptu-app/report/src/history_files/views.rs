@@ -1,248 +1,125 @@
 //! The views that are exported, and the type of each column: the same in every partition, whatever rows it has.
 
+pub(super) struct View {
+    pub name: &'static str,
+    /// Column of the time as text, of which the month is taken; absent where the rows have no time.
+    pub time: Option<&'static str>,
+    /// Order of its rows, complete; the first column tells the rows of one history from those of another.
+    pub order: &'static str,
+    /// Rows are added to the view, and a row never changes.
+    pub is_final: bool,
+    /// Names of the columns, as a question in SQL has them.
+    pub columns: &'static str,
+}
+
+impl View {
+    pub fn columns(&self) -> impl Iterator<Item = &'static str> {
+        self.columns.split(", ")
+    }
+}
+
 /// The type of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Whole,
     Number,
     Text,
 }
 
-pub(super) struct View {
-    pub name: &'static str,
-    /// Column of the time, µs since 1970; absent where the rows have no time.
-    pub time: Option<&'static str>,
-    /// Column of the time as text, of which the month is taken.
-    pub label: &'static str,
-    /// Order of its rows, complete; the first column tells the rows of one history from those of another.
-    pub order: &'static str,
-    /// Rows are added to it, and none of them ever changes.
-    pub is_final: bool,
-    pub columns: &'static [(&'static str, Kind)],
+impl Kind {
+    /// Type of the column of this name, which is the same in all views.
+    pub fn of(column: &str) -> Self {
+        match column {
+            "bench_time_s" | "days_to_repair" | "days_until_back" | "high" | "low"
+            | "period_ms" | "place_s" | "value" => Self::Number,
+            "code" | "faults_not_closed" | "gaps" | "occurrences" | "partial" | "repairs"
+            | "row_count" | "runs" | "script_line" | "size_bytes" | "step_index" | "turn"
+            | "turns" | "withdrawn" => Self::Whole,
+            time if time.ends_with("_us") => Self::Whole,
+            _ => Self::Text,
+        }
+    }
 }
 
-use Kind::{Number, Text, Whole};
-
-/// All of them: what `fault-db/VIEWS.md` describes.
+/// All views that `fault-db/VIEWS.md` describes.
 pub(super) const VIEWS: &[View] = &[
     View {
         name: "runs",
-        time: Some("started_at_us"),
-        label: "started_at",
+        time: Some("started_at"),
         order: "id",
         is_final: false,
-        columns: &[
-            ("id", Text),
-            ("unit", Text),
-            ("kind", Text),
-            ("line", Text),
-            ("train", Text),
-            ("operator", Text),
-            ("source", Text),
-            ("connection", Text),
-            ("symptom", Text),
-            ("started_at", Text),
-            ("finished_at", Text),
-            ("verdict", Text),
-            ("bench_time_s", Number),
-            ("injected", Text),
-            ("app_version", Text),
-            ("continues", Text),
-            ("started_at_us", Whole),
-        ],
+        columns: "id, unit, kind, line, train, operator, source, connection, symptom, \
+                  started_at, finished_at, verdict, bench_time_s, injected, app_version, \
+                  continues, started_at_us",
     },
     View {
         name: "steps",
-        time: Some("started_at_us"),
-        label: "started_at",
+        time: Some("started_at"),
         order: "run_id, step_index",
         is_final: true,
-        columns: &[
-            ("run_id", Text),
-            ("unit", Text),
-            ("step_index", Whole),
-            ("procedure", Text),
-            ("kind", Text),
-            ("name", Text),
-            ("turn", Whole),
-            ("turns", Whole),
-            ("verdict", Text),
-            ("message", Text),
-            ("findings", Text),
-            ("bench_time_s", Number),
-            ("script_line", Whole),
-            ("limit_source", Text),
-            ("started_at", Text),
-            ("started_at_us", Whole),
-        ],
+        columns: "run_id, unit, step_index, procedure, kind, name, turn, turns, verdict, \
+                  message, findings, bench_time_s, script_line, limit_source, started_at, \
+                  started_at_us",
     },
     View {
         name: "measurements",
-        time: Some("started_at_us"),
-        label: "started_at",
+        time: Some("started_at"),
         order: "run_id, step_index, name, value",
         is_final: true,
-        columns: &[
-            ("run_id", Text),
-            ("unit", Text),
-            ("procedure", Text),
-            ("step", Text),
-            ("step_index", Whole),
-            ("name", Text),
-            ("value", Number),
-            ("measured_in", Text),
-            ("low", Number),
-            ("high", Number),
-            ("verdict", Text),
-            ("limit_source", Text),
-            ("started_at", Text),
-            ("started_at_us", Whole),
-        ],
+        columns: "run_id, unit, procedure, step, step_index, name, value, measured_in, low, \
+                  high, verdict, limit_source, started_at, started_at_us",
     },
     View {
         name: "faults",
-        time: Some("first_at_us"),
-        label: "first_at",
+        time: Some("first_at"),
         order: "id",
         is_final: false,
-        columns: &[
-            ("id", Text),
-            ("unit", Text),
-            ("code", Whole),
-            ("name", Text),
-            ("lru", Text),
-            ("cause", Text),
-            ("severity", Text),
-            ("state", Text),
-            ("line", Text),
-            ("occurrences", Whole),
-            ("repairs", Whole),
-            ("first_at", Text),
-            ("last_at", Text),
-            ("closed_at", Text),
-            ("first_at_us", Whole),
-            ("last_at_us", Whole),
-            ("closed_at_us", Whole),
-        ],
+        columns: "id, unit, code, name, lru, cause, severity, state, line, occurrences, \
+                  repairs, first_at, last_at, closed_at, first_at_us, last_at_us, closed_at_us",
     },
     View {
         name: "occurrences",
-        time: Some("at_us"),
-        label: "seen_at",
+        time: Some("seen_at"),
         order: "id",
         is_final: false,
-        columns: &[
-            ("id", Text),
-            ("fault_id", Text),
-            ("run_id", Text),
-            ("unit", Text),
-            ("code", Whole),
-            ("name", Text),
-            ("lru", Text),
-            ("line", Text),
-            ("train", Text),
-            ("step_index", Whole),
-            ("message", Text),
-            ("findings", Text),
-            ("seen_at", Text),
-            ("at_us", Whole),
-        ],
+        columns: "id, fault_id, run_id, unit, code, name, lru, line, train, step_index, \
+                  message, findings, seen_at, at_us",
     },
     View {
         name: "events",
-        time: Some("at_us"),
-        label: "happened_at",
+        time: Some("happened_at"),
         order: "id",
         is_final: false,
-        columns: &[
-            ("id", Text),
-            ("fault_id", Text),
-            ("kind", Text),
-            ("who", Text),
-            ("text", Text),
-            ("state", Text),
-            ("withdrawn", Whole),
-            ("turn", Whole),
-            ("happened_at", Text),
-            ("at_us", Whole),
-        ],
+        columns: "id, fault_id, kind, who, text, state, withdrawn, turn, happened_at, at_us",
     },
     View {
         name: "repairs",
-        time: Some("at_us"),
-        label: "repaired_at",
+        time: Some("repaired_at"),
         order: "fault_id, at_us, part",
         is_final: false,
-        columns: &[
-            ("fault_id", Text),
-            ("unit", Text),
-            ("code", Whole),
-            ("lru", Text),
-            ("line", Text),
-            ("part", Text),
-            ("serial_old", Text),
-            ("serial_new", Text),
-            ("note", Text),
-            ("who", Text),
-            ("opened_at", Text),
-            ("repaired_at", Text),
-            ("back_at", Text),
-            ("days_to_repair", Number),
-            ("days_until_back", Number),
-            ("at_us", Whole),
-        ],
+        columns: "fault_id, unit, code, lru, line, part, serial_old, serial_new, note, who, \
+                  opened_at, repaired_at, back_at, days_to_repair, days_until_back, at_us",
     },
     View {
         name: "traces",
-        time: Some("t0_us"),
-        label: "began_at",
+        time: Some("began_at"),
         order: "id",
         is_final: false,
-        columns: &[
-            ("id", Text),
-            ("run_id", Text),
-            ("unit", Text),
-            ("began_at", Text),
-            ("row_count", Whole),
-            ("period_ms", Number),
-            ("size_bytes", Whole),
-            ("partial", Whole),
-            ("gaps", Whole),
-            ("t0_us", Whole),
-        ],
+        columns: "id, run_id, unit, began_at, row_count, period_ms, size_bytes, partial, gaps, \
+                  t0_us",
     },
     View {
         name: "units",
         time: None,
-        label: "",
         order: "serial, kind",
         is_final: false,
-        columns: &[
-            ("serial", Text),
-            ("kind", Text),
-            ("config_name", Text),
-            ("sw_versions", Text),
-            ("runs", Whole),
-            ("faults_not_closed", Whole),
-        ],
+        columns: "serial, kind, config_name, sw_versions, runs, faults_not_closed",
     },
     View {
         name: "notes",
-        time: Some("at_us"),
-        label: "noted_at",
+        time: Some("noted_at"),
         order: "id",
         is_final: false,
-        columns: &[
-            ("id", Text),
-            ("run_id", Text),
-            ("unit", Text),
-            ("who", Text),
-            ("text", Text),
-            ("trace_id", Text),
-            ("place_s", Number),
-            ("noted_at", Text),
-            ("at_us", Whole),
-        ],
+        columns: "id, run_id, unit, who, text, trace_id, place_s, noted_at, at_us",
     },
 ];
 
@@ -267,12 +144,9 @@ mod tests {
                 told.extend(names.split(", ").map(|name| format!("{view}.{name}")));
             }
         }
-        let columns = |view: &View| {
+        let columns = |view: &'static View| {
             let name = view.name;
-            let columns = view.columns.iter();
-            columns
-                .map(|(column, _)| format!("{name}.{column}"))
-                .collect::<Vec<_>>()
+            view.columns().map(move |column| format!("{name}.{column}"))
         };
         let exported: BTreeSet<_> = VIEWS.iter().flat_map(columns).collect();
         assert_eq!(exported, told);

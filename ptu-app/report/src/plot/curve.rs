@@ -4,7 +4,7 @@ use super::mark::{Mark, Role};
 use super::scale::Scale;
 use super::{Series, Style};
 
-/// Points this near the line between their neighbours show nothing, in units of the drawing.
+/// Distance from the line between its neighbours below which a point cannot be seen, in units of the drawing.
 const UNSEEN: f64 = 0.25;
 /// Share of the room between two points that a bar takes.
 const BAR: f64 = 0.96;
@@ -45,13 +45,7 @@ pub fn drawn(series: &Series, x: &Scale, y: &Scale) -> Vec<Mark> {
 
 /// Role of a curve's marks.
 pub fn role(series: &Series) -> Role {
-    let colour = series.colour % 6;
-    match series.style {
-        Style::Line => Role::Curve(colour),
-        Style::Dashed => Role::Dashed(colour),
-        Style::Dots => Role::Dots(colour),
-        Style::Bars => Role::Bars(colour),
-    }
+    Role::Values(series.style, series.colour % 6)
 }
 
 /// The points without those that lie on the line between kept neighbours.

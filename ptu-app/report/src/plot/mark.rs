@@ -1,5 +1,14 @@
 //! The marks a plot consists of, for every output medium.
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    Line,
+    Dashed,
+    Dots,
+    /// Bars from 0, as wide as points are apart.
+    Bars,
+}
+
 /// Purpose of a mark; its look follows from the purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
@@ -21,17 +30,11 @@ pub enum Role {
     /// Edge of the plot.
     Frame,
     Shaded,
-    /// A curve of this colour.
-    Curve(usize),
-    /// A dashed curve of this colour.
-    Dashed(usize),
-    /// Dots of this colour.
-    Dots(usize),
-    /// Bars of this colour.
-    Bars(usize),
+    /// Values, in this style and colour.
+    Values(Style, usize),
 }
 
-/// Point of a text that lies at its place.
+/// Point of a text that lies at the place of the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     Start,

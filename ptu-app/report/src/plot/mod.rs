@@ -9,7 +9,7 @@ mod svg;
 
 use maud::Markup;
 
-pub use mark::{Anchor, Mark, Role};
+pub use mark::{Anchor, Mark, Role, Style};
 pub use raster::{Raster, colour};
 
 use mark::room;
@@ -34,15 +34,6 @@ const BESIDE_TICKS: f64 = 26.0;
 /// Line in the legend, and what is free around it.
 const SAMPLE: f64 = 20.0;
 const SAMPLE_ROOM: f64 = 34.0;
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Style {
-    Line,
-    Dashed,
-    Dots,
-    /// Bars from 0, as wide as points are apart.
-    Bars,
-}
 
 #[derive(Clone, Debug)]
 pub struct Series {
@@ -107,20 +98,6 @@ struct Edges {
 }
 
 impl Plot {
-    /// Shades where cars slip or slide.
-    pub fn shade_slides<R>(
-        &mut self,
-        rows: &[R],
-        sliding: impl Fn(&R) -> bool,
-        x: impl Fn(&R) -> f64,
-    ) {
-        self.shaded = rows
-            .chunk_by(|a, b| sliding(a) == sliding(b))
-            .filter(|stretch| sliding(&stretch[0]))
-            .map(|stretch| (x(&stretch[0]), x(&stretch[stretch.len() - 1])))
-            .collect();
-    }
-
     /// The drawing for a page.
     pub fn svg(&self) -> Markup {
         svg::svg(&self.title, self.size(WIDTH), &self.marks(WIDTH))
@@ -154,7 +131,7 @@ impl Plot {
             middle(edges.left, edges.right),
             middle(edges.top, edges.bottom),
         );
-        let mut marks = vec![text(Role::Title, (LEFT, 13.0), &self.title)];
+        let mut marks = vec![text(Role::Title, Anchor::Start, (LEFT, 13.0), &self.title)];
         marks.extend(self.legend(&edges));
         marks.extend(self.raster.as_ref().map(|raster| raster.mark(&x, &y)));
         marks.extend(self.shades(&x, &edges));
@@ -164,8 +141,8 @@ impl Plot {
             marks.extend(curve::drawn(series, &x, &y));
         }
         marks.extend(self.said(&x, &y));
-        let label = text(Role::Label, (across, height - 6.0), &self.x_label);
-        marks.push(anchored(label, Anchor::Middle));
+        let below = (across, height - 6.0);
+        marks.push(text(Role::Label, Anchor::Middle, below, &self.x_label));
         marks.push(Mark::Text {
             role: Role::Label,
             at: (13.0, down),
@@ -206,7 +183,8 @@ impl Plot {
                 role: curve::role(series),
                 pieces: vec![vec![(at, 9.0), (at + SAMPLE, 9.0)]],
             });
-            marks.push(text(Role::Legend, (at + SAMPLE + 5.0, 13.0), &series.name));
+            let beside = (at + SAMPLE + 5.0, 13.0);
+            marks.push(text(Role::Legend, Anchor::Start, beside, &series.name));
         }
         marks
     }
@@ -240,7 +218,8 @@ impl Plot {
             if let Some(row) = ends.iter().position(|end| begin > *end) {
                 ends[row] = begin + long;
                 let above = edges.top - 4.0 - row as f64 * ROW;
-                marks.push(text(Role::AxisMark, (begin, above), &place.name));
+                let at = (begin, above);
+                marks.push(text(Role::AxisMark, Anchor::Start, at, &place.name));
             }
         }
         marks
@@ -251,8 +230,8 @@ impl Plot {
         for (value, name) in x.ticks() {
             let at = x.at(value);
             marks.push(line(Role::Grid, (at, edges.top), (at, edges.bottom)));
-            let tick = text(Role::Tick, (at, edges.bottom + 15.0), &name);
-            marks.push(anchored(tick, Anchor::Middle));
+            let below = (at, edges.bottom + 15.0);
+            marks.push(text(Role::Tick, Anchor::Middle, below, &name));
         }
         let values = if self.names.is_empty() {
             y.ticks()
@@ -265,8 +244,8 @@ impl Plot {
                 let role = if value == 0.0 { Role::Zero } else { Role::Grid };
                 marks.push(line(role, (edges.left, at), (edges.right, at)));
             }
-            let tick = text(Role::Tick, (edges.left - 6.0, at + 4.0), &name);
-            marks.push(anchored(tick, Anchor::End));
+            let beside = (edges.left - 6.0, at + 4.0);
+            marks.push(text(Role::Tick, Anchor::End, beside, &name));
         }
         marks.push(Mark::Area {
             role: Role::Frame,
@@ -286,27 +265,20 @@ impl Plot {
         written
             .map(|note| {
                 let at = (x.at(note.at.0) + 3.0, y.at(note.at.1));
-                text(Role::Note, at, &note.text)
+                text(Role::Note, Anchor::Start, at, &note.text)
             })
             .collect()
     }
 }
 
-fn text(role: Role, at: (f64, f64), text: &str) -> Mark {
+fn text(role: Role, anchor: Anchor, at: (f64, f64), text: &str) -> Mark {
     Mark::Text {
         role,
         at,
-        anchor: Anchor::Start,
+        anchor,
         turned: false,
         text: text.to_owned(),
     }
-}
-
-fn anchored(mut mark: Mark, to: Anchor) -> Mark {
-    if let Mark::Text { anchor, .. } = &mut mark {
-        *anchor = to;
-    }
-    mark
 }
 
 fn line(role: Role, from: (f64, f64), to: (f64, f64)) -> Mark {

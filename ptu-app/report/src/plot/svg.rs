@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use maud::{Markup, html};
 
-use super::mark::{Anchor, Mark, Role};
+use super::mark::{Anchor, Mark, Role, Style};
 
 pub fn svg(title: &str, size: (f64, f64), marks: &[Mark]) -> Markup {
     html! {
@@ -68,10 +68,15 @@ fn class(role: Role) -> String {
         Role::Zero => "zero".into(),
         Role::Frame => "frame".into(),
         Role::Shaded => "shaded".into(),
-        Role::Curve(colour) => format!("curve c{colour}"),
-        Role::Dashed(colour) => format!("curve dashed c{colour}"),
-        Role::Dots(colour) => format!("dots c{colour}"),
-        Role::Bars(colour) => format!("bars c{colour}"),
+        Role::Values(style, colour) => {
+            let style = match style {
+                Style::Line => "curve",
+                Style::Dashed => "curve dashed",
+                Style::Dots => "dots",
+                Style::Bars => "bars",
+            };
+            format!("{style} c{colour}")
+        }
     }
 }
 

@@ -79,9 +79,8 @@ pub struct Row {
 
 #[derive(Clone, Debug)]
 pub enum Cell {
-    /// Words or a number.
+    /// Words, a number or a verdict.
     Text(Tone, String),
-    Verdict(Tone, String),
     /// A value between its limits.
     Gauge(Option<Gauge>),
 }
@@ -109,6 +108,20 @@ impl Gauge {
 }
 
 impl Table {
+    /// A table of words; its columns by name and share of the width.
+    pub fn of_words<'a>(
+        columns: impl IntoIterator<Item = (&'a str, f32)>,
+        rows: impl IntoIterator<Item = Row>,
+    ) -> Self {
+        let columns = columns.into_iter();
+        Self {
+            columns: columns
+                .map(|(name, share)| Column::new(name, share, Align::Left))
+                .collect(),
+            rows: rows.into_iter().collect(),
+        }
+    }
+
     pub fn has_headings(&self) -> bool {
         self.columns.iter().any(|column| !column.name.is_empty())
     }
@@ -132,12 +145,15 @@ pub fn sentence(wording: &str) -> String {
 }
 
 impl Row {
+    /// A row of one cell a column.
+    pub fn new(kind: RowKind, cells: impl IntoIterator<Item = Cell>) -> Self {
+        let cells = cells.into_iter().map(|cell| (cell, 1)).collect();
+        Self { kind, cells }
+    }
+
     /// A row of words, one cell a column.
-    pub fn words(kind: RowKind, cells: impl IntoIterator<Item = String>) -> Self {
-        let cell = |text| (Cell::Text(Tone::Plain, text), 1);
-        Self {
-            kind,
-            cells: cells.into_iter().map(cell).collect(),
-        }
+    pub fn words(cells: impl IntoIterator<Item = String>) -> Self {
+        let cell = |text| Cell::Text(Tone::Plain, text);
+        Self::new(RowKind::Head, cells.into_iter().map(cell))
     }
 }

@@ -3,7 +3,7 @@
 
 use fault_db::{FaultState, RunState, RunSummary, StepCounts, StepRecord, Verdict};
 
-use super::block::{Align, Block, Cell, Column, Row, RowKind, Table, Tone, sentence};
+use super::block::{Block, Cell, Row, RowKind, Table, Tone, sentence};
 use super::diagnosis::diagnosis;
 use super::plots::plots;
 use super::settled::settled;
@@ -35,7 +35,7 @@ pub fn signatures(words: &Words) -> Block {
     Block::Signatures(signing.map(str::to_owned).into(), report.date.into())
 }
 
-/// All but the head and the signatures.
+/// All blocks of a sheet but its head and its signatures.
 pub fn body(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let sources = Sources::of(&sheet.run.steps);
     let mut blocks = settled(sheet, words);
@@ -92,14 +92,14 @@ fn head(sheet: &Sheet, words: &Words) -> Vec<Block> {
     blocks
 }
 
-/// Different steps counted.
+/// Numbers of different steps by verdict.
 fn summary(sheet: &Sheet, words: &Words) -> Vec<Block> {
     if sheet.run.steps.is_empty() {
         return Vec::new();
     }
     let (counts, common) = (counts_of(&sheet.run.run), &words.common);
     let of = |verdict| (common.stored_verdict(verdict), tone(verdict));
-    // What is outside steps is none of them; without it the verdict may have no reason here.
+    // Failures outside steps are counted apart: without them the verdict may have no reason here.
     let outside = ((words.report.outside, Tone::Bad), counts.outside);
     let all = [
         (of(Verdict::Passed), counts.passed),
@@ -111,21 +111,15 @@ fn summary(sheet: &Sheet, words: &Words) -> Vec<Block> {
         .chain((counts.outside > 0).then_some(outside))
         .collect();
     let share = 1.0 / all.len() as f32;
-    let column = |((name, _), _): &((&str, _), _)| Column::new(name, share, Align::Left);
-    let columns: Vec<_> = all.iter().map(column).collect();
-    let counts = all.into_iter().map(|((_, tone), count)| {
-        let tone = if count == 0 { Tone::Soft } else { tone };
-        (Cell::Text(tone, count.to_string()), 1)
+    let columns = all.iter().map(|((name, _), _)| (*name, share));
+    let counts = all.iter().map(|((_, tone), count)| {
+        let tone = if *count == 0 { Tone::Soft } else { *tone };
+        Cell::Text(tone, count.to_string())
     });
+    let counts = Row::new(RowKind::Head, counts);
     vec![
         Block::Heading(words.report.summary.into()),
-        Block::Table(Table {
-            columns,
-            rows: vec![Row {
-                kind: RowKind::Head,
-                cells: counts.collect(),
-            }],
-        }),
+        Block::Table(Table::of_words(columns, [counts])),
     ]
 }
 
@@ -179,10 +173,8 @@ fn traced(trace: &SheetTrace, words: &Words) -> Vec<Block> {
     let id = trace.id.short();
     match &trace.samples {
         Ok(samples) => {
-            let names = trace
-                .faults
-                .iter()
-                .map(|name| naming::event_named(name, words));
+            let names = trace.faults.iter();
+            let names = names.map(|name| naming::event_named(name, words));
             let faults = names.collect::<Vec<_>>().join(", ");
             let mut head = match trace.faults.is_empty() {
                 true => fill(report.trace_of_passed, &[("id", &id)]),
@@ -233,14 +225,9 @@ fn faults(sheet: &Sheet, words: &Words) -> Vec<Block> {
             words.fault_state(state).to_owned(),
             fault.trace_id.map_or_else(String::new, |id| id.short()),
         ];
-        Row::words(RowKind::Head, cells)
+        Row::words(cells)
     });
-    blocks.push(Block::Table(Table {
-        columns: columns
-            .map(|(name, share)| Column::new(name, share, Align::Left))
-            .into(),
-        rows: rows.collect(),
-    }));
+    blocks.push(Block::Table(Table::of_words(columns, rows)));
     blocks
 }
 
@@ -252,18 +239,16 @@ fn notes(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let rows = sheet.run.notes.iter().map(|note| {
         let who = noted_by(note, &sheet.run, words);
         let cells = [local(note.at_us), who, note_text(note, words)];
-        Row::words(RowKind::Head, cells)
+        Row::words(cells)
     });
+    let columns = [
+        (words.common.time, 0.18),
+        (report.noted_by, 0.16),
+        (report.noted, 0.66),
+    ];
     vec![
         Block::Heading(report.notes.into()),
-        Block::Table(Table {
-            columns: vec![
-                Column::new(words.common.time, 0.18, Align::Left),
-                Column::new(report.noted_by, 0.16, Align::Left),
-                Column::new(report.noted, 0.66, Align::Left),
-            ],
-            rows: rows.collect(),
-        }),
+        Block::Table(Table::of_words(columns, rows)),
     ]
 }
 
@@ -290,17 +275,13 @@ fn scripts(sheet: &Sheet, words: &Words) -> Vec<Block> {
     if scripts.is_empty() {
         return Vec::new();
     }
-    let row = |script: &fault_db::ScriptRecord| {
-        Row::words(RowKind::Head, [script.path.clone(), script.sha256.clone()])
-    };
+    let rows = scripts.iter();
+    let rows = rows.map(|script| Row::words([script.path.clone(), script.sha256.clone()]));
     vec![
         Block::Heading(report.scripts.into()),
-        Block::Table(Table {
-            columns: vec![
-                Column::new(report.script, 0.35, Align::Left),
-                Column::new("SHA-256", 0.65, Align::Left),
-            ],
-            rows: scripts.iter().map(row).collect(),
-        }),
+        Block::Table(Table::of_words(
+            [(report.script, 0.35), ("SHA-256", 0.65)],
+            rows,
+        )),
     ]
 }

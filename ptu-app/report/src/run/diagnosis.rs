@@ -1,7 +1,7 @@
 //! The diagnosis on a test sheet: the conclusion, and the parts and fault modes that are likely.
 
 use super::Sheet;
-use super::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
+use super::block::{Align, Block, Column, Row, Table, Tone, sentence};
 use crate::diagnosis::{MOST_PARTS, Possible, ranked, shown_reasons};
 use crate::words::{Words, fill};
 use diagnosis::Conclusion;
@@ -75,7 +75,7 @@ fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
             format!("{}: {}", candidate.fault, words.fault_text(&candidate.text)),
             shown_reasons(answer, &candidate.for_it, words).join("\n"),
         ];
-        Row::words(RowKind::Head, cells)
+        Row::words(cells)
     });
     Table {
         columns: vec![
@@ -91,12 +91,11 @@ fn candidates(sheet: &Sheet, answer: &Answer, words: &Words) -> Table {
 impl Sheet {
     /// A part by the name people use for it, with its identifier.
     pub(super) fn part(&self, lru: &str, words: &Words) -> String {
-        let names = self.parts.get(lru);
-        let name = names.map(|[english, korean]| words.language.choose([english, korean]));
-        match name {
-            Some(name) if !name.eq_ignore_ascii_case(lru) => format!("{name} ({lru})"),
-            None if from_stored(lru).is_none() => words.common.no_part.to_owned(),
-            _ => lru.to_owned(),
+        let name = self.parts.name(lru, words.language);
+        match from_stored(lru) {
+            Some(_) if !name.eq_ignore_ascii_case(lru) => format!("{name} ({lru})"),
+            Some(_) => lru.to_owned(),
+            None => words.common.no_part.to_owned(),
         }
     }
 }

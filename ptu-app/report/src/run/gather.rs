@@ -1,11 +1,10 @@
 //! Reads the content of a test sheet from the database.
 
-use std::collections::BTreeMap;
-
 use fault_db::{Id, RunDetail, RunOccurrence, StepRecord, Store, StoreError, Verdict};
 
 use super::plots::drawn_channels;
 use super::{Sheet, SheetTrace};
+use crate::naming::PartNames;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;
 use ptu_runs::run_diagnosis::diagnose_run;
@@ -32,17 +31,11 @@ impl Sheet {
             faults,
         };
         let diagnosis = diagnose_run(store, directory, id).map_err(|failure| failure.message);
-        let parts = (directory.faults().ok())
-            .map(|catalogue| catalogue.lrus)
-            .unwrap_or_default();
         Ok(Self {
             traces: all.into_iter().take(Self::MOST_TRACES).map(read).collect(),
             more_traces,
             diagnosis,
-            parts: parts
-                .into_iter()
-                .map(|part| (part.id.to_string(), [part.name, part.name_ko]))
-                .collect::<BTreeMap<_, _>>(),
+            parts: PartNames::of(directory),
             run,
         })
     }

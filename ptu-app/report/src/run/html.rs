@@ -102,9 +102,7 @@ fn side(column: &Column) -> Option<&'static str> {
 fn content(cell: &Cell) -> Markup {
     match cell {
         Cell::Text(Tone::Plain, text) => markup! { (text) },
-        Cell::Text(tone, text) | Cell::Verdict(tone, text) => {
-            markup! { span class=(class(*tone)) { (text) } }
-        }
+        Cell::Text(tone, text) => markup! { span class=(class(*tone)) { (text) } },
         Cell::Gauge(None) => markup! {},
         Cell::Gauge(Some(gauge)) => bar(gauge),
     }

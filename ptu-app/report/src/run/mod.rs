@@ -22,9 +22,7 @@ mod steps;
 mod the_run;
 
 #[cfg(test)]
-mod tests;
-
-use std::collections::BTreeMap;
+pub(crate) mod tests;
 
 use fault_db::{Id, RunDetail, TraceData};
 
@@ -35,6 +33,7 @@ pub use paper::{Paper, Printed};
 pub use pdf::pdf;
 pub use sources::in_words as source_in_words;
 
+use crate::naming::PartNames;
 use ptu_runs::failure::Trouble;
 use ptu_runs::run_diagnosis::Answer;
 
@@ -48,8 +47,7 @@ pub struct Sheet {
     pub more_traces: usize,
     /// Diagnosis of the unit's parts, or why there is none.
     pub diagnosis: Result<Answer, Trouble>,
-    /// Names of parts in English and Korean, by their short name.
-    pub parts: BTreeMap<String, [String; 2]>,
+    pub parts: PartNames,
 }
 
 /// A trace on a test sheet.

@@ -7,6 +7,7 @@ use super::content;
 use crate::words::Words;
 
 /// A printed document, in one language.
+#[derive(Default)]
 pub struct Paper {
     /// Kind of document, for its head and its margin.
     pub(crate) name: &'static str,
@@ -18,9 +19,9 @@ pub struct Paper {
     pub(crate) number: String,
     /// Version of the program that tested.
     pub(crate) program: String,
-    /// When what it says was complete, µs UTC.
+    /// When the content of the document was complete, µs UTC.
     pub(crate) at_us: i64,
-    /// Stands across each page: it proves nothing of a unit in service.
+    /// Words across each page of a document that proves nothing of a unit in service.
     pub(crate) across: Option<String>,
     pub(crate) blocks: Vec<Block>,
 }

@@ -78,7 +78,7 @@ fn with_lanes(trace: TraceData, most: usize) -> TraceData {
     }
 }
 
-/// Rows from the trigger to where the column changes next to it; none if it never does.
+/// Rows between the trigger and the nearest change of the column; `None` if the column never changes.
 fn nearest_change(column: &[f64], trigger: usize) -> Option<usize> {
     let changed = |pair: &[f64]| pair[0] != pair[1] && !(pair[0].is_nan() && pair[1].is_nan());
     let rows = column.windows(2).enumerate();
@@ -150,12 +150,16 @@ fn speeds(trace: &TraceData, time: &impl Fn(usize) -> f64, words: &Words) -> Vec
     SPEEDS
         .iter()
         .filter_map(|(name, colour, style)| {
-            let steps = steps(known(name)?).into_iter();
+            // The ends of each stretch draw the same line as all of its rows.
+            let ends = stretches(known(name)?).into_iter();
+            let ends = ends.flat_map(|(first, last, value)| [(first, value), (last, value)]);
+            let mut points: Vec<_> = ends.map(|(row, value)| (time(row), value)).collect();
+            points.dedup_by_key(|point| point.0);
             Some(Series {
                 name: words.signal(name).into_owned(),
                 colour: *colour,
                 style: *style,
-                points: steps.map(|(row, value)| (time(row), value)).collect(),
+                points,
             })
         })
         .collect()
@@ -221,17 +225,6 @@ fn stretches(column: &[f64]) -> Vec<(usize, usize, f64)> {
         row += same.len();
     }
     all
-}
-
-/// Rows at which something changes, with the one before each: the same line of fewer points.
-fn steps(column: &[f64]) -> Vec<(usize, f64)> {
-    let same = |a: usize, b: usize| column[a].to_bits() == column[b].to_bits();
-    let kept = |row: &usize| {
-        let (row, last) = (*row, column.len() - 1);
-        row == 0 || row == last || !same(row, row - 1) || !same(row, row + 1)
-    };
-    let rows = (0..column.len()).filter(kept);
-    rows.map(|row| (row, column[row])).collect()
 }
 
 #[cfg(test)]

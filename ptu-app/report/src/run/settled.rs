@@ -3,7 +3,7 @@
 use fault_db::{RepairRecord, SettledFault};
 
 use super::Sheet;
-use super::block::{Align, Block, Column, Row, RowKind, Table};
+use super::block::{Block, Row, Table};
 use crate::naming;
 use crate::words::Words;
 
@@ -28,7 +28,7 @@ pub fn settled(sheet: &Sheet, words: &Words) -> Vec<Block> {
             serial(|repair| &repair.serial_old),
             serial(|repair| &repair.serial_new),
         ];
-        Row::words(RowKind::Head, cells)
+        Row::words(cells)
     };
     let columns = [
         (common.fault, 0.12),
@@ -39,11 +39,6 @@ pub fn settled(sheet: &Sheet, words: &Words) -> Vec<Block> {
     ];
     vec![
         Block::Heading(report.settled.into()),
-        Block::Table(Table {
-            columns: columns
-                .map(|(name, share)| Column::new(name, share, Align::Left))
-                .into(),
-            rows: sheet.run.settled.iter().map(row).collect(),
-        }),
+        Block::Table(Table::of_words(columns, sheet.run.settled.iter().map(row))),
     ]
 }

@@ -35,12 +35,12 @@ impl<'a> Sources<'a> {
             return Vec::new();
         }
         let report = &words.report;
-        let row = |(number, source): (usize, &&str)| Row {
-            kind: RowKind::Detail,
-            cells: vec![
-                (Cell::Text(Tone::Plain, number.to_string()), 1),
-                (Cell::Text(Tone::Plain, in_words(source, words)), 1),
-            ],
+        let row = |(number, source): (usize, &&str)| {
+            let cells = [number.to_string(), in_words(source, words)];
+            Row::new(
+                RowKind::Detail,
+                cells.map(|text| Cell::Text(Tone::Plain, text)),
+            )
         };
         vec![
             Block::Heading(report.limit_sources.into()),

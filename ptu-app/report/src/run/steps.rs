@@ -133,7 +133,7 @@ fn is_uncertainty(measurement: &MeasurementRecord, all: &[MeasurementRecord]) ->
 }
 
 pub fn verdict(verdict: Verdict, words: &Words) -> Cell {
-    Cell::Verdict(tone(verdict), words.common.stored_verdict(verdict).into())
+    Cell::Text(tone(verdict), words.common.stored_verdict(verdict).into())
 }
 
 pub fn tone(verdict: Verdict) -> Tone {

@@ -177,7 +177,7 @@ fn laid_out(sheet: &Sheet, words: &Words) -> Vec<page::Page> {
 }
 
 /// The texts of a page, each line ended.
-pub(super) fn words_of(page: &[Item]) -> String {
+pub(crate) fn words_of(page: &[Item]) -> String {
     let text = |item: &Item| match item {
         Item::Text(text) => Some(text.lines.clone()),
         _ => None,

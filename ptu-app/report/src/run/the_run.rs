@@ -20,6 +20,8 @@ pub fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
         "" => "–",
         train => train,
     };
+    let evidence = run.evidence.as_deref().and_then(Evidence::of);
+    let evidence = evidence.as_ref();
     let continued = (run.continues).map(|earlier| (report.continues, earlier.to_string()));
     let facts = [
         (report.run_id, run.id.to_string()),
@@ -41,9 +43,12 @@ pub fn the_run(sheet: &Sheet, words: &Words) -> Vec<Block> {
         (report.wall_time, seconds(run.wall_time_us)),
         (report.program, format!("ptu {}", run.app_version)),
         (report.scripts_hash, run.scripts_sha256.clone()),
-        (report.clock, clock(sheet, words)),
-        (report.instruments, instruments(sheet, words)),
-        (report.decision_rule, decision_rule(sheet, words).to_owned()),
+        (report.clock, clock(evidence, words)),
+        (report.instruments, instruments(evidence, words)),
+        (
+            report.decision_rule,
+            decision_rule(evidence, words).to_owned(),
+        ),
         (report.seal, seal(sheet, words)),
         (report.signed_by, signed_by(sheet, words)),
     ];
@@ -76,10 +81,9 @@ fn seal(sheet: &Sheet, words: &Words) -> String {
 }
 
 /// Accuracy of the computer's clock, as text.
-fn clock(sheet: &Sheet, words: &Words) -> String {
+fn clock(evidence: Option<&Evidence>, words: &Words) -> String {
     let report = &words.report;
-    let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);
-    let clock = evidence.map(|evidence| evidence.clock);
+    let clock = evidence.map(|evidence| &evidence.clock);
     match clock.map(|clock| (clock.synchronised, clock.uncertainty_ms)) {
         Some((Some(true), ms)) => {
             let ms = ms.unwrap_or_default();
@@ -91,8 +95,7 @@ fn clock(sheet: &Sheet, words: &Words) -> String {
 }
 
 /// Rule by which a value is held against its limits.
-fn decision_rule(sheet: &Sheet, words: &Words) -> &'static str {
-    let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);
+fn decision_rule(evidence: Option<&Evidence>, words: &Words) -> &'static str {
     match evidence.is_some_and(|evidence| evidence.guard_banded) {
         true => words.report.rule_guard_band,
         false => words.report.rule_simple,
@@ -100,11 +103,9 @@ fn decision_rule(sheet: &Sheet, words: &Words) -> &'static str {
 }
 
 /// Instruments that measured, and whether their calibration was valid.
-fn instruments(sheet: &Sheet, words: &Words) -> String {
+fn instruments(evidence: Option<&Evidence>, words: &Words) -> String {
     let report = &words.report;
-    let evidence = sheet.run.run.evidence.as_deref().and_then(Evidence::of);
-    let used = evidence.map(|evidence| evidence.instruments);
-    let used = used.unwrap_or_default();
+    let used = evidence.map_or(&[][..], |evidence| &evidence.instruments);
     let one = |used: &InstrumentEvidence| {
         let of = &used.of;
         let day = |day: &Option<String>| day.clone().unwrap_or_else(|| "–".to_owned());

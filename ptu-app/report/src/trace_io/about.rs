@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use crate::trace_notes::TraceNote;
 use ptu_runs::clock::rfc3339;
 
-/// The name it is kept under in files that have named metadata.
+/// Name of the description in files that have named metadata.
 pub const NAME: &str = "ptu.trace";
 
-/// Whose trace it is, when it was recorded, and what its signals are; of a part of a trace that part's.
+/// Unit, time and signals of a trace, or of the part of a trace that a file holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TraceInfo {
     pub trace_id: String,
@@ -25,7 +25,7 @@ pub struct TraceInfo {
     /// Time from row to row, microseconds.
     pub period_us: i64,
     pub rows: usize,
-    /// The row of the trigger, which has the time 0; of a part it may be before or after all rows.
+    /// Row of the trigger, which has the time 0; the trigger may be before or after all rows of a part.
     pub trigger_row: Option<i64>,
     /// The trace ends before its window did.
     pub partial: bool,
@@ -33,7 +33,7 @@ pub struct TraceInfo {
     pub gaps: bool,
     /// Name, unit and kind of each signal; kinds with smallest step or words.
     pub channels: Vec<Channel>,
-    /// Notes at places in it; a file of an earlier version has none.
+    /// Notes at places in the trace; a file of an earlier version has none.
     #[serde(default)]
     pub notes: Vec<TraceNote>,
 }

@@ -21,11 +21,11 @@ pub struct Aligned {
     pub unknown: Vec<String>,
     /// Rows of the trace for which the file has samples.
     pub rows: Range<usize>,
-    /// Seconds from the trigger to the first and last of them.
+    /// Seconds from the trigger to the first and the last of these rows.
     pub window_s: (f64, f64),
     /// Whether the file's samples came at the trace's own rows.
     pub is_row_by_row: bool,
-    /// Whether the file is of another time, and its beginning was laid at the trace's.
+    /// Whether the file is of another time, so that its beginning was laid at the beginning of the trace.
     pub laid_at_begin: bool,
 }
 

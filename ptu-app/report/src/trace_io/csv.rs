@@ -18,49 +18,50 @@ use crate::csv::{MARK, no_formula, quoted};
 /// Heading of the column of times.
 pub const TIME: &str = "time_s";
 
-/// Begins a file with the line of headings.
+/// Begins a file with the line of headings; with a column of distances if the way is written.
 ///
 /// # Errors
 /// `out` fails.
 pub fn put_headings<'a>(
     out: &mut impl Write,
-    before: &[&str],
+    with_distance: bool,
     channels: impl Iterator<Item = &'a Channel>,
 ) -> io::Result<()> {
     write!(out, "{MARK}{TIME}")?;
-    for heading in before {
-        write!(out, ",{heading}")?;
+    if with_distance {
+        write!(out, ",distance_m")?;
     }
     for channel in channels {
-        let heading = column_name(channel);
-        write!(
-            out,
-            ",{}",
-            quoted(&display_text::line(&no_formula(&heading)))
-        )?;
+        let name = column_name(channel);
+        write!(out, ",{}", quoted(&display_text::line(&no_formula(&name))))?;
     }
     out.write_all(b"\n")
 }
 
-/// Begins a row with its time: microseconds from the trigger, in whole milliseconds where all rows are.
+/// Writes a row: its time, µs from the trigger, in whole milliseconds where all rows of this period are; the way, m, if it
+/// is written; a sample of each signal.
 ///
 /// # Errors
 /// `out` fails.
-pub fn put_time(out: &mut impl Write, time_us: i64, period_us: i64) -> io::Result<()> {
+pub fn put_row<'a>(
+    out: &mut impl Write,
+    (time_us, period_us): (i64, i64),
+    distance_m: Option<f64>,
+    samples: impl Iterator<Item = (&'a Channel, f64)>,
+) -> io::Result<()> {
     let digits = if period_us % 1000 == 0 { 3 } else { 6 };
-    write!(out, "{:.digits$}", time_us as f64 / 1e6)
-}
-
-/// Writes a further sample of this signal.
-///
-/// # Errors
-/// `out` fails.
-pub fn put_sample(out: &mut impl Write, channel: &Channel, sample: f64) -> io::Result<()> {
-    match word(channel, sample) {
-        _ if sample.is_nan() => out.write_all(b","),
-        Some(word) => write!(out, ",{}", quoted(&display_text::line(&no_formula(word)))),
-        None => write!(out, ",{sample}"),
+    write!(out, "{:.digits$}", time_us as f64 / 1e6)?;
+    if let Some(distance_m) = distance_m {
+        write!(out, ",{distance_m:.2}")?;
     }
+    for (channel, sample) in samples {
+        match word(channel, sample) {
+            _ if sample.is_nan() => out.write_all(b",")?,
+            Some(word) => write!(out, ",{}", quoted(&display_text::line(&no_formula(word))))?,
+            None => write!(out, ",{sample}")?,
+        }
+    }
+    out.write_all(b"\n")
 }
 
 /// The name of a CSV file's description.

@@ -77,7 +77,7 @@ struct Records<'f, R> {
     separator: u8,
 }
 
-/// Refuses a record without an end: a quotation mark that is not closed makes one of a whole file.
+/// Refuses a record without an end: a quotation mark that is not closed makes one record of a whole file.
 struct Watched<R> {
     input: R,
     since: Rc<Cell<u64>>,
@@ -344,7 +344,7 @@ fn signals<R: BufRead>(
     Ok(signals)
 }
 
-/// The one of the usual three that most lines have as often as the others.
+/// The one of three usual separators whose number is the same in most lines.
 fn separator(begin: &str) -> u8 {
     let lines = || {
         begin

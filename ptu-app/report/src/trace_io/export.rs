@@ -56,7 +56,7 @@ pub fn export(chosen: &TracePart<'_>, to: &Path, force: bool) -> Result<(), Fail
             let document = csv::description(&name, &chosen.about);
             writeln!(description, "{document:#}").map_err(|error| cannot_write(&beside, &error))?;
             put_csv(&mut file, chosen, to)?;
-            // Both are whole before the first of them takes its place.
+            // Both files are whole before the first one takes its place.
             description.settle()?;
             file.settle()?;
             description.finish()?;
@@ -70,17 +70,13 @@ pub fn export(chosen: &TracePart<'_>, to: &Path, force: bool) -> Result<(), Fail
 fn put_csv(out: &mut impl Write, chosen: &TracePart<'_>, to: &Path) -> Result<(), Failure> {
     let about = &chosen.about;
     let failed = |error: std::io::Error| cannot_write(to, &error);
-    csv::put_headings(out, &[], about.channels.iter()).map_err(failed)?;
+    csv::put_headings(out, false, about.channels.iter()).map_err(failed)?;
     chosen.each_block(|first, columns| {
         for row in 0..columns.first().map_or(0, Vec::len) {
-            let mut put = || {
-                csv::put_time(out, about.time_us(first + row), about.period_us)?;
-                for (channel, column) in about.channels.iter().zip(columns) {
-                    csv::put_sample(out, channel, column[row])?;
-                }
-                out.write_all(b"\n")
-            };
-            put().map_err(failed)?;
+            let time = (about.time_us(first + row), about.period_us);
+            let samples = columns.iter().map(|column| column[row]);
+            let samples = about.channels.iter().zip(samples);
+            csv::put_row(out, time, None, samples).map_err(failed)?;
         }
         Ok(())
     })

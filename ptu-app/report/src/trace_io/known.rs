@@ -11,7 +11,7 @@ use super::times::number;
 /// A longer text is no word of a signal, bytes.
 const MAX_WORD: usize = 1024;
 
-/// Behind the name of a column for which another was named.
+/// Stands behind the name of a column where a person named another column for the signal of this name.
 pub(super) const OWN: &str = " (own column)";
 
 /// A signal, and the numbers of its words.
@@ -19,7 +19,7 @@ pub(super) const OWN: &str = " (own column)";
 pub(super) struct Known {
     pub channel: Channel,
     words: HashMap<String, f64>,
-    /// Whether it is one of the signals that were known, not just a number of that name.
+    /// Whether a trace has the signal; else it is a number with the name of a column.
     pub is_of_a_trace: bool,
 }
 
@@ -46,7 +46,7 @@ impl Known {
         }
     }
 
-    /// The number of a word, if it has that.
+    /// Number of a word of the signal; `None` for any other word.
     pub fn number(&self, word: &str) -> Option<f64> {
         self.words.get(word).copied()
     }
@@ -101,7 +101,7 @@ impl KnownSignals {
         all
     }
 
-    /// The signal that is called so in a file.
+    /// The signal that files call by this name.
     pub fn named(&self, name: &str) -> Option<&Known> {
         self.places.get(name).map(|place| &self.signals[*place])
     }

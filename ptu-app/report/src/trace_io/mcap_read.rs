@@ -121,7 +121,7 @@ fn texts_fit(opcode: u8, data: &[u8]) -> bool {
         for _ in 0..texts {
             rest = text(rest)?.1;
         }
-        // Behind them a map: the length of its bytes, as a text has, and texts.
+        // A map follows the texts: the length of its bytes, as a text has, and texts.
         let mut map = text(rest)?.0;
         while !map.is_empty() {
             map = text(map)?.1;
@@ -131,7 +131,7 @@ fn texts_fit(opcode: u8, data: &[u8]) -> bool {
     fit().is_some()
 }
 
-/// A text behind its length in bytes, and what follows it.
+/// A text that follows its length in bytes, and the bytes after the text.
 fn text(data: &[u8]) -> Option<(&[u8], &[u8])> {
     let (length, rest) = data.split_first_chunk()?;
     rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)
@@ -274,7 +274,7 @@ impl Topic {
         }
     }
 
-    /// Refuses names that are none; called after each message, so that one has brought them.
+    /// Refuses names that are too long; called after each message, which brought the names that are not checked yet.
     fn check_names(&mut self, file: &Path) -> Result<(), Failure> {
         while self.checked < self.table.channels.len() {
             check_name(file, &self.table.channels[self.checked].name)?;
@@ -332,7 +332,8 @@ impl Topic {
     }
 }
 
-/// The signal a field stands for: of its own name, of its topic's where it is just the value there, or of both.
+/// The signal of a field: the signal with the name of the field, with the name of the topic if the field is the topic's only
+/// value, or with both names joined.
 fn signal<'a>(topic: &str, path: &str, known: &'a KnownSignals) -> Option<&'a Known> {
     let is_value = matches!(path, "" | "value" | "data");
     let of_topic = || is_value.then(|| known.named(topic)).flatten();

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use fault_db::{Channel, ChannelKind};
 use mcap::records::{MessageHeader, Metadata};
-use mcap::{Compression, McapError, WriteOptions};
+use mcap::{Compression, McapError, WriteOptions, Writer};
 use serde_json::{Map, Value, json};
 
 use super::about::NAME;
@@ -37,12 +37,7 @@ pub(super) fn put(
     };
     file.write_metadata(&metadata).map_err(failed)?;
     let schema = schema(&about.channels).to_string();
-    let schema = file
-        .add_schema(NAME, "jsonschema", schema.as_bytes())
-        .map_err(failed)?;
-    let channel = file
-        .add_channel(schema, TOPIC, "json", &BTreeMap::new())
-        .map_err(failed)?;
+    let mut topic = Topic::add(&mut file, TOPIC, &schema).map_err(failed)?;
     let keys = keys(&about.channels);
     let mut message = Vec::new();
     chosen.each_block(|first, columns| {
@@ -51,25 +46,51 @@ pub(super) fn put(
             let samples = columns.iter().map(|column| column[row]);
             put_row(&mut message, &about.channels, &keys, samples)
                 .map_err(|error| failed(error.into()))?;
-            let number = first + row;
-            let at_us = (number as i64).saturating_mul(about.period_us);
-            // Nothing was recorded before 1970.
-            let at_ns = u64::try_from(about.t0_us.saturating_add(at_us))
-                .unwrap_or(0)
-                .saturating_mul(1000);
-            let header = MessageHeader {
-                channel_id: channel,
-                sequence: number as u32,
-                log_time: at_ns,
-                publish_time: at_ns,
-            };
-            file.write_to_known_channel(&header, &message)
-                .map_err(failed)?;
+            let later_us = ((first + row) as i64).saturating_mul(about.period_us);
+            let at_us = about.t0_us.saturating_add(later_us);
+            topic.put(&mut file, at_us, &message).map_err(failed)?;
         }
         Ok(())
     })?;
     file.finish().map_err(failed)?;
     Ok(())
+}
+
+/// Messages of JSON in a file, and how many they are so far.
+pub(super) struct Topic {
+    channel: u16,
+    count: u32,
+}
+
+impl Topic {
+    /// Adds a topic without messages, whose schema is called `ptu.` and its name.
+    pub fn add<W: Write + Seek>(
+        file: &mut Writer<W>,
+        name: &str,
+        schema: &str,
+    ) -> Result<Self, McapError> {
+        let schema = file.add_schema(&format!("ptu.{name}"), "jsonschema", schema.as_bytes())?;
+        let channel = file.add_channel(schema, name, "json", &BTreeMap::new())?;
+        Ok(Self { channel, count: 0 })
+    }
+
+    /// Adds a message of this time, µs since 1970; nothing was recorded before.
+    pub fn put<W: Write + Seek>(
+        &mut self,
+        file: &mut Writer<W>,
+        at_us: i64,
+        message: &[u8],
+    ) -> Result<(), McapError> {
+        let at_ns = u64::try_from(at_us).unwrap_or(0).saturating_mul(1000);
+        let header = MessageHeader {
+            channel_id: self.channel,
+            sequence: self.count,
+            log_time: at_ns,
+            publish_time: at_ns,
+        };
+        self.count = self.count.wrapping_add(1);
+        file.write_to_known_channel(&header, message)
+    }
 }
 
 /// Packing of every file that this program writes.

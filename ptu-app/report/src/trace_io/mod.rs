@@ -32,6 +32,7 @@ pub use align::{Aligned, align};
 pub use beside::beside;
 pub use column::column_name;
 pub use export::{Format, export};
+pub(crate) use parquet::schema_column;
 pub use part::{Seconds, TracePart};
 pub use run_mcap::RunMcap;
 pub use series::{Import, import, is_importable};

@@ -78,29 +78,42 @@ pub(super) fn put(
 }
 
 fn schema(channels: &[Channel]) -> Result<Type, ParquetError> {
-    let time = Type::primitive_type_builder(TIME, Physical::DOUBLE)
-        .with_repetition(Repetition::REQUIRED)
-        .build()?;
-    let utc = Type::primitive_type_builder(UTC, Physical::INT64)
-        .with_repetition(Repetition::REQUIRED)
-        .with_logical_type(Some(LogicalType::timestamp(true, TimeUnit::MICROS)))
-        .build()?;
-    let mut fields = vec![Arc::new(time), Arc::new(utc)];
+    let utc = LogicalType::timestamp(true, TimeUnit::MICROS);
+    let mut fields = vec![
+        schema_column(TIME, Repetition::REQUIRED, Physical::DOUBLE, None)?,
+        schema_column(UTC, Repetition::REQUIRED, Physical::INT64, Some(utc))?,
+    ];
     for channel in channels {
         let (physical, logical) = match channel.kind {
             ChannelKind::Number { .. } => (Physical::DOUBLE, None),
             ChannelKind::Bit => (Physical::BOOLEAN, None),
             ChannelKind::Enum { .. } => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
         };
-        let field = Type::primitive_type_builder(&column_name(channel), physical)
-            .with_repetition(Repetition::OPTIONAL)
-            .with_logical_type(logical)
-            .build()?;
-        fields.push(Arc::new(field));
+        let name = column_name(channel);
+        fields.push(schema_column(
+            &name,
+            Repetition::OPTIONAL,
+            physical,
+            logical,
+        )?);
     }
     Type::group_type_builder("trace")
         .with_fields(fields)
         .build()
+}
+
+/// A column of a schema.
+pub(crate) fn schema_column(
+    name: &str,
+    repetition: Repetition,
+    physical: Physical,
+    logical: Option<LogicalType>,
+) -> Result<Arc<Type>, ParquetError> {
+    let column = Type::primitive_type_builder(name, physical);
+    let column = column
+        .with_repetition(repetition)
+        .with_logical_type(logical);
+    column.build().map(Arc::new)
 }
 
 /// Writes the values of a column; `known` says in which rows they are.

@@ -38,7 +38,8 @@ pub(super) fn check_footer(file: &mut File) -> Result<(), Refused> {
     }
 }
 
-/// Takes what the pages of a column unpack to from `left`, and refuses those that are longer than that or than a page may be.
+/// Subtracts the unpacked length of each page of a column from `left`; refuses a page that is longer than what is left, or than
+/// a page may be.
 pub(super) fn check_pages(
     file: &File,
     column: &ColumnChunkMetaData,
@@ -159,7 +160,7 @@ impl<R: Read> Thrift<R> {
                 0 => self.signed()?,
                 more => field + i64::from(more),
             };
-            // A field that came already would count for one reader, and not for another.
+            // Of a field that comes twice, one reader would take the first value and another reader the last.
             if field <= before {
                 return Err("a page's header has its fields in another order".to_owned());
             }

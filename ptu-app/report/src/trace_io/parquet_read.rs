@@ -46,7 +46,7 @@ struct Times {
 pub(super) fn read(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import, Failure> {
     let opened = open_regular_file(file)
         .map_err(|error| Failure::usage(FileTrouble::unread(file, error)))?;
-    // The library panics on some pages that say another length than they have, where it could answer.
+    // The library panics on some pages that state a wrong length, where it could return an error.
     let read = catch_unwind(AssertUnwindSafe(|| read_table(file, opened, known, asked)));
     read.unwrap_or_else(|_| Err(wrong(file, "damaged: a page is not as it says")))
 }
@@ -137,13 +137,11 @@ fn columns(
     })?;
     let (unit, is_utc) = match values {
         Values::Times { unit, is_utc } => (unit, is_utc),
-        Values::Numbers(_) => (asked.unit(time.name(), None), false),
-        _ => {
-            return Err(wrong(
-                file,
-                &format!("column \"{}\" has no times", time.name()),
-            ));
+        Values::Words => {
+            let what = format!("column \"{}\" has no times", time.name());
+            return Err(wrong(file, &what));
         }
+        _ => (asked.unit(time.name(), None), false),
     };
     let mut signals = Vec::new();
     for (at, column) in all.iter().enumerate() {
@@ -207,7 +205,7 @@ fn read_group(
     Ok(())
 }
 
-/// A column's samples; an unknown one is NaN, and words are those of the channel.
+/// Samples of a column; an unknown sample is NaN, and a word is a number by the words of the channel.
 fn samples(
     reader: ColumnReader,
     rows: Range<usize>,

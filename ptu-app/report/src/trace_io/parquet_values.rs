@@ -11,7 +11,13 @@ const LONGEST: usize = 16;
 /// Conversion of stored values to numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Values {
-    Numbers(Numbers),
+    /// Numbers as they are.
+    Plain,
+    Unsigned,
+    /// Whole numbers, of which this many digits stand behind the point.
+    Decimal(i32),
+    /// IEEE 754 of 16 bits.
+    Half,
     /// Texts, which may be numbers or words of a signal.
     Words,
     /// Whole numbers of this unit: from the trigger, or from 1970 on.
@@ -21,19 +27,7 @@ pub(super) enum Values {
     },
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Numbers {
-    Plain,
-    Unsigned,
-    /// Whole numbers, of which so many digits stand behind the point.
-    Decimal(i32),
-    /// IEEE 754 of 16 bits.
-    Half,
-}
-
 impl Values {
-    pub const PLAIN: Self = Self::Numbers(Numbers::Plain);
-
     /// Conversion of the values of a column.
     ///
     /// # Errors
@@ -52,12 +46,12 @@ impl Values {
             Some(LogicalType::Timestamp(time)) => return times(of(&time.unit), true),
             Some(LogicalType::Time(time)) => return times(of(&time.unit), false),
             Some(LogicalType::Decimal(decimal)) => {
-                return Ok(Self::Numbers(Numbers::Decimal(decimal.scale)));
+                return Ok(Self::Decimal(decimal.scale));
             }
             Some(LogicalType::Integer(int)) if !int.is_signed => {
-                return Ok(Self::Numbers(Numbers::Unsigned));
+                return Ok(Self::Unsigned);
             }
-            Some(LogicalType::Float16) => return Ok(Self::Numbers(Numbers::Half)),
+            Some(LogicalType::Float16) => return Ok(Self::Half),
             Some(LogicalType::Integer(_) | LogicalType::String | LogicalType::Enum) | None => {}
             Some(other) => return Err(format!("values of the type {other:?} are no samples")),
         }
@@ -66,33 +60,33 @@ impl Values {
             (ConvertedType::TIMESTAMP_MICROS, _) => times(TimeUnit::Microseconds, true),
             (ConvertedType::TIME_MILLIS, _) => times(TimeUnit::Milliseconds, false),
             (ConvertedType::TIME_MICROS, _) => times(TimeUnit::Microseconds, false),
-            (ConvertedType::DECIMAL, _) => Ok(Self::Numbers(Numbers::Decimal(column.type_scale()))),
+            (ConvertedType::DECIMAL, _) => Ok(Self::Decimal(column.type_scale())),
             (
                 ConvertedType::UINT_8
                 | ConvertedType::UINT_16
                 | ConvertedType::UINT_32
                 | ConvertedType::UINT_64,
                 _,
-            ) => Ok(Self::Numbers(Numbers::Unsigned)),
+            ) => Ok(Self::Unsigned),
             (_, Physical::BYTE_ARRAY) => Ok(Self::Words),
             (_, Physical::INT96 | Physical::FIXED_LEN_BYTE_ARRAY) => Err(format!(
                 "values of the type {} are no samples",
                 column.physical_type()
             )),
-            _ => Ok(Self::PLAIN),
+            _ => Ok(Self::Plain),
         }
     }
 
     pub fn of_32(self, number: i32) -> f64 {
         match self {
-            Self::Numbers(Numbers::Unsigned) => number.cast_unsigned().into(),
+            Self::Unsigned => number.cast_unsigned().into(),
             _ => self.scaled(number.into()),
         }
     }
 
     pub fn of_64(self, number: i64) -> f64 {
         match self {
-            Self::Numbers(Numbers::Unsigned) => number.cast_unsigned() as f64,
+            Self::Unsigned => number.cast_unsigned() as f64,
             _ => self.scaled(number as f64),
         }
     }
@@ -103,10 +97,8 @@ impl Values {
     /// The bytes are longer than any number here, or no number.
     pub fn of_bytes(self, bytes: &[u8]) -> Result<f64, String> {
         match (self, bytes) {
-            (Self::Numbers(Numbers::Half), [low, high]) => {
-                Ok(half(u16::from_le_bytes([*low, *high])))
-            }
-            (Self::Numbers(Numbers::Decimal(_)), [first, ..]) if bytes.len() <= LONGEST => {
+            (Self::Half, [low, high]) => Ok(half(u16::from_le_bytes([*low, *high]))),
+            (Self::Decimal(_), [first, ..]) if bytes.len() <= LONGEST => {
                 let sign = if *first < 0x80 { 0 } else { 0xff };
                 let mut all = [sign; LONGEST];
                 all[LONGEST - bytes.len()..].copy_from_slice(bytes);
@@ -119,7 +111,7 @@ impl Values {
     fn scaled(self, number: f64) -> f64 {
         match self {
             // The power of ten is exact, its inverse is not.
-            Self::Numbers(Numbers::Decimal(digits)) => number / 10f64.powi(digits),
+            Self::Decimal(digits) => number / 10f64.powi(digits),
             _ => number,
         }
     }
@@ -143,17 +135,13 @@ mod tests {
 
     #[test]
     fn numbers_of_every_form_are_what_they_say() {
-        let of = Values::Numbers;
-        assert_eq!(of(Numbers::Unsigned).of_32(-1_294_967_296), 3e9);
-        assert_eq!(of(Numbers::Unsigned).of_64(-1), u64::MAX as f64);
-        assert_eq!(of(Numbers::Decimal(2)).of_32(3_294), 32.94);
-        assert_eq!(of(Numbers::Decimal(2)).of_bytes(&[0xff, 0x38]), Ok(-2.0));
-        assert_eq!(of(Numbers::Half).of_bytes(&[0x00, 0xc5]), Ok(-5.0));
-        assert_eq!(
-            of(Numbers::Half).of_bytes(&[0x01, 0x00]),
-            Ok(2f64.powi(-24))
-        );
-        assert!(of(Numbers::Decimal(0)).of_bytes(&[1; 17]).is_err());
-        assert_eq!(Values::PLAIN.of_32(-7), -7.0);
+        assert_eq!(Values::Unsigned.of_32(-1_294_967_296), 3e9);
+        assert_eq!(Values::Unsigned.of_64(-1), u64::MAX as f64);
+        assert_eq!(Values::Decimal(2).of_32(3_294), 32.94);
+        assert_eq!(Values::Decimal(2).of_bytes(&[0xff, 0x38]), Ok(-2.0));
+        assert_eq!(Values::Half.of_bytes(&[0x00, 0xc5]), Ok(-5.0));
+        assert_eq!(Values::Half.of_bytes(&[0x01, 0x00]), Ok(2f64.powi(-24)));
+        assert!(Values::Decimal(0).of_bytes(&[1; 17]).is_err());
+        assert_eq!(Values::Plain.of_32(-7), -7.0);
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::str::FromStr;
 
-use fault_db::{Channel, Id, Store, StoreError, TraceError, TraceHead};
+use fault_db::{Id, Store, TraceHead};
 
 use super::about::TraceInfo;
 use crate::trace_notes::TraceNote;
@@ -13,7 +13,7 @@ use ptu_runs::failure::{Asked, Failure};
 /// Rows that are in memory at once, of all signals.
 const ROWS_AT_ONCE: usize = 4096;
 
-/// A span of time in seconds from the trigger; an end that is not given is that of the trace.
+/// A span of time in seconds from the trigger; an end that is not given is the end of the trace.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seconds {
     from: Option<f64>,
@@ -49,7 +49,7 @@ impl Seconds {
     /// The rows at these times, both ends included.
     ///
     /// # Errors
-    /// The trace has none there; its own span is told.
+    /// The trace has no row there; the error names the span of the trace.
     pub fn rows(&self, head: &TraceHead) -> Result<Range<usize>, Failure> {
         let trigger = i64::from(head.trigger_row.unwrap_or(0));
         let period_s = head.period_us as f64 / 1e6;
@@ -95,7 +95,9 @@ impl<'s> TracePart<'s> {
     ) -> Result<Self, Failure> {
         let head = store.trace_head(id)?;
         let rows = span.rows(&head)?;
-        let channels = chosen(&head, signals)?;
+        // Without a row: the channels, or an error that names a signal which the trace lacks.
+        let names: Vec<_> = signals.iter().map(String::as_str).collect();
+        let channels = store.trace_window(id, &names, 0..0)?.channels;
         let mut about = TraceInfo::part(&head, channels, rows.start, rows.len());
         let times_us = about.time_us(0)..about.time_us(rows.len());
         about.notes = TraceNote::all(store, id, Language::English.words())?;
@@ -108,7 +110,7 @@ impl<'s> TracePart<'s> {
         })
     }
 
-    /// Samples of one signal, by its place, in these rows of the part.
+    /// Samples of the signal at this place, in these rows of the part.
     pub(super) fn column(&self, place: usize, rows: Range<usize>) -> Result<Vec<f64>, Failure> {
         let names = [self.about.channels[place].name.as_str()];
         let mut trace = self
@@ -141,26 +143,6 @@ impl<'s> TracePart<'s> {
     fn of_trace(&self, rows: Range<usize>) -> Range<usize> {
         self.rows.start + rows.start..self.rows.start + rows.end
     }
-}
-
-fn chosen(head: &TraceHead, signals: &[String]) -> Result<Vec<Channel>, Failure> {
-    if signals.is_empty() {
-        return Ok(head.channels.clone());
-    }
-    let find = |signal: &String| {
-        let found = head.channels.iter().find(|channel| channel.name == *signal);
-        found.cloned().ok_or_else(|| {
-            let source = TraceError::UnknownChannel {
-                channel: signal.clone(),
-                known: head.channels.iter().map(|c| c.name.clone()).collect(),
-            };
-            Failure::from(StoreError::Trace {
-                trace: head.id,
-                source,
-            })
-        })
-    };
-    signals.iter().map(find).collect()
 }
 
 #[cfg(test)]

@@ -4,18 +4,16 @@
 //! A message's time is that of the run's beginning and the bench time since, so that procedures whose units were switched
 //! on one after the other follow each other.
 
-use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 
 use btu_rig::procedure::Procedure;
 use fault_db::Channel;
-use mcap::records::MessageHeader;
 use mcap::{McapError, Writer};
 use protocol::signal::Signal;
 use protocol::{Duration, Instant};
 
-use super::mcap_write::{keys, options, put_row, schema};
-use crate::event_lines::{EventLines, schema as events_schema};
+use super::mcap_write::{Topic, keys, options, put_row, schema};
+use crate::event_lines::{EventLines, SCHEMA};
 use ptu_runs::run::{Outcome, SessionEvent, channel, in_steps};
 
 /// Topics of its rows and its events.
@@ -38,12 +36,6 @@ pub struct RunMcap<W: Write + Seek> {
     last: Instant,
 }
 
-/// A channel of the file, and its messages so far.
-struct Topic {
-    id: u16,
-    count: u32,
-}
-
 impl<W: Write + Seek> RunMcap<W> {
     /// Begins the file; the run begins at `t0_us`, microseconds since 1970.
     ///
@@ -52,14 +44,8 @@ impl<W: Write + Seek> RunMcap<W> {
     pub fn begin(out: W, t0_us: i64) -> Result<Self, McapError> {
         let mut file = options().create(out)?;
         let channels: Vec<_> = Signal::ALL.iter().map(|signal| channel(*signal)).collect();
-        let mut topic = |name: &str, schema: String| {
-            let schema =
-                file.add_schema(&format!("ptu.{name}"), "jsonschema", schema.as_bytes())?;
-            let id = file.add_channel(schema, name, "json", &BTreeMap::new())?;
-            Ok::<_, McapError>(Topic { id, count: 0 })
-        };
-        let signals = topic(SIGNALS, schema(&channels).to_string())?;
-        let events = topic(EVENTS, events_schema().to_string())?;
+        let signals = Topic::add(&mut file, SIGNALS, &schema(&channels).to_string())?;
+        let events = Topic::add(&mut file, EVENTS, SCHEMA)?;
         let mut recording = Self {
             file,
             keys: keys(&channels),
@@ -88,8 +74,8 @@ impl<W: Write + Seek> RunMcap<W> {
                 message.clear();
                 let samples = Signal::ALL.iter().map(|of| in_steps(*of, row.value(*of)));
                 put_row(&mut message, &self.channels, &self.keys, samples)?;
-                let at_ns = self.now_ns();
-                put(&mut self.file, &mut self.signals, at_ns, &message)?;
+                let at_us = self.now_us();
+                self.signals.put(&mut self.file, at_us, &message)?;
             }
             return Ok(());
         }
@@ -103,10 +89,10 @@ impl<W: Write + Seek> RunMcap<W> {
         Ok(())
     }
 
-    /// Ends the file; what it was written to.
+    /// Ends the file; returns the writer that was given to `begin`.
     ///
     /// # Errors
-    /// Some of it could not be written.
+    /// A part of the file could not be written.
     pub fn finish(mut self, outcome: Option<&Outcome>) -> Result<W, McapError> {
         if let Some(outcome) = outcome {
             let last = self.lines.finished(outcome);
@@ -117,31 +103,12 @@ impl<W: Write + Seek> RunMcap<W> {
     }
 
     fn put_line(&mut self, line: &str) -> Result<(), McapError> {
-        let at_ns = self.now_ns();
-        put(&mut self.file, &mut self.events, at_ns, line.as_bytes())
+        let at_us = self.now_us();
+        self.events.put(&mut self.file, at_us, line.as_bytes())
     }
 
-    fn now_ns(&self) -> u64 {
+    fn now_us(&self) -> i64 {
         let bench_us = self.before.as_us() + self.last.as_us();
-        u64::try_from(self.t0_us)
-            .unwrap_or(0)
-            .saturating_add(bench_us)
-            .saturating_mul(1000)
+        self.t0_us.saturating_add_unsigned(bench_us)
     }
-}
-
-fn put<W: Write + Seek>(
-    file: &mut Writer<W>,
-    topic: &mut Topic,
-    at_ns: u64,
-    message: &[u8],
-) -> Result<(), McapError> {
-    let header = MessageHeader {
-        channel_id: topic.id,
-        sequence: topic.count,
-        log_time: at_ns,
-        publish_time: at_ns,
-    };
-    topic.count = topic.count.wrapping_add(1);
-    file.write_to_known_channel(&header, message)
 }

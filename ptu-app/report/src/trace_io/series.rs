@@ -10,7 +10,7 @@ use super::times::Columns;
 use super::{csv_read, mcap_read, parquet_read};
 use ptu_runs::failure::{Failure, FileTrouble};
 
-/// A file has at most this many signals; a trace of ours has a few hundred.
+/// Most signals that are read of a file; a trace of this program has a few hundred.
 const MOST_SIGNALS: usize = 4096;
 
 /// Signals that were sampled together.
@@ -63,13 +63,13 @@ pub fn import(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import,
 }
 
 impl Table {
-    /// Samples in it: the times are a column, too.
+    /// Number of samples in the table, in which the times are a column, too.
     pub(super) fn samples(&self) -> usize {
         self.times_us.len().saturating_mul(self.columns.len() + 1)
     }
 }
 
-/// Refuses a file that memory is not meant for, by what it has so far.
+/// Refuses a file with more signals or samples than are held in memory.
 pub(super) fn check_size(file: &Path, signals: usize, samples: usize) -> Result<(), Failure> {
     let more = if signals > MOST_SIGNALS {
         format!("{MOST_SIGNALS} signals")
@@ -97,7 +97,7 @@ pub(super) fn in_order(table: &mut Table) {
     }
 }
 
-/// A number of unknown kind, as which a signal is taken that no trace has.
+/// Channel of a signal that no trace has: a number without a unit.
 pub(super) fn plain(name: &str) -> Channel {
     Channel {
         name: name.to_owned(),

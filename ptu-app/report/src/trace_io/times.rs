@@ -12,7 +12,7 @@ pub struct Columns {
     pub names: Vec<(String, String)>,
     /// Heading of the times.
     pub time: Option<String>,
-    /// Unit of the times; else their heading says it.
+    /// Unit of the times; `None` = as their heading says.
     pub unit: Option<TimeUnit>,
 }
 
@@ -29,7 +29,7 @@ pub enum TimeUnit {
     Nanoseconds,
 }
 
-/// A time, µs, and whether it is one of the calendar (UTC, since 1970).
+/// A time, µs: since 1970 (UTC), or from the trigger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Time {
     pub us: i64,
@@ -52,7 +52,8 @@ const HEADINGS: [&str; 9] = [
 const DATES: [&str; 2] = ["%Y-%m-%dT%H:%M:%S%.f", "%Y-%m-%d %H:%M:%S%.f"];
 
 impl Columns {
-    /// The place of the times among headings: as said; else the first that is called as times are and no signal is.
+    /// Place of the times among headings: the heading that a person named, else the first one that is a name of times and of no
+    /// signal.
     pub(super) fn time<'a>(
         &self,
         mut headings: impl Iterator<Item = &'a str>,
@@ -79,7 +80,7 @@ impl Columns {
 }
 
 impl TimeUnit {
-    /// A number of this unit as microseconds, if there are as many.
+    /// A number of this unit as microseconds; `None` where an `i64` does not hold it.
     pub(super) fn us(self, number: f64) -> Option<i64> {
         let us = match self {
             Self::Seconds => number * 1e6,

@@ -4,7 +4,7 @@ use fault_db::TraceData;
 
 use super::Window;
 
-/// Signals that tell where the train is, the truest first, m.
+/// Signals with the place of the train, m, the true place before the place that the unit reports.
 const POSITIONS: [&str; 2] = ["train_position", "position"];
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -70,7 +70,7 @@ impl Axis {
         let (mut farthest, mut rows_back, mut back_m) = (first * sign, 0, 0.0_f64);
         let mut at_m: Vec<f64> = Vec::with_capacity(column.len());
         for m in column {
-            // Where it is not known the train stays where it was.
+            // Where the place is not known the train stays where it was.
             if *m * sign > farthest {
                 farthest = *m * sign;
             } else if *m * sign < farthest {
@@ -87,6 +87,25 @@ impl Axis {
             rows_back,
             back_m,
         })
+    }
+
+    /// An axis on which each row lies at its own place.
+    pub fn places(at_m: Vec<f64>) -> Self {
+        Self::Distance {
+            at_m,
+            rows_back: 0,
+            back_m: 0.0,
+        }
+    }
+
+    /// The axis of a trace that lies this many rows later; `None` when no signal of the trace tells a distance.
+    pub fn of(kind: Kind, trace: &TraceData, later_rows: i64) -> Option<Self> {
+        let trigger = i64::from(trace.trigger_row.unwrap_or(0));
+        let zero_row = trigger.saturating_sub(later_rows);
+        match kind {
+            Kind::Time => Some(Self::time(trace, zero_row)),
+            Kind::Distance => Self::distance(trace, zero_row),
+        }
     }
 
     pub fn kind(&self) -> Kind {
@@ -115,7 +134,7 @@ impl Axis {
         }
     }
 
-    /// All of it, the time for which the last row holds included.
+    /// The whole axis, with the time for which the last row holds.
     pub fn whole(&self) -> Window {
         let (from, to) = (self.at(0), self.at(self.rows()));
         // A train that stands still has run no way.
@@ -128,7 +147,7 @@ impl Axis {
         self.first_from(place + self.crumb()).checked_sub(1)
     }
 
-    /// Rows of which something is in view: the one that still holds when it begins is one of them.
+    /// Rows in view, with the row that still holds when the view begins.
     pub fn rows_in(&self, window: Window) -> std::ops::Range<usize> {
         let first = self.row_at(window.from).unwrap_or(0);
         let last = self.row_at(window.to).map_or(0, |row| row + 1);
@@ -150,7 +169,7 @@ impl Axis {
         }
     }
 
-    /// Smallest distance between two places; less is none.
+    /// Distance below which two places are one.
     fn crumb(&self) -> f64 {
         match self {
             Self::Time { period_us, .. } => *period_us as f64 * 1e-9,
@@ -158,7 +177,7 @@ impl Axis {
         }
     }
 
-    /// Sets the first rows of this many columns.
+    /// Fills `edges` with the first row of each of this many columns.
     pub fn edges(&self, window: Window, columns: usize, edges: &mut Edges) {
         let place = |column: usize| window.at(column as f64 / columns.max(1) as f64);
         edges.rows.clear();

@@ -2,7 +2,7 @@
 
 use super::view::{Summary, TraceView};
 
-/// Shown wherever they are recorded: what a supervision is about.
+/// Signals that are shown wherever they are recorded: speed and what ATP does about it.
 const ALWAYS: [&str; 7] = [
     "speed",
     "limit",
@@ -14,9 +14,9 @@ const ALWAYS: [&str; 7] = [
 ];
 /// Signals shown at first.
 const FIRST: usize = 9;
-/// Around the trigger, s.
+/// Time before and after the trigger in which changes count, s.
 const AROUND_S: f64 = 2.0;
-/// Signals that move in every trace and tell nothing by it.
+/// Signals that change in every trace, so that a change of them says nothing.
 const NEVER: [&str; 4] = ["events", "train_position", "position", "to_stop"];
 
 /// The signals to show at first, those that changed most around the trigger before the others.
@@ -43,8 +43,8 @@ pub fn usual(view: &TraceView) -> Vec<String> {
         .collect()
 }
 
-/// Activity of a signal around the trigger: a quantity by the share of all it ever did, from 0 to 1; a
-/// choice or bit 1 when it changed, and hardly more when it did so often.
+/// Activity of a signal around the trigger: of a quantity its range there as a share of its whole range, from 0 to 1; of a
+/// choice or bit 2 after one change, and nearer to 1 the more changes there were.
 fn activity(view: &TraceView, place: usize) -> f64 {
     let around = (AROUND_S * 1e6 / view.data().period_us.max(1) as f64) as usize;
     let trigger = view.trigger_row();

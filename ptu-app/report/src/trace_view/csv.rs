@@ -3,58 +3,32 @@
 use std::io::{self, Write};
 use std::ops::Range;
 
-use fault_db::{Channel, TraceData};
+use fault_db::TraceData;
 
 use super::Axis;
-use crate::trace_io::csv::{put_headings, put_sample, put_time};
+use crate::trace_io::csv::{put_headings, put_row};
 
-/// Time in seconds from the trigger, the way in metres where one is asked for, then a column a channel;
-/// an unknown sample is empty.
+/// Writes the time in seconds from the trigger, the way in metres where one is asked for, then a column a channel; an
+/// unknown sample is empty.
+///
+/// # Errors
+/// `out` fails.
 pub fn csv(
-    trace: &TraceData,
-    channels: &[usize],
-    rows: Range<usize>,
-    distance: Option<&Axis>,
-) -> String {
-    let mut text = Vec::new();
-    // Memory takes all that is written to it, and numbers and names are text.
-    let _ = put(&mut text, trace, channels, rows, distance);
-    String::from_utf8(text).unwrap_or_default()
-}
-
-fn put(
     out: &mut impl Write,
     trace: &TraceData,
     channels: &[usize],
     rows: Range<usize>,
     distance: Option<&Axis>,
 ) -> io::Result<()> {
-    let known = || {
-        channels
-            .iter()
-            .filter(|place| **place < trace.columns.len())
-    };
-    let before: &[&str] = if distance.is_some() {
-        &["distance_m"]
-    } else {
-        &[]
-    };
-    let named = known().map(|place| -> &Channel { &trace.channels[*place] });
-    put_headings(out, before, named)?;
+    let signal = |place: &usize| Some((trace.channels.get(*place)?, trace.columns.get(*place)?));
+    let known = || channels.iter().filter_map(signal);
+    put_headings(out, distance.is_some(), known().map(|(channel, _)| channel))?;
     let trigger = i64::from(trace.trigger_row.unwrap_or(0));
     for row in rows.start..rows.end.min(trace.rows()) {
-        put_time(
-            out,
-            (row as i64 - trigger) * trace.period_us,
-            trace.period_us,
-        )?;
-        if let Some(axis) = distance {
-            write!(out, ",{:.2}", axis.at(row))?;
-        }
-        for place in known() {
-            put_sample(out, &trace.channels[*place], trace.columns[*place][row])?;
-        }
-        out.write_all(b"\n")?;
+        let time_us = (row as i64 - trigger) * trace.period_us;
+        let distance_m = distance.map(|axis| axis.at(row));
+        let samples = known().map(|(channel, column)| (channel, column[row]));
+        put_row(out, (time_us, trace.period_us), distance_m, samples)?;
     }
     Ok(())
 }
@@ -73,10 +47,15 @@ mod tests {
         data.trigger_row = Some(2);
         data.channels[0].unit = "km/h".into();
         let axis = Axis::distance(&data, 2);
+        let text = |channels: &[usize], rows, distance| {
+            let mut text = Vec::new();
+            csv(&mut text, &data, channels, rows, distance).expect("written");
+            String::from_utf8(text).expect("text")
+        };
         let expected = "\u{feff}time_s,speed_kmh\n-0.050,2.5\n0.000,\n";
-        assert_eq!(csv(&data, &[0], 1..3, None), expected);
+        assert_eq!(text(&[0], 1..3, None), expected);
         let expected = "\u{feff}time_s,distance_m,train_position,speed_kmh\n0.050,1.00,3,4\n";
-        assert_eq!(csv(&data, &[1, 0], 3..9, axis.as_ref()), expected);
-        assert_eq!(csv(&data, &[], 0..0, None), "\u{feff}time_s\n");
+        assert_eq!(text(&[1, 0], 3..9, axis.as_ref()), expected);
+        assert_eq!(text(&[], 0..0, None), "\u{feff}time_s\n");
     }
 }

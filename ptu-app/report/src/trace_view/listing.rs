@@ -57,7 +57,10 @@ impl ListedFault {
             parts.fault(&occurrence.lru, seen, language.words())
         };
         Self {
-            code: fault_name(occurrence),
+            code: format!(
+                "{} {} {}",
+                occurrence.code, occurrence.code_name, occurrence.lru
+            ),
             said: [said(Language::English), said(Language::Korean)],
         }
     }
@@ -209,16 +212,6 @@ pub fn open(
         view: TraceView::new(data),
         events,
     })
-}
-
-fn fault_name(occurrence: &RunOccurrence) -> String {
-    let RunOccurrence {
-        code,
-        code_name,
-        lru,
-        ..
-    } = occurrence;
-    format!("{code} {code_name} {lru}")
 }
 
 #[cfg(test)]

@@ -62,7 +62,7 @@ impl MinMaxIndex {
         all
     }
 
-    /// Fills in what each column of pixels shows: its rows, and the value that still holds when it
+    /// Fills each column of pixels with the values of its rows, and with the value that still holds when the column
     /// begins.
     pub fn columns(&self, samples: &[f64], edges: &Edges, columns: &mut Vec<Column>) {
         columns.clear();
@@ -109,26 +109,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn a_value_holds_into_the_next_column_and_not_beyond_the_trace() {
-        let samples = [1.0, 5.0, f64::NAN, 2.0];
-        let edges = Edges {
-            rows: vec![0, 2, 2, 3, 4, 4, 4],
-            end: 5,
-        };
-        let mut columns = Vec::new();
-        MinMaxIndex::of(&samples).columns(&samples, &edges, &mut columns);
-        let known: Vec<_> = columns.iter().map(|c| (c.low, c.high)).collect();
-        assert_eq!(known[..3], [(1.0, 5.0), (5.0, 5.0), (5.0, 5.0)]);
-        assert_eq!(known[3..5], [(2.0, 2.0), (2.0, 2.0)]);
-        assert!(!columns[5].is_known());
-    }
-
-    #[test]
-    fn no_rows_are_no_trouble() {
-        let pyramid = MinMaxIndex::of(&[]);
-        assert!(!pyramid.range(&[], 0, 0).is_known());
     }
 }

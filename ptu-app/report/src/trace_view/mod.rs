@@ -1,8 +1,8 @@
 //! Recorded signals as lanes of a plot, without anything of a window: what each column of pixels has to
 //! show, in time that depends on the pixels and not on the rows behind them.
 //!
-//! * [`columns`]: quantities, least and greatest value per column of pixels;
-//! * [`spans`]: choices and bits, as stretches of one value;
+//! * [`Column`]: a quantity, least and greatest value per column of pixels; [`Span`]: a choice or bit, a stretch of one value;
+//! * [`samples`]: both of a plot that moves;
 //! * [`TraceView`]: a trace with every signal summarised once ([`MinMaxIndex`], [`Runs`]);
 //! * [`Axis`]: time or distance; [`VisibleRange`]: the part of it in view;
 //! * [`statistics`], [`value`], [`csv`](mod@csv): what is said and written of it;
@@ -13,13 +13,14 @@
 
 mod axis;
 pub mod choose;
-pub mod columns;
+mod columns;
 pub mod csv;
 pub mod listing;
 mod min_max_index;
 mod overlay;
 mod runs;
-pub mod spans;
+pub mod samples;
+mod spans;
 pub mod statistics;
 mod trace_plot;
 pub mod value;
@@ -29,10 +30,10 @@ mod visible_range;
 pub use axis::{Axis, Edges, Kind};
 pub use columns::Column;
 pub use min_max_index::MinMaxIndex;
-pub use overlay::{FirstDifference, Overlay, OverlaySource};
+pub use overlay::{FirstDifference, Overlay, OverlaySource, OverlayTrace};
 pub use runs::Runs;
 pub use spans::{Span, SpanKind};
-pub use trace_plot::{Cursor, Lane, OverlayTrace, TracePlot, bare, toggled};
+pub use trace_plot::{Cursor, Lane, TracePlot, bare, toggled};
 pub use view::{Summary, TraceView};
 pub use visible_range::VisibleRange;
 

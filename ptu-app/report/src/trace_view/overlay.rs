@@ -8,13 +8,13 @@ use std::sync::Arc;
 
 use fault_db::{Id, Store, TraceData};
 
-use super::TraceView;
+use super::{Axis, Kind, TraceView};
 use crate::trace_io::{Columns, beside};
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::replay::{Comparison, Deviation, Original, Rule, compare, good_twin, rule_between};
 
-/// A trace that another is compared with.
+/// Source of the trace with which a trace is compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OverlaySource {
     /// The trace of a sound unit under the same stimuli.
@@ -31,8 +31,38 @@ pub struct Overlay {
     pub against: OverlaySource,
     pub view: TraceView,
     rule: Rule,
-    /// Rows of the trace that it has samples for; none = wherever it has rows.
+    /// Rows of the trace for which the other trace has samples; `None` = all rows of the other trace.
     has: Option<Range<usize>>,
+}
+
+/// The trace that is drawn behind for comparison.
+#[derive(Debug)]
+pub struct OverlayTrace {
+    pub overlay: Arc<Overlay>,
+    pub axis: Axis,
+    /// Rows by which the trace behind is shifted to later times.
+    pub shift_rows: i64,
+    /// The first difference; `None` until it is computed.
+    pub parting: Option<FirstDifference>,
+}
+
+impl OverlayTrace {
+    pub fn new(overlay: Arc<Overlay>, kind: Kind) -> Self {
+        let mut behind = Self {
+            axis: Axis::places(Vec::new()),
+            overlay,
+            shift_rows: 0,
+            parting: None,
+        };
+        behind.set_axis(kind);
+        behind
+    }
+
+    /// Counts time or distance; of a trace without distance no row is in view.
+    pub fn set_axis(&mut self, kind: Kind) {
+        let axis = Axis::of(kind, self.overlay.view.data(), self.shift_rows);
+        self.axis = axis.unwrap_or_else(|| Axis::places(Vec::new()));
+    }
 }
 
 /// The first difference between a trace and the trace behind, which may be shifted by some rows.
@@ -82,7 +112,7 @@ impl Overlay {
         })
     }
 
-    /// The first difference of `came` from it.
+    /// The first difference of `came` from this trace.
     pub fn parting(&self, came: &TraceView, shift_rows: i64) -> FirstDifference {
         let rule = self.rule.shifted(shift_rows);
         let beside;
@@ -111,7 +141,7 @@ impl Overlay {
     }
 }
 
-/// The trace with nothing known outside these rows, laid this many rows later.
+/// The trace with no sample known outside these rows, which are shifted by `later` rows.
 fn only(came: &TraceData, rows: &Range<usize>, later: i64) -> TraceData {
     let mut came = came.clone();
     let all = came.rows();

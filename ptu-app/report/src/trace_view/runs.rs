@@ -7,7 +7,7 @@ use super::Window;
 use super::axis::{Axis, Edges};
 use super::spans::{self, Span};
 
-/// Runs of equal samples, in order; those that are not known are runs too, of NaN.
+/// Runs of equal samples, in order; samples that are not known are runs of NaN.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Runs {
     /// First row and value of each.
@@ -57,7 +57,7 @@ impl Runs {
         known.windows(2).filter(|two| two[0].1 != two[1].1).count()
     }
 
-    /// Rows per known value among these rows, by value.
+    /// Number of these rows for each known value, by value.
     pub fn shares(&self, rows: Range<usize>) -> Vec<(f64, usize)> {
         let mut shares: BTreeMap<i64, usize> = BTreeMap::new();
         let mut run = self.run_at(rows.start);
@@ -76,7 +76,8 @@ impl Runs {
         shares.into_iter().map(share).collect()
     }
 
-    /// Stretches of as many pixels as there are edges for; what changes within a pixel is skipped over, however much it is.
+    /// Stretches of one value along the columns of pixels between `edges`; changes within one pixel are skipped, however many
+    /// there are.
     pub fn spans(&self, axis: &Axis, window: Window, edges: &Edges, spans: &mut Vec<Span>) {
         spans.clear();
         let pixels = edges.rows.len().saturating_sub(1);

@@ -14,7 +14,7 @@ pub enum Statistics {
         high: f64,
         /// Mean of the rows that are known.
         mean: f64,
-        /// Root of the mean square of what rows differ from the mean by.
+        /// Root of the mean square of the differences between the rows and the mean.
         rms: f64,
     },
     /// Statistics of a choice or a bit.

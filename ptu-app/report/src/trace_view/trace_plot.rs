@@ -8,10 +8,8 @@ use std::sync::Arc;
 use super::listing::OpenTrace;
 use super::statistics::{self, Statistics};
 use super::view::{Summary, TraceView};
-use super::{Axis, Kind, VisibleRange, Window, choose};
+use super::{Axis, Kind, OverlayTrace, VisibleRange, Window, choose};
 use crate::ticks;
-pub use behind::OverlayTrace;
-use behind::behind_axis;
 
 /// Fewest rows in view.
 const FEWEST_ROWS: f64 = 8.0;
@@ -32,21 +30,21 @@ pub struct Lane {
     pub signal: String,
     /// Where the signal is in the trace; `None` = the trace lacks it.
     pub place: Option<usize>,
-    /// Size it was given, 1 = as usual.
+    /// Height as a multiple of the usual height.
     pub stretch: f32,
     /// The signal is drawn in the lane of the signal above it.
     pub joined: bool,
 }
 
-/// Before the name of a signal that is to be drawn in the lane of the one above it, where signals are listed.
+/// Sign before a listed signal that is drawn in the lane of the signal above it.
 const JOINED: char = '+';
 
-/// The signal of an entry of such a list.
+/// Name of the signal in an entry of a list of signals.
 pub fn bare(entry: &str) -> &str {
     entry.strip_prefix(JOINED).unwrap_or(entry)
 }
 
-/// The entry of the same signal in a lane of its own, or in that of the one above it.
+/// The entry of the same signal, moved into the lane of the signal above it or back into a lane of its own.
 pub fn toggled(entry: &str) -> String {
     match entry.strip_prefix(JOINED) {
         Some(alone) => alone.to_owned(),
@@ -54,7 +52,7 @@ pub fn toggled(entry: &str) -> String {
     }
 }
 
-/// A trace as it is looked at.
+/// A trace with all that a person has chosen to see of it.
 #[derive(Debug)]
 pub struct TracePlot {
     pub opened: Arc<OpenTrace>,
@@ -67,12 +65,12 @@ pub struct TracePlot {
     pub behind: Option<OverlayTrace>,
     /// Views before each zoom, the latest last.
     before: Vec<Window>,
-    /// Statistics of these rows, by lane; empty until asked for.
+    /// Rows, and their statistics by lane; empty until somebody asks for statistics.
     said: (Range<usize>, Vec<Option<Statistics>>),
 }
 
 impl TracePlot {
-    /// All of a trace over time, with these signals; with the usual ones if there are none.
+    /// The whole trace over time, with these signals; with the usual signals if the list is empty.
     pub fn new(opened: Arc<OpenTrace>, signals: &[String]) -> Self {
         let axis = Axis::time(opened.view.data(), opened.view.trigger_row() as i64);
         let mut scene = Self {
@@ -103,7 +101,7 @@ impl TracePlot {
         if self.axis.kind() == kind {
             return true;
         }
-        let Some(axis) = axis(&self.opened.view, kind, 0) else {
+        let Some(axis) = Axis::of(kind, self.opened.view.data(), 0) else {
             return false;
         };
         self.before.clear();
@@ -114,12 +112,12 @@ impl TracePlot {
         }
         self.axis = axis;
         if let Some(behind) = &mut self.behind {
-            behind.axis = behind_axis(&behind.overlay.view, kind, behind.shift_rows);
+            behind.set_axis(kind);
         }
         true
     }
 
-    /// Shows these signals from top to bottom; the usual ones if there are none.
+    /// Shows these signals from top to bottom; the usual signals if the list is empty.
     pub fn set_signals(&mut self, signals: &[String]) {
         let usual;
         let signals = if signals.is_empty() {
@@ -154,7 +152,7 @@ impl TracePlot {
         self.lanes.iter().map(entry).collect()
     }
 
-    /// Whether a signal can be drawn in the lane of the one above it: both are quantities of the same unit.
+    /// Whether a signal can be drawn in the lane of the signal above it: both are quantities of the same unit.
     pub fn can_join(&self, lane: usize) -> bool {
         let unit = |lane: usize| {
             let place = self.lanes.get(lane)?.place?;
@@ -289,7 +287,7 @@ impl TracePlot {
         }
     }
 
-    /// Statistics by lane over those rows; `None` for a signal the trace lacks.
+    /// Statistics by lane over [`stretch_rows`](Self::stretch_rows); `None` for a signal that the trace lacks.
     pub fn statistics(&mut self) -> &[Option<Statistics>] {
         let (rows, _) = self.stretch_rows();
         if self.said.0 != rows || self.said.1.len() != self.lanes.len() {
@@ -309,15 +307,6 @@ fn camera(axis: &Axis, view: &TraceView) -> VisibleRange {
         Kind::Distance => LEAST_WAY_M,
     };
     VisibleRange::new(axis.whole(), least)
-}
-
-/// Axis of a trace, with 0 this many rows before the trigger.
-fn axis(view: &TraceView, kind: Kind, shift_rows: i64) -> Option<Axis> {
-    let zero_row = (view.trigger_row() as i64).saturating_sub(shift_rows);
-    match kind {
-        Kind::Time => Some(Axis::time(view.data(), zero_row)),
-        Kind::Distance => Axis::distance(view.data(), zero_row),
-    }
 }
 
 #[cfg(test)]

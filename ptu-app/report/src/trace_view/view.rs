@@ -79,8 +79,7 @@ impl TraceView {
             return None;
         };
         let all = pyramid.range(self.samples(place), rows.start, rows.end);
-        all.is_known()
-            .then(|| (f64::from(all.low), f64::from(all.high)))
+        all.extent()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Window;
 
-/// Part of the whole by which it may be left at either end.
+/// Share of the axis that can be seen beyond either of its ends.
 const BEYOND: f64 = 0.02;
 
 /// Part of the axis in view, and its bounds.
@@ -18,7 +18,7 @@ impl VisibleRange {
         self.window
     }
 
-    /// All of it in view; no less than `least` can be.
+    /// The whole axis in view; a zoom ends at a range of the length `least`.
     pub fn new(whole: Window, least: f64) -> Self {
         let room = whole.length() * BEYOND;
         let whole = Window {
@@ -36,7 +36,7 @@ impl VisibleRange {
         self.window = self.whole;
     }
 
-    /// Shows this many times as much; the point at this share of the view stays in place.
+    /// Makes the range this many times as long; the point at this share of the view stays in place.
     pub fn zoom(&mut self, share: f64, times: f64) {
         let fixed = self.window.at(share);
         let length = (self.window.length() * times).clamp(self.least, self.whole.length());

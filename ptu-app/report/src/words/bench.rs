@@ -332,14 +332,11 @@ wordings! {
         refused_moving: "moving", "정차 아님";
         refused_no_twc: "no TWC", "TWC 없음";
         refused_station: "station data", "역 정보";
-        refused_no_code: "no code", "무코드";
         refused_mode_switch: "mode switch", "모드 스위치";
         refused_controller: "controller not neutral", "주간제어기 중립 아님";
         refused_eb: "EB applied", "EB 체결";
         refused_tcms: "TCMS", "TCMS";
         refused_ato: "ATO not ready", "ATO 준비 안 됨";
-        refused_tra: "TRA", "TRA";
-        refused_self_test: "Self-test", "자체시험";
         refused_departure: "no departure or start", "출발 지시·버튼 없음";
         refused_doors: "door sequence at the station", "정차 출입문 취급 중";
         refused_ordered: "held by an order", "지령에 의한 정차 유지";

@@ -14,7 +14,7 @@ use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Failure, FileTrouble};
 use serde::Deserialize;
 
-/// The texts that are built in, as their file has them.
+/// The file of texts that are built in.
 const KOREAN: &str = include_str!("../../../../scripts/korean.toml");
 /// Between texts that were found together.
 const JOINED: &str = "; ";

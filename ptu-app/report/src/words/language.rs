@@ -56,10 +56,7 @@ impl Language {
 
     /// The catalogue of wordings in this language.
     pub fn words(self) -> &'static Words {
-        match self {
-            Self::English => &ENGLISH,
-            Self::Korean => &KOREAN,
-        }
+        self.choose([&ENGLISH, &KOREAN])
     }
 }
 

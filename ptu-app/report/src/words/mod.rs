@@ -29,32 +29,21 @@ mod traces;
 mod verify;
 
 pub use bench::Bench;
-pub use care::HistoryMaintenance;
 pub use case::Case;
-pub use common::Common;
 pub use content::take_own;
-pub use counts::Counts;
 pub use diagnosis::Diagnosis;
 pub use doctor::Doctor;
-pub use drive::Drive;
 pub use faults::Faults;
 pub use fill::fill;
 pub use frame::Frame;
 pub use language::Language;
-pub use life::Life;
-pub use memory::Memory;
-pub use procedures::Procedures;
-pub use report::Report;
 pub use say::tell;
-pub use signals::Signals;
-pub use statistics::Statistics;
-pub use terminal::Terminal;
 pub use traces::Traces;
-pub use verify::Verify;
 
 use std::borrow::Cow;
 
 use btu_rig::procedure::Procedure;
+use protocol::signal::Signal;
 
 /// Declares one part of the catalogue: `key: "English", "한국어";` per wording. `{name}` in a wording
 /// is filled in by [`fill`].
@@ -69,7 +58,7 @@ macro_rules! wordings {
             pub(super) const KOREAN: Self = Self { $($key: $korean,)* };
 
             #[cfg(test)]
-            pub(super) fn all() -> Vec<(&'static str, &'static str, &'static str)> {
+            pub(super) fn all() -> Vec<$crate::words::Wording> {
                 vec![$((stringify!($key), $english, $korean),)*]
             }
         }
@@ -77,48 +66,76 @@ macro_rules! wordings {
 }
 use wordings;
 
-/// All wordings in one language.
-#[derive(Debug)]
-pub struct Words {
-    pub language: Language,
+/// Declares the catalogue: its parts by name, each of which [`wordings`] declares.
+macro_rules! catalogue {
+    ($($(#[$doc:meta])* $name:ident: $part:ty,)*) => {
+        /// All wordings in one language.
+        #[derive(Debug)]
+        pub struct Words {
+            pub language: Language,
+            $($(#[$doc])* pub $name: $part,)*
+        }
+
+        static ENGLISH: Words = Words {
+            language: Language::English,
+            $($name: <$part>::ENGLISH,)*
+        };
+        static KOREAN: Words = Words {
+            language: Language::Korean,
+            $($name: <$part>::KOREAN,)*
+        };
+
+        /// Parts by name, each with its wordings.
+        #[cfg(test)]
+        fn parts() -> Vec<(&'static str, Vec<Wording>)> {
+            vec![$((stringify!($name), <$part>::all()),)*]
+        }
+    };
+}
+
+/// Key of a wording, and its text in English and in Korean.
+#[cfg(test)]
+type Wording = (&'static str, &'static str, &'static str);
+
+catalogue! {
     /// Verdicts, states, units and what every page says.
-    pub common: Common,
+    common: common::Common,
     /// Connection bar, navigation, messages.
-    pub frame: Frame,
+    frame: frame::Frame,
     /// Live view and stimuli.
-    pub bench: Bench,
+    bench: bench::Bench,
     /// One case, from the symptom to the signed sheet.
-    pub case: Case,
+    case: case::Case,
     /// Choosing and running procedures.
-    pub procedures: Procedures,
+    procedures: procedures::Procedures,
     /// Automatic runs of a whole train.
-    pub drive: Drive,
+    drive: drive::Drive,
     /// Recorded traces.
-    pub traces: Traces,
+    traces: traces::Traces,
     /// Fault history.
-    pub faults: Faults,
+    faults: faults::Faults,
     /// Statistics of the fault history.
-    pub statistics: Statistics,
+    statistics: statistics::Statistics,
     /// The care of the history.
-    pub care: HistoryMaintenance,
+    care: care::HistoryMaintenance,
     /// Life by serial number.
-    pub life: Life,
+    life: life::Life,
     /// Stored memory of a unit.
-    pub memory: Memory,
+    memory: memory::Memory,
     /// Parts to replace.
-    pub diagnosis: Diagnosis,
+    diagnosis: diagnosis::Diagnosis,
     /// Test sheet.
-    pub report: Report,
+    report: report::Report,
     /// Waveforms: read, made, recorded and played.
-    pub signals: Signals,
+    signals: signals::Signals,
     /// Answers of the command line.
-    pub terminal: Terminal,
+    terminal: terminal::Terminal,
     /// Counts, trends and records in them.
-    pub counts: Counts,
+    counts: counts::Counts,
     /// Needs of this computer for testing units.
-    pub doctor: Doctor,
+    doctor: doctor::Doctor,
     /// Signatures and changes that a verification found.
-    pub verify: Verify,
+    verify: verify::Verify,
 }
 
 impl Words {
@@ -136,6 +153,18 @@ impl Words {
         }
     }
 
+    /// A text as it is written in English; in Korean what is said in its place, if there is anything.
+    fn or_korean<'a>(
+        &self,
+        text: &'a str,
+        korean: impl FnOnce() -> Option<String>,
+    ) -> Cow<'a, str> {
+        match self.language {
+            Language::English => Cow::Borrowed(text),
+            Language::Korean => korean().map_or(Cow::Borrowed(text), Cow::Owned),
+        }
+    }
+
     /// Title of a procedure, in this language if the script has it.
     pub fn title<'a>(&self, procedure: &'a Procedure) -> &'a str {
         match (self.language, &procedure.title_ko) {
@@ -146,28 +175,17 @@ impl Words {
 
     /// Name of a recorded signal in few words; in English its name in scripts and tables.
     pub fn signal<'a>(&self, name: &'a str) -> Cow<'a, str> {
-        let said = match self.language {
-            Language::English => None,
-            Language::Korean => say::condition::signal(name),
-        };
-        said.map_or(Cow::Borrowed(name), Cow::Owned)
+        self.or_korean(name, || Signal::from_name(name).map(say::condition::name))
     }
 
     /// Name of a part of the catalogue.
     pub fn part<'a>(&self, id: &'a str) -> &'a str {
-        match self.language {
-            Language::English => names::english_part(id),
-            Language::Korean => names::korean_part(id),
-        }
+        self.choose(names::part(id))
     }
 
     /// A state of a signal, as it is stored.
     pub fn state<'a>(&self, signal: &str, label: &'a str) -> Cow<'a, str> {
-        let said = match self.language {
-            Language::English => None,
-            Language::Korean => say::condition::state(signal, label),
-        };
-        said.map_or(Cow::Borrowed(label), Cow::Owned)
+        self.or_korean(label, || say::condition::state(signal, label))
     }
 
     /// Unit of a measured value: SI units as they are, words in this language.
@@ -183,91 +201,25 @@ impl Words {
 
     /// Name of a measurement, which scripts give, but for those of the unit's self-test.
     pub fn measurement<'a>(&self, name: &'a str) -> Cow<'a, str> {
-        let korean = || match self.language {
-            Language::English => None,
-            Language::Korean => content::measurement(name),
-        };
-        let said = self.bench.self_test_item(name).or_else(korean);
-        said.map_or(Cow::Borrowed(name), Cow::Owned)
+        match self.bench.self_test_item(name) {
+            Some(item) => Cow::Owned(item),
+            None => self.or_korean(name, || content::measurement(name)),
+        }
     }
 }
-
-static ENGLISH: Words = Words {
-    language: Language::English,
-    common: Common::ENGLISH,
-    frame: Frame::ENGLISH,
-    bench: Bench::ENGLISH,
-    case: Case::ENGLISH,
-    procedures: Procedures::ENGLISH,
-    drive: Drive::ENGLISH,
-    traces: Traces::ENGLISH,
-    faults: Faults::ENGLISH,
-    statistics: Statistics::ENGLISH,
-    care: HistoryMaintenance::ENGLISH,
-    life: Life::ENGLISH,
-    memory: Memory::ENGLISH,
-    diagnosis: Diagnosis::ENGLISH,
-    report: Report::ENGLISH,
-    signals: Signals::ENGLISH,
-    terminal: Terminal::ENGLISH,
-    counts: Counts::ENGLISH,
-    doctor: Doctor::ENGLISH,
-    verify: Verify::ENGLISH,
-};
-
-static KOREAN: Words = Words {
-    language: Language::Korean,
-    common: Common::KOREAN,
-    frame: Frame::KOREAN,
-    bench: Bench::KOREAN,
-    case: Case::KOREAN,
-    procedures: Procedures::KOREAN,
-    drive: Drive::KOREAN,
-    traces: Traces::KOREAN,
-    faults: Faults::KOREAN,
-    statistics: Statistics::KOREAN,
-    care: HistoryMaintenance::KOREAN,
-    life: Life::KOREAN,
-    memory: Memory::KOREAN,
-    diagnosis: Diagnosis::KOREAN,
-    report: Report::KOREAN,
-    signals: Signals::KOREAN,
-    terminal: Terminal::KOREAN,
-    counts: Counts::KOREAN,
-    doctor: Doctor::KOREAN,
-    verify: Verify::KOREAN,
-};
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn all() -> Vec<(&'static str, &'static str, &'static str)> {
-        [
-            Common::all(),
-            Frame::all(),
-            Bench::all(),
-            Case::all(),
-            Procedures::all(),
-            Drive::all(),
-            Traces::all(),
-            Faults::all(),
-            Statistics::all(),
-            HistoryMaintenance::all(),
-            Life::all(),
-            Memory::all(),
-            Diagnosis::all(),
-            Report::all(),
-            Signals::all(),
-        ]
-        .concat()
-    }
+    /// Parts that only readers of a command line see.
+    const OF_TERMINAL: [&str; 4] = ["terminal", "counts", "doctor", "verify"];
 
-    /// All wordings, with those of refusals and of the command line.
-    fn all_told() -> Vec<(&'static str, &'static str, &'static str)> {
+    /// All wordings of the catalogue, and those of refusals.
+    fn all_told() -> Vec<Wording> {
         let refused = ptu_runs::words::all().map(|[key, english, korean]| (key, english, korean));
-        let answers = [Terminal::all(), Counts::all(), Doctor::all(), Verify::all()].concat();
-        all().into_iter().chain(refused).chain(answers).collect()
+        let parts = parts().into_iter().flat_map(|(_, wordings)| wordings);
+        parts.chain(refused).collect()
     }
 
     #[test]
@@ -281,7 +233,9 @@ mod tests {
     /// Readers of the window or of a sheet have no command line before them.
     #[test]
     fn no_wording_speaks_of_the_command_line() {
-        for (key, english, korean) in all() {
+        let mut parts = parts();
+        parts.retain(|(name, _)| !OF_TERMINAL.contains(name));
+        for (key, english, korean) in parts.into_iter().flat_map(|part| part.1) {
             for text in [english, korean] {
                 assert!(
                     !text.contains("`ptu ") && !text.contains("--"),

@@ -10,16 +10,10 @@ static PARTS: LazyLock<Vec<Lru>> = LazyLock::new(|| {
     FaultCatalogue::from_toml(catalogue).map_or_else(|_| Vec::new(), |all| all.lrus)
 });
 
-fn part(id: &str) -> Option<&'static Lru> {
-    PARTS.iter().find(|part| part.id == id)
-}
-
-pub(super) fn english_part(id: &str) -> &str {
-    part(id).map_or(id, |part| &part.name)
-}
-
-pub(super) fn korean_part(id: &str) -> &str {
-    part(id).map_or(id, |part| &part.name_ko)
+/// Name of a part in English and Korean.
+pub(super) fn part(id: &str) -> [&str; 2] {
+    let known = PARTS.iter().find(|part| part.id == id);
+    known.map_or([id; 2], |part| [&part.name, &part.name_ko])
 }
 
 /// A text without the capital it begins with, unless that is of a word in capitals.

@@ -80,7 +80,6 @@ wordings! {
         length: "length", "길이";
         lines_lost: "{n} lines were left out because nothing took them; `ptu runs show latest` has all", "출력이 밀려 {n}줄을 생략함. 전체: `ptu runs show latest`";
         after_trigger: "{n} s after the trigger", "트리거 {n}초 후";
-        and: " and ", ", ";
         as_expected: "as expected: no signal deviates from the good twin's", "예상과 같음: 정상 기준과 다른 신호 없음";
         at: "at", "시점";
         at_trigger: "at the trigger", "트리거 시점";

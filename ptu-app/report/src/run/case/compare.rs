@@ -7,7 +7,7 @@ use crate::run::compare::{Compared, is_same, pair, same_step};
 use crate::run::steps::passed;
 
 impl CaseSheet {
-    /// The steps before that failed with a fault of the case, each once.
+    /// The steps of the run before that failed with a fault of the case, each once.
     pub(super) fn failed_steps(&self) -> Vec<&StepRecord> {
         let all = self.before.run.steps.iter();
         let failed = all.filter(|step| self.steps.contains(&step.index) && !passed(step.verdict));

@@ -7,7 +7,7 @@ use super::CaseSheet;
 use super::first_page::clipped;
 use crate::event_text::note_text;
 use crate::naming;
-use crate::run::block::{Align, Block, Column, Row, RowKind, Table, Tone, sentence};
+use crate::run::block::{Block, Row, Table, Tone, sentence};
 use crate::run::compare::comparison;
 use crate::run::content::body;
 use crate::run::plots::plots;
@@ -35,11 +35,9 @@ impl CaseSheet {
         let fits = fewer.find(|blocks| page::count(blocks) <= PAGES);
         blocks.extend(fits.unwrap_or_else(|| make(0)));
         if self.with_annex {
-            let report = &words.report;
-            let after = self.after.as_ref().map(|sheet| (sheet, report.after));
-            for (sheet, when) in [(&self.before, report.before)].into_iter().chain(after) {
-                blocks.extend(annex(sheet, when, words));
-            }
+            let when = [words.report.before, words.report.after];
+            let runs = self.sheets().zip(when);
+            blocks.extend(runs.flat_map(|(sheet, when)| annex(sheet, when, words)));
         }
         blocks
     }
@@ -115,7 +113,7 @@ impl CaseSheet {
                 local(fault.last_at_us),
                 words.fault_state(fault.state).to_owned(),
             ];
-            Row::words(RowKind::Head, cells)
+            Row::words(cells)
         };
         let columns = [
             (common.fault, 0.11),
@@ -128,7 +126,7 @@ impl CaseSheet {
         ];
         let mut blocks = vec![
             Block::Heading(report.faults_of_case.into()),
-            table(&columns, all().take(MOST_FAULTS).map(row).collect()),
+            Block::Table(Table::of_words(columns, all().take(MOST_FAULTS).map(row))),
         ];
         if let Some(n) = all().count().checked_sub(MOST_FAULTS).filter(|n| *n > 0) {
             let more = fill(report.more_faults, &[("n", &n)]);
@@ -150,6 +148,7 @@ impl CaseSheet {
             let (who, text) = (noted_by(note, run, words), run_note_text(note, words));
             done_row(note.at_us, common.note, &who, &text)
         });
+        let rows = events.map(|event| self.told(event, words)).chain(noted);
         let columns = [
             (common.time, 0.18),
             (report.what, 0.16),
@@ -158,13 +157,7 @@ impl CaseSheet {
         ];
         vec![
             Block::Heading(sentence(words.faults.what_was_done)),
-            table(
-                &columns,
-                events
-                    .map(|event| self.told(event, words))
-                    .chain(noted)
-                    .collect(),
-            ),
+            Block::Table(Table::of_words(columns, rows)),
         ]
     }
 
@@ -204,17 +197,7 @@ fn done_row(at_us: i64, what: &str, who: &str, note: &str) -> Row {
         clipped(who, 40),
         clipped(note, 300),
     ];
-    Row::words(RowKind::Head, cells)
-}
-
-fn table(columns: &[(&str, f32)], rows: Vec<Row>) -> Block {
-    let columns = columns.iter();
-    Block::Table(Table {
-        columns: columns
-            .map(|(name, share)| Column::new(name, *share, Align::Left))
-            .collect(),
-        rows,
-    })
+    Row::words(cells)
 }
 
 /// All that a run's own sheet says, behind a heading.

@@ -18,7 +18,7 @@ const MOST_ROWS: usize = 8;
 const MOST_LETTERS: usize = 180;
 
 impl CaseSheet {
-    /// The first page, and as many rows of the comparison as it has room for.
+    /// The first page, and the number of rows of the comparison for which it has room.
     pub(super) fn first_page(&self, words: &Words) -> (Vec<Block>, usize) {
         let make = |rows| (self.with_rows(rows, words), rows);
         let mut fewer = (1..=MOST_ROWS).rev().map(make);
@@ -50,10 +50,8 @@ impl CaseSheet {
             let more = fill(report.more_compared, &[("n", &n)]);
             blocks.push(Block::Text(Tone::Plain, more));
         }
-        blocks.extend(self.plot(&self.before, report.before, words));
-        if let Some(after) = &self.after {
-            blocks.extend(self.plot(after, report.after, words));
-        }
+        let runs = self.sheets().zip([report.before, report.after]);
+        blocks.extend(runs.filter_map(|(sheet, when)| self.plot(sheet, when, words)));
         blocks.push(signatures(words));
         blocks
     }
@@ -121,8 +119,14 @@ impl CaseSheet {
         let mut facts = vec![
             (report.depot, clipped(&self.depot, 80)),
             (common.unit, unit(run)),
-            (common.train_no, both(|sheet| named(&sheet.run.run.train))),
-            (report.tester, both(|sheet| named(&sheet.run.run.operator))),
+            (
+                common.train_no,
+                both(|sheet| clipped(&sheet.run.run.train, 60)),
+            ),
+            (
+                report.tester,
+                both(|sheet| clipped(&sheet.run.run.operator, 60)),
+            ),
             (report.symptom, self.symptom_said(words)),
             (report.found_by, self.found_by(words)),
             (common.part, self.last().part(self.part(), words)),
@@ -201,9 +205,8 @@ impl CaseSheet {
             let what: Vec<_> = simulated.into_iter().chain(injected).collect();
             (!what.is_empty()).then(|| format!("{when}: {}", what.join(", ")))
         };
-        let before = told(&self.before, report.before);
-        let after = self.after.as_ref().and_then(|s| told(s, report.after));
-        let all: Vec<_> = before.into_iter().chain(after).collect();
+        let runs = self.sheets().zip([report.before, report.after]);
+        let all: Vec<_> = runs.filter_map(|(sheet, when)| told(sheet, when)).collect();
         all.join("; ")
     }
 
@@ -249,10 +252,6 @@ fn told(sheet: &Sheet, words: &Words) -> String {
     let run = &sheet.run.run;
     let (_, said) = super::verdict(run, words);
     format!("{}, {}, {said}", run.id, local(run.started_at_us))
-}
-
-fn named(name: &str) -> String {
-    clipped(name, 60)
 }
 
 fn or_dash(text: &str) -> &str {

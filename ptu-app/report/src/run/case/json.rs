@@ -1,10 +1,9 @@
 //! A case as data: the same content as its sheet.
 
-use fault_db::MeasurementRecord;
 use serde_json::{Value, json};
 
 use super::{CaseSheet, Standing};
-use crate::json::{fault_json, run_summary_json};
+use crate::json::{fault_json, run_summary_json, value_json};
 use crate::words::Language;
 use ptu_runs::clock::rfc3339;
 
@@ -54,12 +53,5 @@ pub fn case_json(case: &CaseSheet) -> Value {
         "conclusion": case.before.diagnosis.as_ref().ok()
             .map(|answer| Language::English.words().concluded(answer)),
         "faults": all.map(fault_json).collect::<Vec<_>>(),
-    })
-}
-
-fn value_json(measured: &MeasurementRecord) -> Value {
-    json!({
-        "value": measured.value, "low": measured.low, "high": measured.high,
-        "verdict": measured.verdict.as_str(),
     })
 }

@@ -69,10 +69,14 @@ pub enum Standing {
 impl CaseSheet {
     /// The number of the document: of the fault and of the runs, so that it stays while these stay.
     pub fn number(&self) -> String {
-        let runs = [Some(&self.before), self.after.as_ref()];
-        let runs = runs.into_iter().flatten().map(|sheet| sheet.run.run.id);
+        let runs = self.sheets().map(|sheet| sheet.run.run.id);
         let ids = std::iter::once(self.fault.fault.id).chain(runs);
         ids.map(|id| id.short()).collect::<Vec<_>>().join("-")
+    }
+
+    /// The run before, and the run after if there is one.
+    fn sheets(&self) -> impl Iterator<Item = &Sheet> {
+        std::iter::once(&self.before).chain(&self.after)
     }
 
     /// The run that tells how the unit is now.
@@ -89,9 +93,7 @@ impl CaseSheet {
     }
 
     fn is_practice(&self) -> bool {
-        let runs = [Some(&self.before), self.after.as_ref()];
-        let mut runs = runs.into_iter().flatten();
-        runs.any(|sheet| sheet.run.run.is_practice())
+        self.sheets().any(|sheet| sheet.run.run.is_practice())
     }
 }
 

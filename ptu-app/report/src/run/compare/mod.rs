@@ -283,7 +283,7 @@ pub(super) fn same_step<'a>(step: &StepRecord, run: &'a RunDetail) -> Option<&'a
     all.reduce(telling)
 }
 
-/// Whether two records are of one step, in whichever run.
+/// Whether two records, of one run or of two, are of the same step.
 pub(super) fn is_same(one: &StepRecord, other: &StepRecord) -> bool {
     key(one) == key(other)
 }

@@ -25,7 +25,7 @@ pub fn comparison(compared: &[Compared<'_>], words: &Words) -> Table {
         if let Some(measured) = one.measured() {
             name = format!("{name}\n{}", naming::measurement(&measured.name, words));
         }
-        Some(row(RowKind::Head, cells(one, name, words)))
+        Some(Row::new(RowKind::Head, cells(one, name, words)))
     });
     Table {
         columns: vec![
@@ -54,7 +54,7 @@ pub(super) fn steps<'a>(pairs: impl Iterator<Item = &'a StepPair<'a>>, words: &W
             let mut cells = Vec::from(cells(one, name, words));
             let change = change(one).unwrap_or_default();
             cells.insert(6, Cell::Text(Tone::Soft, change));
-            rows.push(row(kind, cells));
+            rows.push(Row::new(kind, cells));
         };
         with_change(RowKind::Head, &pair.step, name);
         for one in &pair.measurements {
@@ -75,13 +75,6 @@ pub(super) fn steps<'a>(pairs: impl Iterator<Item = &'a StepPair<'a>>, words: &W
             Column::new(common.verdict, 0.09, Align::Left),
         ],
         rows,
-    }
-}
-
-fn row(kind: RowKind, cells: impl IntoIterator<Item = Cell>) -> Row {
-    Row {
-        kind,
-        cells: cells.into_iter().map(|cell| (cell, 1)).collect(),
     }
 }
 

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::table::{allowed, change, name_of, value};
 use super::{Compared, Differs, RunComparison};
-use crate::json::run_summary_json;
+use crate::json::{run_summary_json, value_json};
 use crate::words::{Language, Words};
 use ptu_runs::table::Table;
 
@@ -103,16 +103,9 @@ pub fn comparison_json(of: &RunComparison) -> Value {
 }
 
 fn measurement(one: &Compared<'_>) -> Value {
-    let of = |measured: Option<&MeasurementRecord>| {
-        measured.map(|of| {
-            json!({
-                "value": of.value, "low": of.low, "high": of.high, "verdict": of.verdict.as_str(),
-            })
-        })
-    };
     json!({
         "name": one.measured().map(|of| &of.name), "unit": one.measured().map(|of| &of.unit),
-        "a": of(one.before), "b": of(one.after), "change": one.change(),
+        "a": one.before.map(value_json), "b": one.after.map(value_json), "change": one.change(),
     })
 }
 

@@ -120,21 +120,9 @@ fn framed(tone: Tone, verdict: &str, beside: &str, letters: &FontMetrics) -> Pie
     let ink = table::ink(tone);
     let (high, size) = (34.0, 17.0);
     let after = MARGIN + 24.0 + letters.width(verdict, size);
-    let (left, right) = (MARGIN, MARGIN + INSIDE);
     Piece {
         items: vec![
-            Item::Line {
-                points: vec![
-                    (left, 0.0),
-                    (right, 0.0),
-                    (right, high),
-                    (left, high),
-                    (left, 0.0),
-                ],
-                ink,
-                width: 1.2,
-                dashed: false,
-            },
+            Item::frame((MARGIN, 0.0), (INSIDE, high), ink, 1.2),
             Item::text(MARGIN + 10.0, 23.0, size, ink, verdict).strong(),
             Item::text(after, 23.0, 10.0, Ink::Black, beside),
         ],

@@ -136,6 +136,22 @@ impl Item {
         }
     }
 
+    /// A frame, by its upper left corner and its size.
+    pub(crate) fn frame(
+        (x, y): (f32, f32),
+        (wide, high): (f32, f32),
+        ink: Ink,
+        width: f32,
+    ) -> Self {
+        let (right, bottom) = (x + wide, y + high);
+        Self::Line {
+            points: vec![(x, y), (right, y), (right, bottom), (x, bottom), (x, y)],
+            ink,
+            width,
+            dashed: false,
+        }
+    }
+
     /// The item moved down by `by`.
     pub(crate) fn lowered(mut self, by: f32) -> Self {
         match &mut self {

@@ -3,7 +3,7 @@
 use protocol::display_text;
 
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece, Text};
-use crate::plot::{Mark, Plot, Role};
+use crate::plot::{Mark, Plot, Role, Style};
 
 /// Width of the drawing on paper in its own units: words in it are as large as those around it.
 const WIDTH: f32 = 800.0;
@@ -67,7 +67,7 @@ fn items(mark: &Mark, scale: f32) -> Vec<Item> {
                     points: piece.iter().copied().map(place).collect(),
                     ink: ink(*role),
                     width: thickness(*role),
-                    dashed: matches!(role, Role::Dashed(_) | Role::AxisMark),
+                    dashed: matches!(role, Role::Values(Style::Dashed, _) | Role::AxisMark),
                 })
                 .collect()
         }
@@ -75,19 +75,8 @@ fn items(mark: &Mark, scale: f32) -> Vec<Item> {
             let (x, y) = place(*at);
             let (wide, high) = (size.0 as f32 * scale, size.1 as f32 * scale);
             if *role == Role::Frame {
-                let corners = [
-                    (x, y),
-                    (x + wide, y),
-                    (x + wide, y + high),
-                    (x, y + high),
-                    (x, y),
-                ];
-                return vec![Item::Line {
-                    points: corners.into(),
-                    ink: Ink::Rule,
-                    width: thickness(*role),
-                    dashed: false,
-                }];
+                let width = thickness(*role);
+                return vec![Item::frame((x, y), (wide, high), Ink::Rule, width)];
             }
             vec![Item::Area(x, y, wide, high, ink(*role))]
         }
@@ -116,16 +105,14 @@ fn ink(role: Role) -> Ink {
         Role::Grid => Ink::Grid,
         Role::Zero | Role::Frame => Ink::Rule,
         Role::Shaded => Ink::Shade,
-        Role::Curve(colour) | Role::Dashed(colour) | Role::Dots(colour) | Role::Bars(colour) => {
-            Ink::Curve(colour)
-        }
+        Role::Values(_, colour) => Ink::Curve(colour),
     }
 }
 
 fn thickness(role: Role) -> f32 {
     match role {
-        Role::Curve(_) => 1.0,
-        Role::Dashed(_) => 0.8,
+        Role::Values(Style::Line, _) => 1.0,
+        Role::Values(Style::Dashed, _) => 0.8,
         _ => 0.5,
     }
 }

@@ -20,12 +20,8 @@ const MOST_LINES: usize = 40;
 /// The heading and the rows.
 pub fn pieces(table: &Table, letters: &FontMetrics) -> Vec<Piece> {
     let names = table.columns.iter();
-    let heading = Row {
-        kind: RowKind::Head,
-        cells: names
-            .map(|column| (Cell::Text(Tone::Soft, column.name.clone()), 1))
-            .collect(),
-    };
+    let names = names.map(|column| Cell::Text(Tone::Soft, column.name.clone()));
+    let heading = Row::new(RowKind::Head, names);
     let mut pieces = Vec::new();
     if table.has_headings() {
         let mut top = row(&heading, &table.columns, letters);
@@ -66,7 +62,7 @@ fn row(row: &Row, columns: &[Column], letters: &FontMetrics) -> Piece {
             .get(place)
             .map_or(Align::Left, |column| column.align);
         match cell {
-            Cell::Text(tone, text) | Cell::Verdict(tone, text) => {
+            Cell::Text(tone, text) => {
                 let mut split = letters.lines(text, SIZE, inside);
                 if split.len() > MOST_LINES {
                     split.truncate(MOST_LINES);

@@ -5,7 +5,7 @@ use protocol::LruId;
 use protocol::injection::Lru;
 
 use super::super::names;
-use super::both::{Both, both, checked};
+use super::both::{Both, checked};
 
 /// Parts named at most where it cannot be told which one has failed.
 const MOST_NAMED: usize = 3;
@@ -35,7 +35,7 @@ pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names
     }
 }
 
-/// Without what to run next.
+/// The conclusion without the next check.
 fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
     match conclusion {
         Conclusion::Found { part, probability } => {
@@ -95,24 +95,18 @@ fn answered(conclusion: &Conclusion, can_go_on: bool, names: &[Lru]) -> Both {
                 false => said,
             }
         }
-        Conclusion::BrokenOff => {
-            let [said] = both([(
-                "not enough was run: the run was stopped before its end",
-                "시험 범위가 부족하여 판별할 수 없습니다: 시험이 도중에 중단되었습니다",
-            )]);
-            said
-        }
+        Conclusion::BrokenOff => [
+            "not enough was run: the run was stopped before its end".to_owned(),
+            "시험 범위가 부족하여 판별할 수 없습니다: 시험이 도중에 중단되었습니다".to_owned(),
+        ],
         Conclusion::BenchFailed { bench } => [
             format!("the bench failed, not the unit: `ptu doctor --bench {bench}`"),
             format!("장치가 아니라 시험대의 이상입니다: `ptu doctor --bench {bench}`"),
         ],
-        Conclusion::NotWeighed => {
-            let [said] = both([(
-                "cannot tell: the run did not pass, and what did not pass was not run to its end or is not in the dictionary",
-                "판별할 수 없습니다: 합격하지 못한 시험이며, 합격하지 못한 항목은 끝까지 수행되지 않았거나 고장 사전에 없습니다",
-            )]);
-            said
-        }
+        Conclusion::NotWeighed => [
+            "cannot tell: the run did not pass, and what did not pass was not run to its end or is not in the dictionary".to_owned(),
+            "판별할 수 없습니다: 합격하지 못한 시험이며, 합격하지 못한 항목은 끝까지 수행되지 않았거나 고장 사전에 없습니다".to_owned(),
+        ],
     }
 }
 
@@ -124,17 +118,16 @@ fn cannot_tell(shown: &[Both], more: usize, can_go_on: bool) -> Both {
         n => [format!(" or one of {n} more"), format!(" 외 {n}개")],
     };
     let [all, all_ko] = one_or_other(shown);
-    let [not_run, unknown] = both([
-        (
-            "not enough was run to tell which part",
-            "시험 범위가 부족하여 판별할 수 없습니다",
-        ),
-        ("cannot tell which part", "부품을 판별할 수 없습니다"),
-    ]);
     match shown {
         // As many parts as nobody could choose from.
-        [] if can_go_on => not_run,
-        [] => unknown,
+        [] if can_go_on => [
+            "not enough was run to tell which part".to_owned(),
+            "시험 범위가 부족하여 판별할 수 없습니다".to_owned(),
+        ],
+        [] => [
+            "cannot tell which part".to_owned(),
+            "부품을 판별할 수 없습니다".to_owned(),
+        ],
         [[one, one_ko]] => [
             format!("not certain yet: {one}"),
             format!("아직 확실하지 않습니다: {one_ko}"),
@@ -222,7 +215,7 @@ pub(super) fn tells(next: &NextCheck, names: &[Lru]) -> Both {
     }
 }
 
-/// Named parts, one of which it is.
+/// Named parts of which one has failed.
 fn one_or_other(named: &[Both]) -> Both {
     joined(named, [" or ", " 또는 "])
 }

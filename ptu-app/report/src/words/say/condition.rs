@@ -97,10 +97,6 @@ pub fn parameter(event: Event, number: i32) -> String {
 }
 
 /// Name of a signal in few words.
-pub fn signal(name_of: &str) -> Option<String> {
-    Signal::from_name(name_of).map(name)
-}
-
 pub fn name(signal: Signal) -> String {
     let said = content::korean(signal.definition().doc);
     let ends = [": ", ", ", " ("].iter().filter_map(|end| said.find(end));

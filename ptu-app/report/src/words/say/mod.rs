@@ -52,7 +52,7 @@ impl Words {
         }
     }
 
-    /// A step by its name and its turn of so many, and what it is where that is no result that counts.
+    /// A step by its name and its turn, with a word if the result is an attempt or a repetition, which does not count.
     pub fn step(&self, name: &str, [turn, turns]: [u32; 2], kind: StepKind) -> String {
         let mut said = self.content(name).into_owned();
         if turns > 1 {

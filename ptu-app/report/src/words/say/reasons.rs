@@ -8,7 +8,7 @@ use ptu_runs::clock::local_day;
 use ptu_runs::stored::findings;
 
 use super::super::{Language, content, names};
-use super::both::{Both, both, checked};
+use super::both::{Both, checked};
 use super::finding;
 
 pub(super) fn fault_text(text: &FaultText) -> Both {
@@ -21,13 +21,10 @@ pub(super) fn fault_text(text: &FaultText) -> Both {
             },
             format!("입증된 수리 {cases}건과 같은 양상 (장치 {units})"),
         ],
-        FaultText::Unseen { like: None } => {
-            let [said] = both([(
-                "in a way that is not in the dictionary",
-                "사전에 없는 형태의 고장",
-            )]);
-            said
-        }
+        FaultText::Unseen { like: None } => [
+            "in a way that is not in the dictionary".to_owned(),
+            "사전에 없는 형태의 고장".to_owned(),
+        ],
         FaultText::Unseen {
             like: Some((mode, text)),
         } => {
@@ -40,7 +37,7 @@ pub(super) fn fault_text(text: &FaultText) -> Both {
     }
 }
 
-/// The step, and what it measured beyond a limit, or else what it found first, or its result.
+/// The step with its value beyond a limit, or else with its first finding, or else with its result.
 pub(super) fn step_found(step: &StepReason, run: &RunDetail) -> Both {
     let is_it = |record: &&fault_db::StepRecord| {
         record.procedure == step.check.procedure && record.name == step.check.step
@@ -152,10 +149,10 @@ fn sign_named(sign: &Sign) -> Both {
 /// The part that a sign names.
 fn points_at(sign: &Sign) -> Both {
     match &sign.lru {
-        Some(part) => [
-            format!("the {}", names::english_part(part.as_str())),
-            names::korean_part(part.as_str()).to_owned(),
-        ],
+        Some(part) => {
+            let [name, name_ko] = names::part(part.as_str());
+            [format!("the {name}"), name_ko.to_owned()]
+        }
         None => ["no part".to_owned(), "없음".to_owned()],
     }
 }

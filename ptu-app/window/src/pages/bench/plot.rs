@@ -13,7 +13,7 @@ use super::rolling::{Lane, MOST, Rows, SPANS_S, chosen, lanes};
 use super::text;
 use crate::Palette;
 use crate::parts::{find_edit, lane};
-use ptu_report::trace_view::{Column, Span, Window, columns, spans};
+use ptu_report::trace_view::{Column, Span, Window, samples};
 use ptu_report::words::{Words, fill};
 use ptu_report::{naming, ticks};
 use ptu_runs::bench_worker::BenchWorker;
@@ -165,8 +165,8 @@ impl Plot {
             match lane {
                 Lane::Quantities(places) => self.quantities(sheet, rect, places, window, pixels),
                 Lane::Choice(place) | Lane::Bit(place) => {
-                    let samples = self.rows.samples(*place);
-                    spans::of_samples(samples, window, pixels, &mut self.spans);
+                    let of_lane = self.rows.samples(*place);
+                    samples::spans(of_lane, window, pixels, &mut self.spans);
                     let (spans, colour) = (&self.spans, sheet.colour(*place));
                     if matches!(lane, Lane::Bit(_)) {
                         lane::bit(painter, rect, spans, colour);
@@ -193,13 +193,10 @@ impl Plot {
         let mut all = Column::EMPTY;
         self.columns.resize_with(places.len(), Vec::new);
         for (place, columns) in places.iter().zip(&mut self.columns) {
-            columns::of_samples(self.rows.samples(*place), window, pixels, columns);
+            samples::columns(self.rows.samples(*place), window, pixels, columns);
             columns.iter().for_each(|column| all.merge(*column));
         }
-        let extent = all
-            .is_known()
-            .then(|| (f64::from(all.low), f64::from(all.high)));
-        let range = ticks::range(extent.unwrap_or((0.0, 1.0)));
+        let range = ticks::range(all.extent().unwrap_or((0.0, 1.0)));
         let scale = rect.with_max_x(rect.left()).with_min_x(rect.left() - SCALE);
         lane::y_axis(&sheet.painter, scale, rect, range, sheet.palette);
         for (place, columns) in places.iter().zip(&self.columns) {

@@ -12,7 +12,7 @@ use crate::query_worker::Pending;
 use crate::request::Request;
 use crate::{PageContext, Palette};
 use ptu_report::naming::DOT;
-use ptu_report::trace_view::{FirstDifference, Overlay, OverlaySource, TracePlot};
+use ptu_report::trace_view::{FirstDifference, Overlay, OverlaySource, OverlayTrace, TracePlot};
 use ptu_report::words::fill;
 
 /// Traces offered to compare with.
@@ -34,7 +34,10 @@ impl OverlayRequest {
     pub fn poll(&mut self, scene: &mut TracePlot, context: &mut PageContext<'_>) {
         if self.overlay.poll() {
             match std::mem::take(&mut self.overlay) {
-                Request::Ready(overlay) => scene.lay_behind(Arc::new(overlay)),
+                Request::Ready(overlay) => {
+                    let kind = scene.axis.kind();
+                    scene.behind = Some(OverlayTrace::new(Arc::new(overlay), kind));
+                }
                 Request::Failed(why) => {
                     context
                         .messages
@@ -140,7 +143,7 @@ impl OverlayRequest {
     ) {
         self.against.clone_from(&against);
         self.parting = None;
-        scene.lay_nothing_behind();
+        scene.behind = None;
         let id = scene.opened.id;
         self.overlay = match against {
             None => Request::Idle,

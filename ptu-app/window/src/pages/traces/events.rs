@@ -1,6 +1,8 @@
 //! Trigger and faults in the trace's window, as links and as flags above the lanes.
 
-use eframe::egui::{Align2, FontId, Painter, Rect, RichText, Stroke, Ui, pos2};
+use eframe::egui::{
+    Align2, Color32, FontId, Painter, Pos2, Rect, RichText, Stroke, Ui, pos2, vec2,
+};
 
 use super::bar;
 use super::row::Sheet;
@@ -13,6 +15,8 @@ use ptu_report::words::Words;
 
 /// Height of the strip above the lanes.
 pub const STRIP: f32 = 34.0;
+/// Size of a flag, points.
+pub const FLAG: f32 = 14.0;
 /// Rows of names in it.
 const ROWS: usize = 2;
 /// Links shown at most; a fault that comes every second would fill the page.
@@ -86,16 +90,23 @@ pub fn flags(painter: &Painter, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
             strip.bottom()..=lanes.bottom(),
             Stroke::new(1.5, palette.warn),
         );
-        let flag = Rect::from_min_size(pos2(x - 7.0, strip.bottom() - 14.0), [14.0, 14.0].into());
-        painter.rect_filled(flag, 2.0, palette.warn);
-        let ground = if palette.dark {
-            eframe::egui::Color32::BLACK
+        let ink = if palette.dark {
+            Color32::BLACK
         } else {
-            eframe::egui::Color32::WHITE
+            Color32::WHITE
         };
-        let font = FontId::proportional(lane::TEXT);
-        painter.text(flag.center(), Align2::CENTER_CENTER, letter, font, ground);
+        let corner = pos2(x - FLAG / 2.0, strip.bottom() - FLAG);
+        flag(painter, corner, letter, palette.warn, ink);
     }
+}
+
+/// A square with a letter or a number in it; returns its place.
+pub fn flag(painter: &Painter, corner: Pos2, text: &str, ground: Color32, ink: Color32) -> Rect {
+    let flag = Rect::from_min_size(corner, vec2(FLAG, FLAG));
+    painter.rect_filled(flag, 2.0, ground);
+    let font = FontId::proportional(lane::TEXT);
+    painter.text(flag.center(), Align2::CENTER_CENTER, text, font, ink);
+    flag
 }
 
 fn name<'a>(event: &'a Event, words: &'a Words) -> &'a str {

@@ -111,10 +111,10 @@ impl Export {
         let axis = (scene.axis.kind() == Kind::Distance).then(|| scene.axis.clone());
         let name = self.name.clone();
         let question = move |_: &_| {
-            let text = csv(opened.view.data(), &channels, rows, axis.as_ref());
             let place = with_ending(&name, "csv");
             let mut file = NewFile::begin_beside(&place)?;
-            let written = file.write_all(text.as_bytes());
+            let data = opened.view.data();
+            let written = csv(&mut file, data, &channels, rows, axis.as_ref());
             written.map_err(|error| cannot_write(&place, &error))?;
             file.finish_beside()
         };

@@ -107,68 +107,44 @@ pub fn keys(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot) {
     if focused.is_some_and(|id| id != response.id) {
         return;
     }
-    let (pressed, shift) = ui.input(|input| {
-        let plain = !input.modifiers.command && !input.modifiers.alt;
-        let count = |keys: &[Key]| -> usize {
+    let count = |keys: &[Key]| -> usize {
+        ui.input(|input| {
+            let plain = !input.modifiers.command && !input.modifiers.alt;
             let all = keys.iter().map(|key| input.num_presses(*key)).sum();
             if plain { all } else { 0 }
-        };
-        let pressed = [
-            count(&[Key::Plus, Key::Equals]),
-            count(&[Key::Minus]),
-            count(&[Key::ArrowLeft]),
-            count(&[Key::ArrowRight]),
-            count(&[Key::F, Key::Home]),
-            count(&[Key::A]),
-            count(&[Key::B]),
-            count(&[Key::Comma]),
-            count(&[Key::Period]),
-            count(&[Key::Escape]),
-            count(&[Key::Backspace]),
-        ];
-        (pressed, input.modifiers.shift)
-    });
-    let [
-        closer,
-        wider,
-        left,
-        right,
-        fit,
-        a,
-        b,
-        back,
-        on,
-        none,
-        before,
-    ] = pressed;
+        })
+    };
     let pointer = response.hover_pos().filter(|at| rect.contains(*at));
     let share = pointer.map_or(0.5, |at| f64::from((at.x - rect.left()) / rect.width()));
+    let (closer, wider) = (count(&[Key::Plus, Key::Equals]), count(&[Key::Minus]));
     if closer + wider > 0 {
         let times = ZOOM.powi(closer as i32 - wider as i32);
         scene.camera.zoom(share, times);
     }
+    let (left, right) = (count(&[Key::ArrowLeft]), count(&[Key::ArrowRight]));
     if left + right > 0 {
         scene.camera.pan(PAN * (right as f64 - left as f64));
     }
-    if fit > 0 {
+    if count(&[Key::F, Key::Home]) > 0 {
         scene.remember();
         scene.camera.fit();
     }
-    for _ in 0..before {
+    for _ in 0..count(&[Key::Backspace]) {
         scene.zoom_back();
     }
     let place = scene.window().at(share);
-    if a > 0 {
-        scene.put(Cursor::A, place);
+    for (key, cursor) in [(Key::A, Cursor::A), (Key::B, Cursor::B)] {
+        if count(&[key]) > 0 {
+            scene.put(cursor, place);
+        }
     }
-    if b > 0 {
-        scene.put(Cursor::B, place);
-    }
+    let shift = ui.input(|input| input.modifiers.shift);
     let stepped = if shift { Cursor::B } else { Cursor::A };
+    let (back, on) = (count(&[Key::Comma]), count(&[Key::Period]));
     if back + on > 0 {
         scene.step(stepped, on as isize - back as isize);
     }
-    if none > 0 {
+    if count(&[Key::Escape]) > 0 {
         scene.clear_cursors();
     }
 }

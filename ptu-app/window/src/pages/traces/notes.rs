@@ -1,8 +1,9 @@
 //! Notes at places of the trace: a list, a flag at each place, and the field for one at cursor A.
 
-use eframe::egui::{Align2, FontId, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+use eframe::egui::{Rect, RichText, Sense, Stroke, Ui, pos2};
 use fault_db::{Id, TracePlace};
 
+use super::events::{self, FLAG};
 use super::row::Sheet;
 use crate::parts::{NoteOn, RunNoteForm, lane, link};
 use crate::request::FollowingResponse;
@@ -15,8 +16,6 @@ use ptu_runs::table::cut;
 const MOST: usize = 60;
 /// Notes listed at most.
 const LINKS: usize = 40;
-/// Size of a flag, points.
-const FLAG: f32 = 14.0;
 
 /// The notes on the trace that is open.
 #[derive(Default)]
@@ -92,12 +91,7 @@ impl TraceNotes {
             ui.painter().vline(x, strip.bottom()..=lanes.bottom(), line);
             // Beside the flag of a cursor at the same place.
             let corner = pos2(x + FLAG / 2.0 + 1.0, strip.bottom() - FLAG);
-            let flag = Rect::from_min_size(corner, vec2(FLAG, FLAG));
-            ui.painter().rect_filled(flag, 2.0, ink);
-            let font = FontId::proportional(lane::TEXT);
-            let (middle, centre) = (flag.center(), Align2::CENTER_CENTER);
-            ui.painter()
-                .text(middle, centre, number.to_string(), font, ground);
+            let flag = events::flag(ui.painter(), corner, &number.to_string(), ink, ground);
             let id = ui.scope_id().with(("note on the trace", number));
             ui.interact(flag, id, Sense::hover())
                 .on_hover_text(whole(note));

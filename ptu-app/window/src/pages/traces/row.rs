@@ -136,14 +136,17 @@ impl Sheet<'_> {
             _ => curves[number % curves.len()],
         };
         let high = rect.height() / lanes.len() as f32;
-        for (number, lane) in lanes.iter().enumerate() {
+        // Each signal of the lane has its name and its values in a line of its own.
+        let line = |number: usize| {
             let top = rect.top() + number as f32 * high;
-            let line = Rect::from_x_y_ranges(rect.x_range(), top..=top + high);
+            Rect::from_x_y_ranges(rect.x_range(), top..=top + high)
+        };
+        for (number, lane) in lanes.iter().enumerate() {
             let ink = match lanes.len() {
                 1 => self.palette.ink,
                 _ => colour(number),
             };
-            self.name(ui, lane, line, ink);
+            self.name(ui, lane, line(number), ink);
             if let Some(behind) = self.scene.behind.as_ref().filter(|_| lane.place.is_some()) {
                 self.shade(ui, behind, &lane.signal, rect);
             }
@@ -152,11 +155,7 @@ impl Sheet<'_> {
             note(ui, rect, self.words.traces.not_in_trace, self.palette.warn);
             return;
         };
-        let own = Source {
-            view: self.scene.view(),
-            place,
-            axis: &self.scene.axis,
-        };
+        let own = self.own(place);
         match own.view.summary(place) {
             Summary::Unknown => note(ui, rect, self.words.traces.not_known, self.palette.quiet),
             Summary::Quantity(_) => self.quantities(ui, lanes, rect, &colour, scratch),
@@ -165,11 +164,18 @@ impl Sheet<'_> {
             }
         }
         for (number, lane) in lanes.iter().enumerate() {
-            let top = rect.top() + number as f32 * high;
-            let line = Rect::from_x_y_ranges(rect.x_range(), top..=top + high);
             if let Some(place) = lane.place {
-                self.values(ui, place, line);
+                self.values(ui, place, line(number));
             }
+        }
+    }
+
+    /// The signal at this place of the trace.
+    fn own(&self, place: usize) -> Source<'_> {
+        Source {
+            view: self.scene.view(),
+            place,
+            axis: &self.scene.axis,
         }
     }
 
@@ -219,12 +225,7 @@ impl Sheet<'_> {
         }
         for (number, place) in lanes.iter().map(|lane| lane.place).enumerate() {
             let Some(place) = place else { continue };
-            let own = Source {
-                view: self.scene.view(),
-                place,
-                axis: &self.scene.axis,
-            };
-            curve(own, edges, colour(number));
+            curve(self.own(place), edges, colour(number));
         }
     }
 

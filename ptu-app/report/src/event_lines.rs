@@ -1,10 +1,7 @@
 //! The stream of a run as JSON lines, for other programs: `docs/commands.md`.
 //!
-//! What a line has is in one table, [`EVENTS`], of which the schema in `docs/` is made. A key is never given another
-//! meaning and never left out within a version; new keys and new events may come, and a reader passes over those that it
-//! does not know.
-
-mod table;
+//! `docs/events.schema.json` promises what each line holds. A key is never given another meaning and never left out
+//! within a version; new keys and new events may come, and a reader passes over those that it does not know.
 
 use btu_rig::procedure::{
     EventSource, Finding, Findings, Measurement, Procedure, ResultKind, RunEvent, StepResult,
@@ -14,7 +11,12 @@ use protocol::lru;
 use serde_json::{Map, Value, json};
 
 use ptu_runs::run::{Outcome, SessionEvent};
-pub use table::{COMMON, EVENTS, EventKeys, Kind, VERSION, schema};
+
+/// Version of the stream.
+pub const VERSION: u32 = 1;
+
+/// The schema of a line (JSON Schema 2020-12), as programs find it in `docs/` and in recordings.
+pub const SCHEMA: &str = include_str!("../../../docs/events.schema.json");
 
 /// Turns events into lines.
 #[derive(Debug, Default)]
