@@ -6,13 +6,37 @@ use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{
     Findings, Measurement, Outside, OutsideStep, Procedure, ResultKind, StepResult, Verdict,
 };
-use fault_db::{FaultRecord, MeasurementRecord, StepKind, StepRecord};
+use fault_db::{FaultRecord, MeasurementRecord, RunRecord, StepKind, StepRecord, UnitRecord};
 use protocol::lru;
 
+use crate::platform;
 use crate::run::FaultSeen;
 
 /// Folder of the departure tests.
 pub const DEPARTURE: &str = "departure/";
+
+/// Record of a run that this process makes of a unit with this configuration, begun then, µs UTC; `source` says where the
+/// unit is.
+pub(crate) fn new_run(
+    serial: String,
+    config_name: String,
+    source: String,
+    started_at_us: i64,
+) -> RunRecord {
+    RunRecord {
+        unit: UnitRecord {
+            serial,
+            kind: "atc".into(),
+            config_name,
+            ..UnitRecord::default()
+        },
+        source,
+        started_at_us,
+        app_version: env!("CARGO_PKG_VERSION").into(),
+        owner: platform::this_process(),
+        ..RunRecord::default()
+    }
+}
 
 /// A verdict as the database stores it.
 pub fn stored(verdict: Verdict) -> fault_db::Verdict {

@@ -314,8 +314,7 @@ mod tests {
     use std::time::{Duration, Instant};
 
     use crate::bench_worker::{BenchWorker, LiveState, Phase};
-    use crate::data::ScriptsDirectory;
-    use crate::run::BenchChoice;
+    use crate::test_support;
 
     /// Goal: an idle unit is never shown without its identity. Method: the state is read at each wake-up.
     #[test]
@@ -336,11 +335,7 @@ mod tests {
         };
         let mut worker = BenchWorker::new(Arc::new(wake)).expect("a thread");
         assert!(live_state.set(worker.live_state.clone()).is_ok());
-        let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-        let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-        let choice = BenchChoice::default();
-        let setup = choice.setup(&scripts).expect("its configuration");
-        worker.connect(setup);
+        worker.connect(test_support::setup(&[]));
         let began = Instant::now();
         while known.load(Ordering::Relaxed) == 0 {
             assert!(began.elapsed() < Duration::from_secs(60), "no unit");

@@ -102,10 +102,10 @@ mod tests {
     use protocol::{Instant, Speed};
 
     use super::*;
-    use crate::data::ScriptsDirectory;
     use crate::link::Pace;
-    use crate::run::{BenchChoice, Connected, READY_WITHIN, RunControl, settled};
+    use crate::run::{READY_WITHIN, RunControl, settled};
     use crate::stop::Stop;
+    use crate::test_support;
 
     /// Counts by bench time, which is virtual, when a window would be woken, and how late it shows a change of speed.
     #[derive(Default)]
@@ -155,14 +155,9 @@ mod tests {
     #[test]
     fn a_window_is_woken_once_a_second_at_rest_and_ten_times_while_the_train_moves() {
         let window = Arc::<Window>::default();
-        let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-        let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-        let mut setup = BenchChoice::default().setup(&scripts).expect("its setup");
+        let mut setup = test_support::setup(&[]);
         setup.run_control = Some(window.clone());
         let stop = Stop::default();
-        let Ok(Connected::Sim(setup)) = setup.connect(&stop) else {
-            panic!("the embedded unit is there");
-        };
         let mut session = setup.sim_session("live", &stop);
         session.set_pace(Pace::Virtual);
         session.idle(READY_WITHIN + READY_WITHIN, |_, _, _| {}, settled());

@@ -13,10 +13,9 @@ use super::bench_setup::Connected;
 use super::event::SessionEvent;
 use super::observe::ObservationBuilder;
 use super::plan::{Adaptive, ProcedureStream, RunPlan, Task, stream};
-use super::workers::Worker;
 use crate::stop::Stop;
 
-/// Starts the worker; procedures come as it chooses them.
+/// Starts the search on a thread of its own; procedures come as the search chooses them.
 pub fn start<'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: &'scope RunPlan,
@@ -25,17 +24,14 @@ pub fn start<'scope>(
     stop: &'scope Stop,
 ) -> Receiver<ProcedureStream> {
     let (procedures, receiver) = mpsc::channel();
-    scope.spawn(move || {
-        let mut worker = Worker::new(connected, stop);
-        run_adaptively(plan, adaptive, &mut worker, stop, &procedures);
-    });
+    scope.spawn(move || run_adaptively(plan, adaptive, connected, stop, &procedures));
     receiver
 }
 
 fn run_adaptively(
     plan: &RunPlan,
     adaptive: &Adaptive,
-    worker: &mut Worker<'_>,
+    connected: &mut Connected,
     stop: &Stop,
     procedures: &Sender<ProcedureStream>,
 ) {
@@ -61,7 +57,7 @@ fn run_adaptively(
             // The collector listens until the stream ends, so that sending cannot fail.
             drop(sender.send(event));
         };
-        worker.run(task, &mut sink, go_on);
+        connected.run(task, stop, &mut sink, go_on);
         true
     });
 }

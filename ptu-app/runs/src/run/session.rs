@@ -32,7 +32,8 @@ pub struct Session<L: UnitLink> {
     recorder: Recorder,
     sample: Sample,
     link_failure: Option<LinkTrouble>,
-    /// Permitted lag of the bench behind the wall clock; `None` for a unit in virtual time.
+    /// Permitted lag of the bench behind the wall clock: beyond it a unit in real time misses its inputs and brakes, so that
+    /// nothing the unit does then is judged. `None` for a unit in virtual time.
     pub max_lag: Option<Duration>,
     /// Largest lag beyond `max_lag` since it was last taken.
     stalled: Option<Duration>,
@@ -40,9 +41,9 @@ pub struct Session<L: UnitLink> {
     /// Largest time that unit and bench stood still together since it was last taken.
     paused: Option<Duration>,
     fresh_unit: bool,
-    run_control: Option<Arc<dyn RunControl>>,
+    pub(super) run_control: Option<Arc<dyn RunControl>>,
     /// Rows that were not handed on yet, of a run that is recorded whole.
-    rows: Option<Vec<Row>>,
+    pub(super) rows: Option<Vec<Row>>,
     /// Virtual time goes at the clock's pace, because a person is waited for.
     with_person: bool,
 }
@@ -78,25 +79,6 @@ impl<L: UnitLink> Session<L> {
             rows: None,
             with_person: false,
         }
-    }
-
-    /// Sets the run control.
-    pub fn controlled_by(mut self, run_control: Option<Arc<dyn RunControl>>) -> Self {
-        self.run_control = run_control;
-        self
-    }
-
-    /// Hands every row on, if the run is to be recorded whole.
-    pub fn recorded_whole(mut self, is_it: bool) -> Self {
-        self.rows = is_it.then(Vec::new);
-        self
-    }
-
-    /// Sets the lag beyond which a unit in real time misses its inputs and brakes, so that nothing it does then
-    /// is judged.
-    pub fn with_max_lag(mut self, max_lag: Duration) -> Self {
-        self.max_lag = Some(max_lag);
-        self
     }
 
     /// Replaces the stop that ends runs on this session.

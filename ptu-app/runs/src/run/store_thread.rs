@@ -44,15 +44,16 @@ const MOST_TRACE_VALUES: usize = 4_000_000;
 /// Steps that are held (about 90 MB); a longer run is kept only as far as its open file can be copied.
 const MOST_STEPS: usize = 100_000;
 
-enum Entry {
+/// What is recorded of a run, in order.
+pub(super) enum Entry {
     Step(StepRecord),
-    /// A fault, numbered from 0 through the run.
+    /// A fault, which is recorded at once; faults are numbered from 0 through the run.
     Fault(FaultRecord),
     /// A trace and the numbers of the faults it shows.
     Trace(Vec<usize>, TraceData),
-    /// Recording behind the traces since the last one.
+    /// Stimuli of the procedure whose traces were recorded since the last of these.
     Recording(RecordingRecord),
-    /// Something to say once all before it is in the file.
+    /// A line to print once all before it is in the file.
     Say(String),
     Finish(RunEnd),
 }
@@ -134,32 +135,9 @@ impl RunStore {
         }
     }
 
-    pub fn step(&self, step: StepRecord) {
-        self.send(Entry::Step(step));
-    }
-
-    /// Records a fault at once; faults are numbered from 0 in the order of these calls.
-    pub fn fault(&self, fault: FaultRecord) {
-        self.send(Entry::Fault(fault));
-    }
-
-    /// Records a trace of the faults with these numbers.
-    pub fn trace(&self, faults: Vec<usize>, trace: TraceData) {
-        self.send(Entry::Trace(faults, trace));
-    }
-
-    /// Records what was done in the procedure whose traces were recorded last.
-    pub fn recording(&self, recording: RecordingRecord) {
-        self.send(Entry::Recording(recording));
-    }
-
-    /// Prints a line as soon as all that was recorded before is in the file.
-    pub fn say(&self, line: String) {
-        self.send(Entry::Say(line));
-    }
-
-    /// A send fails only after the writer has ended with an error, which `finish` returns.
-    fn send(&self, entry: Entry) {
+    /// Records an entry.
+    pub(super) fn record(&self, entry: Entry) {
+        // A send fails only after the writer has ended with an error, which `finish` returns.
         let _ = self.entries.send(entry);
     }
 
@@ -169,7 +147,7 @@ impl RunStore {
     /// # Errors
     /// The first error of writing.
     pub fn finish(self, end: RunEnd) -> Result<(Store, Option<Trouble>), Failure> {
-        self.send(Entry::Finish(end));
+        self.record(Entry::Finish(end));
         drop(self.entries);
         let ended = self.thread.join();
         ended.unwrap_or_else(|_| Err(Failure::bench(RunTrouble::WriterEnded)))

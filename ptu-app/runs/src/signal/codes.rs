@@ -156,8 +156,7 @@ impl<'a> Carrier<'a> {
                     rate_hz: f64::from(heard.rate_hz),
                     level_mv: Some(f64::from(heard.level_mv)),
                     snr_db: heard.snr_db.map(f64::from),
-                    bad_bytes: None,
-                    tacho: None,
+                    ..Source::default()
                 };
                 *under_way = Some(source);
             }

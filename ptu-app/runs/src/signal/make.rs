@@ -129,10 +129,13 @@ pub fn samples(wave: &Wave, unit: &UnitConfig, strength: Strength) -> Result<Sam
             (Box::new(samples), MARKER_BAND_HZ)
         }
     };
-    let mut noise = snr_db.map(|snr_db| Noise::new(level_mv, snr_db, band_hz, rate, seed));
-    let noisy =
-        samples.map(move |sample| sample + noise.as_mut().and_then(Iterator::next).unwrap_or(0.0));
-    Ok(Box::new(noisy))
+    Ok(match snr_db {
+        Some(snr_db) => {
+            let noise = Noise::new(level_mv, snr_db, band_hz, rate, seed);
+            Box::new(samples.zip(noise).map(|(sample, noise)| sample + noise))
+        }
+        None => samples,
+    })
 }
 
 /// Writes a waveform to a WAV file.

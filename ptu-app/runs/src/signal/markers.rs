@@ -52,11 +52,8 @@ impl Markers {
             to_s: at_s,
             what: format!("PSM{}", passed.marker),
             carrier_hz: self.tones_hz[usize::from(passed.marker) - 1],
-            rate_hz: 0.0,
             level_mv: Some(f64::from(passed.level_mv)),
-            snr_db: None,
-            bad_bytes: None,
-            tacho: None,
+            ..Source::default()
         });
     }
 }

@@ -6,7 +6,8 @@ use super::picture::Spectrum;
 
 /// Level and strongest line of a channel.
 pub(super) struct Meter {
-    spectrum: Spectrum,
+    /// The strongest line is that of this spectrum.
+    pub(super) spectrum: Spectrum,
     sum: f64,
     count: u64,
     /// Greatest mean square of a part, mV².
@@ -39,11 +40,6 @@ impl Meter {
     pub(super) fn levels_mv(&self) -> (f64, f64) {
         let mean = self.sum / self.count.max(1) as f64;
         (mean.sqrt(), self.most.sqrt())
-    }
-
-    /// Frequency of the strongest line, Hz, and its level, mV rms; none of silence and of what is too short.
-    pub(super) fn strongest(&self) -> Option<(f64, f64)> {
-        self.spectrum.strongest()
     }
 }
 

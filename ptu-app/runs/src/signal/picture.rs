@@ -269,7 +269,8 @@ impl Spectrum {
         }
     }
 
-    /// The strongest line, Hz, and its mean level, mV rms.
+    /// Frequency of the strongest line, Hz, and its mean level, mV rms; none of silence and of less samples than a spectrum
+    /// takes.
     pub(super) fn strongest(&self) -> Option<(f64, f64)> {
         let lines = self.powers.windows(2 * BESIDE + 1).enumerate().skip(1);
         let (first, around) = lines.max_by(|a, b| a.1[BESIDE].total_cmp(&b.1[BESIDE]))?;

@@ -11,8 +11,8 @@ use super::wav::Wav;
 pub(super) const ASKED_EVERY_S: f64 = 0.1;
 /// Most entries of each kind in an answer.
 pub(super) const MOST: usize = 100_000;
-/// Channels that are read at most.
-pub(super) const MOST_CHANNELS: usize = 8;
+/// Channels of a recording that are read at most.
+pub const MOST_CHANNELS: usize = 8;
 
 /// When the samples of a block are.
 #[derive(Clone, Copy)]
@@ -61,7 +61,7 @@ pub struct Level {
 impl Level {
     pub(super) fn of(meter: &Meter, channel: usize) -> Self {
         let (level_mv, most_mv) = meter.levels_mv();
-        let strongest = meter.strongest();
+        let strongest = meter.spectrum.strongest();
         Self {
             channel,
             level_mv,
@@ -72,8 +72,8 @@ impl Level {
     }
 }
 
-/// A signal.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// A signal that was found, from its beginning to its end.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Source {
     /// `code`, `twc`, `marker` or `tacho`.
     pub kind: &'static str,
@@ -205,13 +205,11 @@ fn in_words<S: Serializer>(why: &Why, to: S) -> Result<S::Ok, S::Error> {
 }
 
 impl Reading {
-    /// Something is not understood at this time.
+    /// Tells why the file is not understood at this time.
     pub(super) fn tell(&mut self, at_s: f64, why: Why) {
-        self.not_understood.push(NotUnderstood {
-            from_s: at_s,
-            to_s: at_s,
-            why,
-        });
+        let (from_s, to_s) = (at_s, at_s);
+        self.not_understood
+            .push(NotUnderstood { from_s, to_s, why });
     }
 
     /// Tells which channels of a file that was read are clipped.

@@ -7,8 +7,7 @@ use ato_under_test::receivers::SensorInput;
 use protocol::config::UnitConfig;
 
 use super::meter::Meter;
-use super::reading::{ASKED_EVERY_S, Level, Reading, Source, Tacho, Why};
-use super::receive::Receivers;
+use super::reading::{ASKED_EVERY_S, Level, MOST_CHANNELS, Reading, Source, Tacho, Why};
 use super::wav::{End, Wav};
 use crate::failure::Failure;
 
@@ -153,7 +152,7 @@ impl Sensor {
 pub fn read_tacho(path: &Path, unit: &UnitConfig, full_scale_mv: f64) -> Result<Reading, Failure> {
     let mut wav = Wav::open(path)?;
     let sample_hz = f64::from(wav.sample_hz());
-    let channels = wav.channels().min(Receivers::MOST_CHANNELS);
+    let channels = wav.channels().min(MOST_CHANNELS);
     let part = ((ASKED_EVERY_S * sample_hz) as usize).max(1);
     let mut meters: Vec<_> = (0..channels).map(|_| Meter::new(sample_hz)).collect();
     let mut sensors: Vec<_> = (0..channels / 2).map(|_| Sensor::default()).collect();
@@ -194,13 +193,10 @@ pub fn read_tacho(path: &Path, unit: &UnitConfig, full_scale_mv: f64) -> Result<
                 channel: 2 * place + 1,
                 from_s,
                 to_s,
-                what: String::new(),
-                carrier_hz: 0.0,
                 rate_hz: tacho.mean_kmh / 3.6 / unit.metres_per_pulse(),
                 level_mv: Some(meters[2 * place].levels_mv().0),
-                snr_db: None,
-                bad_bytes: None,
                 tacho: Some(tacho),
+                ..Source::default()
             });
         }
     }

@@ -61,14 +61,10 @@ impl Twc {
             kind: "twc",
             channel,
             from_s: at_s - byte_s,
-            to_s: at_s,
-            what: String::new(),
             carrier_hz: f64::from(tones.middle_hz),
             rate_hz: f64::from(tones.bit_rate),
-            level_mv: None,
-            snr_db: None,
             bad_bytes: Some(0),
-            tacho: None,
+            ..Source::default()
         });
         source.to_s = at_s;
         match received {

@@ -136,6 +136,14 @@ impl Wav {
     }
 }
 
+/// A part of full scale as a sample of 16 bits, and whether the part was beyond full scale and is cut off there.
+pub(crate) fn sample_of_16_bits(part: f64) -> (i16, bool) {
+    let sample = (part * 32_768.0).round();
+    // A conversion to integers ends at the greatest of its sign.
+    let kept = sample as i16;
+    (kept, f64::from(kept) != sample)
+}
+
 /// Writes samples, mV, of so many channels by turns, as 16 bits; how many were beyond full scale and are cut off there.
 ///
 /// # Errors
@@ -162,10 +170,9 @@ pub fn write(
     let mut writer = WavWriter::new(file.writer()?, spec).map_err(failed)?;
     let mut clipped = 0;
     for sample in samples {
-        let sample = (sample / full_scale_mv * 32_768.0).round();
-        let kept = sample.clamp(-32_768.0, 32_767.0);
-        clipped += u64::from(sample != kept);
-        writer.write_sample(kept as i16).map_err(failed)?;
+        let (kept, is_clipped) = sample_of_16_bits(sample / full_scale_mv);
+        clipped += u64::from(is_clipped);
+        writer.write_sample(kept).map_err(failed)?;
     }
     writer.finalize().map_err(failed)?;
     file.finish()?;

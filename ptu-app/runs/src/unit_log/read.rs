@@ -218,7 +218,7 @@ fn from_store(
     });
     let mut entries: Vec<_> = backwards.collect();
     entries.reverse();
-    let mut notes = clocks.contradictions();
+    let mut notes = clocks.contradictions.clone();
     let falls = events
         .entries
         .windows(2)
