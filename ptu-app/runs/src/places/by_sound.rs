@@ -7,7 +7,7 @@ use btu_rig::rig::{InstrumentFault, LinkTrouble};
 use protocol::message::{COIL_PART, COIL_SAMPLES, COIL_STEP_MV, Coil, CoilSamples};
 
 use super::file::Places;
-use super::placed::trouble;
+use super::worker::trouble;
 use crate::signal::FULL_SCALE_MV;
 use crate::sound::{Stream, record};
 use crate::stop::Stop;

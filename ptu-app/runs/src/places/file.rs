@@ -1,131 +1,18 @@
 //! The bench file, `benches/NAME.toml`.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 use std::sync::Arc;
 
 use protocol::message::{Coil, Outputs};
 use protocol::signal::Signal;
 use serde::Deserialize;
-use thiserror::Error;
 use toml::Spanned;
 
+use super::error::PlacesError;
 use super::instrument::{InstrumentEntry, Kind};
 use super::model::Model;
-use super::points::{Named, UnitInput, check_reading};
+use super::points::{Named, Place, Point, UnitInput, check_reading};
 use crate::signal::FULL_SCALE_MV;
-
-/// Why a bench file or a driver is refused.
-#[derive(Debug, Error)]
-pub enum PlacesError {
-    /// It is not as TOML, or has another key.
-    #[error("{0}")]
-    Toml(#[from] toml::de::Error),
-    /// A value of the file does not fit.
-    #[error("line {line}: {why}")]
-    Wrong {
-        /// Counted from 1.
-        line: usize,
-        /// What is wrong there.
-        why: String,
-    },
-}
-
-/// One stimulus or reading.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Point {
-    /// `frames`, `none`, `operator` or the name of an instrument.
-    at: String,
-    /// Coils of a module, of which one is on: as many as the point has positions.
-    #[serde(default)]
-    pub coils: Vec<u16>,
-    /// How long a pulse lasts, ms.
-    #[serde(default)]
-    pub pulse_ms: u64,
-    /// Input of a module that proves the coil's relay.
-    pub proved_by: Option<u16>,
-    /// Input of a module that is read.
-    pub input: Option<u16>,
-    /// The input is closed where the signal's contact is open.
-    #[serde(default)]
-    pub inverted: bool,
-    /// Channel of the instrument, put into its commands.
-    #[serde(default)]
-    pub channel: u8,
-    /// Name of the driver's question for the reading.
-    pub read: Option<String>,
-    /// Signal per unit of what is read.
-    pub scale: Option<f64>,
-    /// Voltage of the unit's supply, V.
-    pub volts: Option<f64>,
-    /// Expanded uncertainty of the reading, in the unit of the signal.
-    #[serde(default)]
-    pub uncertainty: f64,
-    /// Time allowed to a person, s.
-    pub within_s: Option<u64>,
-}
-
-/// Where a point is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place<'a> {
-    /// In the frames, as without a bench file.
-    Frames,
-    /// Nowhere: the bench does not have it.
-    None,
-    /// A person does it, in so many seconds.
-    Operator(u64),
-    /// The instrument of this name.
-    Instrument(&'a str),
-}
-
-impl Point {
-    /// What the word of `at` means.
-    pub fn place(&self) -> Place<'_> {
-        match self.at.as_str() {
-            "frames" => Place::Frames,
-            "none" => Place::None,
-            "operator" => Place::Operator(self.within_s.unwrap_or(OPERATOR_S)),
-            name => Place::Instrument(name),
-        }
-    }
-
-    /// No number of it is beyond reason.
-    fn check(&self) -> Result<(), String> {
-        let terminals = self.coils.iter().copied();
-        let terminals = terminals.chain(self.proved_by).chain(self.input);
-        if terminals.max() > Some(LAST_TERMINAL) {
-            return Err(format!("coils and inputs are 0 to {LAST_TERMINAL}"));
-        }
-        if self.pulse_ms > MOST_MS {
-            return Err(format!("pulse_ms is at most {MOST_MS}"));
-        }
-        if !(1..=MOST_S).contains(&self.within_s.unwrap_or(OPERATOR_S)) {
-            return Err(format!("within_s is 1 to {MOST_S}"));
-        }
-        if !(self.uncertainty.is_finite() && self.uncertainty >= 0.0) {
-            return Err("uncertainty is a number, and not negative".into());
-        }
-        if self
-            .volts
-            .is_some_and(|volts| !(volts.is_normal() && volts > 0.0))
-        {
-            return Err("volts is a number above 0".into());
-        }
-        match self.scale.is_none_or(|scale| scale.is_normal()) {
-            true => Ok(()),
-            false => Err("scale is a number, and not 0".into()),
-        }
-    }
-}
-
-/// Time a person has, s [default].
-const OPERATOR_S: u64 = 60;
-/// Greatest times that a bench file may state.
-const MOST_MS: u64 = 60_000;
-const MOST_S: u64 = 3_600;
-/// As many coils as one request writes (Modbus application protocol 6.11), counted from 0.
-const LAST_TERMINAL: u16 = 1967;
 
 /// A bench file as it is written.
 #[derive(Deserialize, schemars::JsonSchema)]
@@ -144,14 +31,8 @@ pub struct Written {
     readings: BTreeMap<String, Spanned<Point>>,
 }
 
-/// What is wrong in the part of the text that begins there.
-fn wrong(text: &str, at: &Range<usize>, why: impl Into<String>) -> PlacesError {
-    PlacesError::Wrong {
-        line: 1 + text[..at.start].matches('\n').count(),
-        why: why.into(),
-    }
-}
-
+/// Stimuli and readings of an instrument.
+type PointsAt = (Vec<(UnitInput, Point)>, Vec<(Signal, Point)>);
 type Drivers = BTreeMap<String, Arc<Model>>;
 
 impl Written {
@@ -164,8 +45,9 @@ impl Written {
         let (mut instruments, mut models) = (BTreeMap::new(), Drivers::new());
         let switches = |name: &str| (self.stimuli.values()).any(|point| point.get_ref().at == name);
         for (place, (name, entry)) in self.instruments.iter().enumerate() {
-            let refuse =
-                |why: String| wrong(text, &entry.span(), format!("instrument {name}: {why}"));
+            let refuse = |why: String| {
+                PlacesError::at(text, &entry.span(), format!("instrument {name}: {why}"))
+            };
             let entry = entry.get_ref();
             let checked = entry.check(switches(name), self.instruments.len());
             checked.map_err(refuse)?;
@@ -189,14 +71,14 @@ impl Written {
             let why = format!(
                 "safe names each instrument once, in the order in which they are switched off: see {name}"
             );
-            return Err(wrong(text, &self.safe.span(), why));
+            return Err(PlacesError::at(text, &self.safe.span(), why));
         }
         let cards = instruments
             .values()
             .filter(|entry| entry.kind() == Kind::Sound);
         match cards.count() {
             0 | 1 => Ok((instruments, models)),
-            _ => Err(wrong(
+            _ => Err(PlacesError::at(
                 text,
                 &self.safe.span(),
                 "there is one sound card at most",
@@ -212,8 +94,9 @@ impl Written {
     ) -> Result<BTreeMap<UnitInput, Point>, PlacesError> {
         let (mut stimuli, mut taken) = (BTreeMap::new(), BTreeSet::new());
         for (name, point) in &self.stimuli {
-            let refuse =
-                |why: String| wrong(text, &point.span(), format!("stimulus {name}: {why}"));
+            let refuse = |why: String| {
+                PlacesError::at(text, &point.span(), format!("stimulus {name}: {why}"))
+            };
             let known = UnitInput::from_name(name);
             let known = known.ok_or_else(|| refuse("there is no such stimulus".into()))?;
             let point = point.get_ref();
@@ -243,7 +126,9 @@ impl Written {
     ) -> Result<BTreeMap<Signal, Point>, PlacesError> {
         let mut readings = BTreeMap::new();
         for (name, point) in &self.readings {
-            let refuse = |why: String| wrong(text, &point.span(), format!("reading {name}: {why}"));
+            let refuse = |why: String| {
+                PlacesError::at(text, &point.span(), format!("reading {name}: {why}"))
+            };
             let known = READINGS.iter().find(|(known, _)| known.name() == name);
             let (known, contact) =
                 *known.ok_or_else(|| refuse("no contact or display of the unit".into()))?;
@@ -354,6 +239,17 @@ impl Places {
             .into_iter()
             .filter(|(name, _)| there(*name) == Some(Place::Instrument(card)));
         by_sound.map(|(_, coil)| coil).collect()
+    }
+
+    /// The stimuli and readings that this instrument has.
+    pub(super) fn points_at(&self, instrument: &str) -> PointsAt {
+        let here = |point: &Point| point.place() == Place::Instrument(instrument);
+        let stimuli = self.stimuli.iter().filter(|(_, point)| here(point));
+        let readings = self.readings.iter().filter(|(_, point)| here(point));
+        (
+            stimuli.map(|(at, point)| (*at, point.clone())).collect(),
+            readings.map(|(at, point)| (*at, point.clone())).collect(),
+        )
     }
 
     /// The instrument proves a relay or reads, so that its check times more than that it switches off.

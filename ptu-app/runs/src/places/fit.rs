@@ -9,41 +9,14 @@ use btu_rig::stimulus::Stimulus;
 use protocol::Duration;
 use protocol::signal::Signal;
 
-use super::file::{Place, Places, Point};
+use super::file::Places;
 use super::instrument::InstrumentEntry;
 use super::model::code_values;
 use super::needs::{DRIVES, FOLLOWS, needs};
-use super::points::UnitInput;
-use super::widen::{Motion, READ_ANY};
+use super::points::{Place, Point, UnitInput};
+use super::teller::Teller;
+use super::widen::{Motion, READ_ANY, inner, inner_mut};
 use crate::words::BenchNote;
-
-/// The action itself, wherever it is done.
-pub(super) fn inner(action: &Action) -> &Action {
-    match action {
-        Action::OnBench(action) | Action::OnTrain(action) => action,
-        action => action,
-    }
-}
-
-pub(super) fn inner_mut(action: &mut Action) -> &mut Action {
-    match action {
-        Action::OnBench(action) | Action::OnTrain(action) => action,
-        action => action,
-    }
-}
-
-/// How what a bench makes of procedures is put into words.
-#[derive(Clone, Copy)]
-pub struct Teller<'a> {
-    /// A note.
-    pub note: &'a dyn Fn(BenchNote) -> String,
-    /// Name of a signal for people.
-    pub signal: &'a dyn Fn(Signal) -> String,
-    /// What a person is to do, and the key of an input.
-    pub text: &'a dyn Fn(&str) -> String,
-    /// Question whether a signal has the value that a step expects.
-    pub condition: &'a dyn Fn(&Condition) -> String,
-}
 
 impl Places {
     /// The procedures as this bench does them, told so.

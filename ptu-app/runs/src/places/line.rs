@@ -15,9 +15,12 @@ use serialport::{ClearBuffer, SerialPort};
 
 use super::file::Places;
 use super::instrument::Reach;
-use super::scpi::LONGEST;
 use super::worker::{ANSWERS_WITHIN, span};
+use crate::link::connect_to;
 use crate::platform;
+
+/// Longest answer of an instrument, bytes.
+pub(super) const LONGEST: usize = 4096;
 
 /// An open line.
 pub(super) enum Line {
@@ -203,14 +206,7 @@ fn silence(baud: u32) -> Duration {
 }
 
 fn connect(address: &str) -> Result<TcpStream> {
-    let mut tried = Err(std::io::Error::other("the name has no address"));
-    for address in address.to_socket_addrs()? {
-        tried = TcpStream::connect_timeout(&address, ANSWERS_WITHIN);
-        if tried.is_ok() {
-            break;
-        }
-    }
-    let stream = tried?;
+    let stream = connect_to(address.to_socket_addrs()?, ANSWERS_WITHIN)?;
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(ANSWERS_WITHIN))?;
     stream.set_write_timeout(Some(ANSWERS_WITHIN))?;

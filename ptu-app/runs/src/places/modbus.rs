@@ -10,11 +10,12 @@ use rmodbus::client::ModbusRequest;
 use rmodbus::guess_response_frame_len;
 use rmodbus::{ErrorKind, ModbusProto};
 
-use super::file::{Places, Point};
+use super::file::Places;
 use super::instrument::{Reach, Watchdog};
 use super::line::{SharedLine, io_fault};
-use super::points::UnitInput;
-use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted};
+use super::model::Values;
+use super::points::{Point, UnitInput};
+use super::worker::{ANSWERS_WITHIN, Instrument, Wanted};
 use crate::pool::held;
 
 /// Bytes of an answer that say how many there are, over TCP and RTU.
@@ -210,7 +211,7 @@ impl Instrument for Module {
         for (signal, point) in &self.readings {
             let input = point.input.map(usize::from).and_then(|at| inputs.get(at));
             if let Some(closed) = input {
-                read.insert(*signal, f64::from(u8::from(*closed != point.inverted)));
+                read.insert(*signal, f64::from(*closed != point.inverted));
             }
         }
         self.prove(&ordered, &inputs).map(|()| true)

@@ -10,18 +10,16 @@ use protocol::signal::Signal;
 use protocol::{Instant, Speed};
 
 use super::by_sound::{BySound, try_sound};
-use super::file::{Place, Places, Point, READINGS};
-use super::instrument::Kind;
+use super::file::{Places, READINGS};
+use super::instrument::{Kind, SAFE_WITHIN};
 use super::line::Lines;
 use super::modbus::Module;
-use super::model::code_values;
-use super::points::UnitInput;
+use super::model::{Values, code_values};
+use super::points::{Place, UnitInput};
 use super::relay::{Relay, send};
 use super::scpi::Scpi;
-use super::worker::{Instrument, Timing, Values, Wanted, Worker, span};
+use super::worker::{Instrument, Timing, Wanted, Worker, span, trouble};
 
-/// All outputs are off after this, on every end.
-pub(super) const SAFE_WITHIN: Duration = Duration::from_secs(1);
 /// Periods without a pulse after which a wheel stands.
 const STANDS_AFTER: u64 = 2;
 /// A frequency that differs by less is not set again.
@@ -46,13 +44,6 @@ pub struct Placed {
 
 /// An instrument that was tried: its name, and how long it takes to act and to read, ms, or what is wrong.
 pub type Checked = (String, Result<f64, InstrumentFault>);
-
-pub(super) fn trouble(instrument: &str, fault: InstrumentFault) -> LinkTrouble {
-    LinkTrouble::Instrument {
-        instrument: instrument.to_owned(),
-        fault: Box::new(fault),
-    }
-}
 
 fn open(
     places: &Places,
@@ -128,12 +119,12 @@ impl Placed {
                 return try_sound(places, name, rounds);
             }
             let mut instrument = open(places, name, &mut lines)?;
-            let here = |point: &Point| point.place() == Place::Instrument(name);
-            let proved = |point: &Point| here(point) && point.proved_by.is_some();
-            let loops = places.stimuli.iter().filter(|(_, point)| proved(point));
-            let on = loops
-                .map(|(loop_, _)| (*loop_, Values::from([("on", 1.0)])))
-                .collect();
+            let (stimuli, _) = places.points_at(name);
+            let proved = stimuli
+                .iter()
+                .filter(|(_, point)| point.proved_by.is_some());
+            let on = proved.map(|(input, _)| (*input, Values::from([("on", 1.0)])));
+            let on = on.collect();
             let mut round = || {
                 let began = Clock::now();
                 instrument.off()?;
@@ -258,7 +249,7 @@ impl Placed {
         for (line_input, line) in UnitInput::lines().filter(|(input, _)| placed(*input)) {
             want(
                 line_input,
-                Values::from([("on", f64::from(u8::from(input.lines.contains(line))))]),
+                Values::from([("on", f64::from(input.lines.contains(line)))]),
             );
             input.lines.remove(line);
         }
@@ -321,11 +312,7 @@ impl Placed {
         let mut output = self.outputs;
         for (signal, point) in &self.places.readings {
             if let Place::None | Place::Operator(_) = point.place() {
-                set(
-                    &mut output,
-                    *signal,
-                    f64::from(u8::from(*signal == Signal::Eb)),
-                );
+                set(&mut output, *signal, f64::from(*signal == Signal::Eb));
             }
         }
         for worker in &self.workers {

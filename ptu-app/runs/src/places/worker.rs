@@ -6,9 +6,10 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use btu_rig::rig::InstrumentFault;
+use btu_rig::rig::{InstrumentFault, LinkTrouble};
 use protocol::signal::Signal;
 
+use super::model::Values;
 use super::points::UnitInput;
 use crate::pool::held;
 
@@ -21,8 +22,6 @@ const AFTER_EACH_OTHER: Duration = Duration::from_millis(50);
 /// An instrument that is late once may have waited for this computer; one that is so often in a row is slow.
 const SLOW_AFTER: u32 = 3;
 
-/// Values of a stimulus by name.
-pub(super) type Values = BTreeMap<&'static str, f64>;
 /// What is wanted of an instrument, by stimulus.
 pub(super) type Wanted = BTreeMap<UnitInput, Values>;
 
@@ -218,6 +217,14 @@ fn kept<T>(work: impl FnOnce() -> T) -> Result<T, String> {
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
         text.unwrap_or("panic").to_owned()
     })
+}
+
+/// The fault of an instrument, as the trouble of the bench's link.
+pub(super) fn trouble(instrument: &str, fault: InstrumentFault) -> LinkTrouble {
+    LinkTrouble::Instrument {
+        instrument: instrument.to_owned(),
+        fault: Box::new(fault),
+    }
 }
 
 pub(super) fn span(time: Duration) -> protocol::Duration {
