@@ -16,7 +16,8 @@ use protocol::{Duration, Instant, SCAN};
 
 use super::event::BenchEvent;
 use super::live_state::{LiveState, Phase};
-use super::{Order, RunOrder, permit};
+use super::order::{Order, RunOrder};
+use super::permit::permit;
 use crate::failure::RunTrouble;
 use crate::link::{Pace, keep_time};
 use crate::run::{

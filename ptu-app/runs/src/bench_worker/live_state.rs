@@ -13,8 +13,8 @@ use protocol::message::{Identity, SelfTestItem};
 use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
-use super::waking::{Waking, Watched};
-use super::{LinkQuality, Wake};
+use super::link_quality::LinkQuality;
+use super::waking::{Wake, Waking, Watched};
 use crate::pool::held;
 use crate::run::RunControl;
 

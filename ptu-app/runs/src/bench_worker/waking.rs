@@ -1,9 +1,13 @@
 //! When the window is woken: soon after something it shows has changed, and seldom while nothing has, because each
 //! time it is painted whole.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use protocol::signal::{Sample, Signal};
+
+/// Told when there is something new to look at; must not block.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// The window is woken at most this often: at every second cycle of 50 ms, so that a change is seen within 100 ms. It
 /// is less than two cycles, because a cycle may end a little early …
@@ -94,7 +98,7 @@ impl Waking {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::{Arc, Mutex};
+    use std::sync::Mutex;
 
     use btu_rig::procedure::Runner;
     use btu_rig::rig::Rig;

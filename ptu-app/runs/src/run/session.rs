@@ -209,6 +209,30 @@ impl<L: UnitLink> Session<L> {
         }
     }
 
+    /// Time in which the unit stood still as well is none, for both: nothing of what it does is spoiled.
+    fn keep_in_step(&mut self) {
+        let pause = self.bench.link.take_pause();
+        let now = self.bench.now();
+        if pause > Duration::ZERO {
+            self.bench.rig.note_pause(now, pause);
+            self.in_step.begin(now, pause);
+            self.paused = self.paused.max(Some(pause));
+            self.shift(pause.as_us() as i64);
+        }
+        if self.max_lag.is_some() {
+            let stamp = self.bench.rig.unit_stamp_ms();
+            let correction_us = self.in_step.correction_us(stamp);
+            self.shift(correction_us);
+        }
+    }
+
+    fn shift(&mut self, later_us: i64) {
+        if later_us != 0 {
+            self.pace.shift(later_us);
+            self.bench.link.shift_clock(later_us);
+        }
+    }
+
     /// Judges what the unit logged during bring-up: nothing was provoked yet, so each fault event counts.
     pub fn judge_bring_up(
         &mut self,

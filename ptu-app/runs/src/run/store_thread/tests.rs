@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use fault_db::{Channel, ChannelKind, OpenOptions, UnitRecord, Verdict};
+use fault_db::{
+    Channel, ChannelKind, FaultRecord, OpenOptions, StepRecord, TraceData, UnitRecord, Verdict,
+};
 use rusqlite::Connection;
 
+use super::records::MOST_STEPS;
 use super::*;
 use crate::clock;
 
