@@ -1,12 +1,12 @@
 //! Good units pass all procedures in any order, and workers keep their limits.
 
-use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
+use btu_rig::procedure::{Procedure, RunOptions, Verdict};
 use protocol::Duration;
 use protocol::Random;
 
 use super::*;
 use crate::run::select;
-use crate::test_support::{procedures, scripts, setup};
+use crate::test_support::{Heard, procedures, scripts, setup};
 
 /// Goal: procedures do not lean on a fresh unit, so that a unit on a port passes them all in a
 /// row. Method: all of them, forward and backward, on one embedded unit in virtual time.
@@ -63,33 +63,16 @@ fn all_pass(setup: &BenchSetup, row: impl Iterator<Item = (Arc<Procedure>, usize
             .into_iter()
             .map(|fault| fault.finding.to_string())
             .collect();
-        let mut verdict = None;
-        let mut sink = |event| match event {
-            // What line, unit type or train lack is the same whatever ran before.
-            SessionEvent::Run(RunEvent::StepFinished(result))
-                if result.verdict != Verdict::Passed
-                    && procedure.steps[result.index].lacks.is_none() =>
-            {
-                said.push(format!("{}: {}", result.name, result.findings));
-            }
-            SessionEvent::Run(RunEvent::ProcedureFinished {
-                verdict: v,
-                findings,
-                ..
-            }) => {
-                verdict = Some(v);
-                let told = Some(findings).filter(|findings| !findings.is_empty());
-                said.extend(told.map(|findings| findings.to_string()));
-            }
-            SessionEvent::Fault(fault) => said.push(format!("fault: {}", fault.finding)),
-            _ => {}
-        };
+        let mut heard = Heard::default();
+        let mut sink = |event| heard.take(event);
         let options = RunOptions {
             repeat: repeat as u32,
             ..RunOptions::default()
         };
         session.run(&procedure, options, Vec::new(), &mut sink, &TO_THE_END);
-        if verdict != Some(Verdict::Passed) || !said.is_empty() {
+        // What line, unit type or train lack is the same whatever ran before.
+        said.extend(heard.amiss(|step| procedure.steps[step.index].lacks.is_some()));
+        if heard.verdict != Some(Verdict::Passed) || !said.is_empty() {
             not_passed.push(format!(
                 "{place}: {} × {repeat} after {before}: {said:#?}",
                 procedure.id
