@@ -288,7 +288,7 @@ impl ScriptsDirectory {
     /// The fault modes of these names.
     ///
     /// # Errors
-    /// One of them is not in the catalogue.
+    /// The catalogue does not have one of the names.
     pub fn chosen_faults(&self, names: &[String]) -> Result<Vec<FaultMode>, Failure> {
         if names.is_empty() {
             return Ok(Vec::new());

@@ -84,7 +84,7 @@ pub fn step_record(procedure: &str, result: StepResult, started_bench_us: i64) -
     }
 }
 
-/// A measurement as it is stored: its uncertainty, if it has one, is a measurement of its own.
+/// A measurement as it is stored: the uncertainty, if there is one, is stored as another measurement.
 fn records(measured: Measurement) -> impl Iterator<Item = MeasurementRecord> {
     let verdict = stored(measured.verdict);
     let unit = String::from(measured.unit);

@@ -101,7 +101,7 @@ pub struct KnownOffWay {
 pub struct OffWay {
     /// Fault mode.
     pub fault: String,
-    /// The first step of its procedure that it fails.
+    /// First step of the procedure that the fault mode fails.
     pub step: CheckName,
 }
 

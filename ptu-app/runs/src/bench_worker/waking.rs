@@ -32,10 +32,10 @@ const ALWAYS_SHOWN: [Signal; 2] = [Signal::Armed, Signal::MaintenanceKey];
 /// Signals that the window shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Watched {
-    /// Work of the connection bar.
+    /// Signals of the connection bar.
     Bar,
     Curves,
-    /// All of them as in the cab.
+    /// All signals, as the cab shows them.
     #[default]
     All,
 }

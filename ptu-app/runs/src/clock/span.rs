@@ -11,7 +11,7 @@ use super::now_us;
 /// Microseconds of an hour.
 const HOUR_US: i64 = 3_600_000_000;
 
-/// From and until, microseconds since 1970; the end is not in it. None = open.
+/// From and until, microseconds since 1970, without the end itself. None = open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {
     pub since_us: Option<i64>,

@@ -42,7 +42,7 @@ pub struct Request {
     pub code: Option<String>,
     /// Unit configuration, `units/NAME.toml`.
     pub unit_config: String,
-    /// Keys changed in it.
+    /// Keys changed in the unit configuration.
     pub settings: Vec<Setting>,
     pub seed: u64,
 }

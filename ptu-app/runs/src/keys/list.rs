@@ -244,7 +244,7 @@ impl KeyEntry {
     /// Checks the name, the digits of the key and the days.
     ///
     /// # Errors
-    /// One of them has another form, in words.
+    /// Name, key or day has another form, in words.
     pub fn check(&self) -> Result<(), String> {
         name_argument(&self.who)?;
         let hex = self

@@ -12,9 +12,9 @@ use crate::signal::FULL_SCALE_MV;
 use crate::sound::{Stream, record};
 use crate::stop::Stop;
 
-/// A scan.
+/// Duration of a scan.
 const SCAN: Duration = Duration::from_millis(10);
-/// Scans of a beep, and of the silence around it, in which what was heard before is over.
+/// Scans of a beep, and of the silence before and after, in which the beep before has faded.
 const BEEP: u32 = 5;
 const QUIET: u32 = 40;
 /// Level of a beep, mV, and by how much it is louder than the silence before it.
@@ -26,10 +26,10 @@ pub(super) struct BySound {
     pub name: String,
     pub stream: Stream,
     coils: Vec<Coil>,
-    /// How late it may be heard.
+    /// How late the sound may be heard, as the bench file states.
     uncertainty: Duration,
     pub late: Duration,
-    /// This scan's samples: codes; TWC and markers.
+    /// Samples of this scan, two channels: codes, and TWC with markers.
     samples: [[f32; 2]; COIL_SAMPLES],
     /// Frames that were played and not sent: the numbers of later frames are lower by so many.
     pub left_out: u16,

@@ -36,7 +36,8 @@ type PointsAt = (Vec<(UnitInput, Point)>, Vec<(Signal, Point)>);
 type Drivers = BTreeMap<String, Arc<Model>>;
 
 impl Written {
-    /// Instruments and their drivers: each is whole, has an address of its own, and is named in `safe`.
+    /// Instruments and their drivers, checked: each instrument has what its protocol needs and its own address, and stands in
+    /// `safe`.
     fn instruments(
         &self,
         text: &str,
@@ -189,7 +190,7 @@ impl Places {
     /// Reads a bench file; `model` reads the driver of that name.
     ///
     /// # Errors
-    /// It is wrong, in a line that is named.
+    /// The file is wrong, in a line that is named.
     pub fn from_toml(
         text: &str,
         mut model: impl FnMut(&str) -> Result<Model, String>,

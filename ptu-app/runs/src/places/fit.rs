@@ -197,7 +197,7 @@ impl Places {
         Some((condition, self.seen(condition)?))
     }
 
-    /// It waits for what a person sees.
+    /// The action waits for something that a person sees.
     fn is_seen(&self, action: &Action) -> bool {
         matches!(inner(action), Action::Until { condition, .. } if self.seen(condition).is_some())
     }

@@ -31,7 +31,7 @@ pub(super) enum Line {
     Usb(File, Reading),
 }
 
-/// Reading of a device whose driver has a time of its own, 5 s as shipped: another thread waits for that.
+/// Reading of a device whose driver waits for a time of its own, 5 s as shipped: another thread waits in the driver.
 #[derive(Default)]
 pub(super) struct Reading {
     within: Duration,
@@ -73,10 +73,10 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// Those of all instruments, none open yet.
+    /// Lines of all instruments, none open yet.
     ///
     /// # Errors
-    /// Another program has one: the name of its instrument.
+    /// Another program uses an instrument, which is named.
     pub fn of(places: &Places) -> std::result::Result<Self, (String, InstrumentFault)> {
         let mut lines = Self::default();
         for (name, entry) in &places.instruments {

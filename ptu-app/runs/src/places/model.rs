@@ -15,24 +15,24 @@ pub(super) type Values = BTreeMap<&'static str, f64>;
 #[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
-    /// What its answer to `*IDN?` holds.
+    /// Text that the instrument's answer to `*IDN?` contains.
     pub idn: String,
     /// The question for the next entry of its error queue, whose answer begins with a number, 0 for none.
     pub error: String,
     /// Commands after connecting.
     #[serde(default)]
     pub begin: Vec<String>,
-    /// Commands that switch all its outputs off.
+    /// Commands that switch all outputs of the instrument off.
     #[serde(default)]
     pub off: Vec<String>,
-    /// What it does for stimuli.
+    /// Commands for each kind of stimulus.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Act>")]
     pub acts: BTreeMap<String, Spanned<Act>>,
     /// Questions of the instrument, by the names that readings give.
     #[serde(default)]
     pub reads: BTreeMap<String, Read>,
-    /// Least and greatest of values that it takes.
+    /// Least and greatest value that the instrument takes.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, [f64; 2]>")]
     pub ranges: BTreeMap<String, Spanned<[f64; 2]>>,
@@ -42,10 +42,10 @@ pub struct Model {
 #[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Act {
-    /// With these values.
+    /// Commands that set the stimulus to its values.
     #[schemars(with = "Vec<String>")]
     pub on: Vec<Spanned<String>>,
-    /// A carrier without a code rate; none: it cannot.
+    /// Commands for a carrier without a code rate; none if the instrument cannot give one.
     #[serde(default)]
     #[schemars(with = "Vec<String>")]
     pub unmodulated: Vec<Spanned<String>>,
@@ -60,7 +60,7 @@ pub struct Act {
 pub struct Read {
     /// The line that is sent.
     pub ask: String,
-    /// Which of the numbers of the answer, counted from 0.
+    /// Place of the value among the numbers of the answer, counted from 0.
     #[serde(default)]
     pub field: usize,
 }
@@ -86,7 +86,7 @@ impl Model {
     /// Reads a driver.
     ///
     /// # Errors
-    /// It is wrong, in a line that is named.
+    /// The driver is wrong, in a line that is named.
     pub fn from_toml(text: &str) -> Result<Self, PlacesError> {
         let model: Self = toml::from_str(text)?;
         for (name, act) in &model.acts {

@@ -69,7 +69,7 @@ impl Point {
         }
     }
 
-    /// No number of it is beyond reason.
+    /// Refuses numbers that are beyond reason.
     pub(super) fn check(&self) -> Result<(), String> {
         let terminals = self.coils.iter().copied();
         let terminals = terminals.chain(self.proved_by).chain(self.input);
@@ -119,7 +119,7 @@ macro_rules! inputs {
             /// All, in the order of the train lines first.
             pub const ALL: &[Self] = &[$(Self::$name,)*];
 
-            /// Its key in a bench file.
+            /// Key of the input in a bench file.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$name => $key,)* }
             }
@@ -151,7 +151,7 @@ impl UnitInput {
             .zip(bits)
     }
 
-    /// What a SCPI instrument does for it.
+    /// Act of a SCPI instrument that drives the input.
     pub(super) const fn act(self) -> Option<&'static str> {
         match self {
             Self::Code => Some("code"),
@@ -180,7 +180,7 @@ impl UnitInput {
         )
     }
 
-    /// A person is quick enough for it.
+    /// A person is quick enough to drive the input.
     const fn is_by_hand(self) -> bool {
         !matches!(
             self,

@@ -138,7 +138,7 @@ impl Worker {
     /// Switches its outputs off and waits for that, no longer than this.
     pub fn end(&mut self, within: Duration) {
         let mut state = held(&self.shared.0);
-        // It was waited for once.
+        // The end of the thread was waited for once.
         if std::mem::replace(&mut state.ends, true) {
             return;
         }
@@ -235,7 +235,7 @@ pub(super) fn span(time: Duration) -> protocol::Duration {
 mod tests {
     use super::*;
 
-    /// It takes so long, panics in the cycle of this number, and counts how often it was switched off.
+    /// An instrument that takes so long, panics in the cycle of this number, and counts how often it was switched off.
     struct Odd(Duration, u32, Arc<Mutex<u32>>);
 
     impl Instrument for Odd {

@@ -10,7 +10,7 @@ pub(super) struct Markers {
     receiver: MarkerReceiver,
     tones_hz: [f64; 4],
     pub(super) done: Vec<Source>,
-    /// Of the last block: whether a marker was being passed at each asking of the codes.
+    /// Whether a marker was being passed at each asking of the codes in the last block.
     pub(super) understood: Vec<bool>,
 }
 

@@ -43,9 +43,9 @@ impl Meter {
     }
 }
 
-/// Values of the filter for each sample that it gives.
+/// Length of the filter over the number of samples that are taken together.
 const LENGTH: usize = 16;
-/// Edge of its pass band over the rate of the samples that it gives.
+/// Edge of the filter's pass band over the rate of the samples that the filter gives.
 const EDGE: f64 = 0.375;
 
 /// Takes samples together, without what is too high for so few.

@@ -35,11 +35,11 @@ impl Clock {
 pub struct Reading {
     /// Length, s.
     pub duration_s: f64,
-    /// How loud each channel is, whatever is in it.
+    /// Level of each channel, whatever signals it holds.
     pub levels: Vec<Level>,
     /// Signals, in order of their beginning.
     pub sources: Vec<Source>,
-    /// What is in it and was not understood.
+    /// Parts of the recording that are loud and that no receiver understood.
     pub not_understood: Vec<NotUnderstood>,
 }
 
@@ -54,7 +54,7 @@ pub struct Level {
     pub most_mv: f64,
     /// The strongest line, Hz; none of silence and of less than a spectrum.
     pub strongest_hz: Option<f64>,
-    /// Its mean level, mV rms.
+    /// Mean level of the strongest line, mV rms.
     pub strongest_mv: Option<f64>,
 }
 
@@ -93,10 +93,10 @@ pub struct Source {
     pub level_mv: Option<f64>,
     /// Level over the noise in the receiver's band, dB, if it is known.
     pub snr_db: Option<f64>,
-    /// Of TWC: bytes with a wrong parity or without a stop bit.
+    /// Bytes of TWC with a wrong parity or without a stop bit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bad_bytes: Option<u32>,
-    /// Of a speed sensor: what its lines tell.
+    /// Wheel and sensor, as the lines of a speed sensor tell.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tacho: Option<Tacho>,
 }

@@ -15,9 +15,11 @@ use super::twc::Twc;
 
 /// Askings in a block.
 const ASKED_IN_BLOCK: usize = 10;
-/// What is louder than the weakest level that is decoded, and understood by no receiver, is told from this length on, s.
+/// Shortest part, s, that is told as not understood: louder than the weakest level that is decoded, and understood by no
+/// receiver.
 const LEAST_UNKNOWN_S: f64 = 1.0;
-/// Of two such parts with less between them one is told, s; of more than so many those that are nearest are joined.
+/// Two such parts with less than this between them, s, are told as one; of more than `MOST_UNKNOWN` parts the nearest are
+/// joined.
 const JOINED_S: f64 = 1.0;
 const MOST_UNKNOWN: usize = 32;
 /// Highest rate at which the receivers work, Hz: of faster samples some are taken together.
@@ -28,10 +30,10 @@ const LEAST_RATE: f64 = 2.2;
 /// The receivers of all channels of a recording.
 pub struct Receivers<'a> {
     channels: Vec<Channel<'a>>,
-    /// Of each channel, if somebody looks at it.
+    /// Picture of each channel; none if nobody looks at them.
     pictures: Vec<Picture>,
     sample_hz: f64,
-    /// Of each channel with faster samples.
+    /// Filter of each channel whose samples are faster than the receivers work.
     slower: Vec<Decimator>,
     /// Samples between askings.
     asked_every: usize,

@@ -16,7 +16,7 @@ pub(super) struct Twc {
     tones: Tones,
     pub(super) under_way: Option<Source>,
     pub(super) done: Vec<Source>,
-    /// Of the last block: whether it was within a message at each asking of the codes.
+    /// Whether a message was being received at each asking of the codes in the last block.
     pub(super) understood: Vec<bool>,
 }
 

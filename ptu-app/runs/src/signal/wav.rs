@@ -27,7 +27,7 @@ pub struct Wav {
     /// Bytes that are still to come, as far as the file says.
     left: Option<u64>,
     shown: String,
-    /// Of each channel: samples in a row that are as great as the file holds, and all of such rows.
+    /// Samples at full scale of each channel: of the present row, and of all rows.
     clipped: Vec<[u64; 2]>,
 }
 
@@ -35,7 +35,7 @@ pub struct Wav {
 pub enum End {
     /// The file is read.
     Whole,
-    /// It is cut off, or damaged from here on.
+    /// The file is cut off, or damaged from here on.
     Broken(String),
 }
 
@@ -43,7 +43,7 @@ impl Wav {
     /// Opens a file.
     ///
     /// # Errors
-    /// It cannot be read, or is no WAV file that can be understood.
+    /// The file cannot be read, or is no WAV file that can be understood.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let shown = path.display().to_string();
         let file = fault_db::open_regular_file(path)

@@ -34,7 +34,7 @@ pub struct Played {
 pub enum Lead {
     /// The waveform from its beginning.
     Within,
-    /// Tones of these frequencies, Hz, and levels, mV rms, before it, so that none of it is weak.
+    /// Tones of these frequencies, Hz, and levels, mV rms, before the waveform, so that its beginning is not weak.
     Before([(u32, u32); CHANNELS]),
 }
 

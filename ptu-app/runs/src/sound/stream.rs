@@ -45,7 +45,7 @@ impl State {
     }
 }
 
-/// Plays what it is fed, until it is dropped; what is not fed is silence.
+/// Plays the samples that it is fed until it is dropped, and silence where it is fed none.
 pub struct Stream {
     shared: Arc<(Mutex<State>, Condvar)>,
     stop: Stop,

@@ -35,7 +35,7 @@ pub struct Chain {
     pub before: Option<LruId>,
     /// From the sensor to what is judged.
     pub links: Vec<Link>,
-    /// The first link that the part fails; those after it fail by it.
+    /// The first link that the part fails; the links after this one fail because it does.
     pub failing: usize,
 }
 
