@@ -214,7 +214,7 @@ fn connect(address: &str) -> Result<TcpStream> {
 }
 
 /// What a failed exchange says of an instrument.
-pub(super) fn io_fault(error: &std::io::Error) -> InstrumentFault {
+pub(super) fn io_fault(error: std::io::Error) -> InstrumentFault {
     match error.kind() {
         ErrorKind::WouldBlock | ErrorKind::TimedOut => {
             InstrumentFault::Silent(span(ANSWERS_WITHIN))

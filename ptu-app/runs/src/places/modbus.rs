@@ -106,13 +106,13 @@ impl Module {
             .wait_for(ANSWERS_WITHIN)
             .and_then(|()| line.write_all(&out))
             .and_then(|()| line.read_exact(&mut answer));
-        exchanged.map_err(|error| io_fault(&error))?;
+        exchanged.map_err(io_fault)?;
         let length = guess_response_frame_len(&answer, self.proto);
         let length = length.map_err(|error| refused(&request, error))?;
         let head = answer.len();
         answer.resize(head.max(length.into()), 0);
         let rest = line.read_exact(&mut answer[head..]);
-        rest.map_err(|error| io_fault(&error))?;
+        rest.map_err(io_fault)?;
         drop(line);
         request
             .parse_ok(&answer)

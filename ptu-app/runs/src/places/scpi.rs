@@ -71,7 +71,7 @@ impl Scpi {
 
     fn say(&self, text: &str) -> Result<(), InstrumentFault> {
         let sent = held(&self.line).write_all(format!("{text}\n").as_bytes());
-        sent.map_err(|error| io_fault(&error))
+        sent.map_err(io_fault)
     }
 
     fn ask(&mut self, question: &str) -> Result<String, InstrumentFault> {
@@ -98,7 +98,7 @@ impl Scpi {
             }
             let mut chunk = [0; LONGEST];
             let count = line.wait_for(left).and_then(|()| line.read(&mut chunk));
-            match count.map_err(|error| io_fault(&error))? {
+            match count.map_err(io_fault)? {
                 0 => return Err(InstrumentFault::Closed),
                 count => self.came.extend_from_slice(&chunk[..count]),
             }

@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::mpsc::{self, Receiver};
 use std::thread::Scope;
 
 use btu_rig::procedure::RunOptions;
@@ -24,42 +24,32 @@ pub fn start<'scope>(
     stop: &'scope Stop,
 ) -> Receiver<ProcedureStream> {
     let (procedures, receiver) = mpsc::channel();
-    scope.spawn(move || run_adaptively(plan, adaptive, connected, stop, &procedures));
-    receiver
-}
-
-fn run_adaptively(
-    plan: &RunPlan,
-    adaptive: &Adaptive,
-    connected: &mut Connected,
-    stop: &Stop,
-    procedures: &Sender<ProcedureStream>,
-) {
-    let Adaptive {
-        dictionary,
-        settings,
-        lru_factors,
-        ..
-    } = adaptive;
-    let model = Model::new(dictionary, settings, lru_factors);
-    isolate(&model, &plan.tasks, &mut |task, saw, go_on| {
-        let (sender, events) = stream();
-        if procedures.send((task.procedure.clone(), events)).is_err() {
-            return false;
-        }
-        if !stop.may_begin() {
-            // The stream of events ends empty: the collector counts this procedure as due and not
-            // run.
-            return false;
-        }
-        let mut sink = |event| {
-            saw(&event);
-            // The collector listens until the stream ends, so that sending cannot fail.
-            drop(sender.send(event));
-        };
-        connected.run(task, stop, &mut sink, go_on);
-        true
+    scope.spawn(move || {
+        let model = Model::new(
+            &adaptive.dictionary,
+            &adaptive.settings,
+            &adaptive.lru_factors,
+        );
+        isolate(&model, &plan.tasks, &mut |task, saw, go_on| {
+            let (sender, events) = stream();
+            if procedures.send((task.procedure.clone(), events)).is_err() {
+                return false;
+            }
+            if !stop.may_begin() {
+                // The stream of events ends empty: the collector counts this procedure as due and not
+                // run.
+                return false;
+            }
+            let mut sink = |event| {
+                saw(&event);
+                // The collector listens until the stream ends, so that sending cannot fail.
+                drop(sender.send(event));
+            };
+            connected.run(task, stop, &mut sink, go_on);
+            true
+        });
     });
+    receiver
 }
 
 /// Runs a task: each event goes to the first function, and after each step the second says whether to go on. False where the

@@ -121,12 +121,8 @@ impl<L: UnitLink> Session<L> {
         self.stalled.take().is_some()
     }
 
-    /// Makes up the scans that were missed; events go to `seen`.
-    pub fn catch_up(&mut self, mut seen: impl FnMut(&UnitEvent, Instant, &Sample)) {
-        self.make_up(&mut |_| {}, &mut seen);
-    }
-
-    fn make_up(
+    /// Makes up the scans that were missed; completed windows go to `cut`, events to `seen`.
+    pub(super) fn make_up(
         &mut self,
         cut: &mut dyn FnMut(RecordedWindow),
         seen: &mut dyn FnMut(&UnitEvent, Instant, &Sample),

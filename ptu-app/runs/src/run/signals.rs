@@ -6,7 +6,8 @@ use std::str::FromStr;
 
 use btu_rig::waveform::ChannelConfig;
 
-use crate::failure::{Failure, FileTrouble, Why};
+use crate::failure::{Failure, FileTrouble};
+use crate::whole_file;
 
 /// Form of the signals between bench and unit. Its text form is `values`, `sampled` or
 /// `sampled:FILE`.
@@ -30,14 +31,10 @@ impl Signals {
             Self::Sampled(None) => return Ok(Some(ChannelConfig::default())),
             Self::Sampled(Some(path)) => path,
         };
-        let name = path.display();
-        let text = std::fs::read_to_string(path).map_err(|error| {
-            Failure::usage(FileTrouble::Unread(name.to_string(), Why::of(error)))
-        })?;
-        let channel = ChannelConfig::from_toml(&text);
+        let channel = ChannelConfig::from_toml(&whole_file::read(path)?);
         channel
             .map(Some)
-            .map_err(|wrong| Failure::usage(FileTrouble::wrong(name, wrong)))
+            .map_err(|wrong| Failure::usage(FileTrouble::wrong(path.display(), wrong)))
     }
 }
 

@@ -34,33 +34,23 @@ pub(super) fn start<'scope>(
         tasks: plan.tasks.iter().enumerate(),
         procedures,
     }));
-    let may_begin = |place: usize| stop.may_begin() && first_failure.admits(place);
-    match connected {
-        connected @ Connected::Port(..) => {
-            scope.spawn(move || {
-                // What is due and not begun ends with no event.
-                while let Some((place, task, sender)) = take(&work).filter(|due| may_begin(due.0)) {
-                    first_failure.run_noting_failure(place, sender, |sink, go_on| {
-                        connected.run(task, stop, sink, go_on)
-                    });
-                }
+    let work_off = move |connected: &mut Connected| {
+        let may_begin = |place: usize| stop.may_begin() && first_failure.admits(place);
+        // What is due and not begun ends with no event.
+        while let Some((place, task, sender)) = take(&work).filter(|due| may_begin(due.0)) {
+            first_failure.run_noting_failure(place, sender, |sink, go_on| {
+                connected.run(task, stop, sink, go_on);
             });
         }
+    };
+    match connected {
         Connected::Sim(setup) => {
             for _ in 0..plan.jobs.clamp(1, plan.tasks.len().max(1)) {
-                let work = work.clone();
-                let setup: &'scope BenchSetup = setup;
-                scope.spawn(move || {
-                    while let Some((place, task, sender)) =
-                        take(&work).filter(|due| may_begin(due.0))
-                    {
-                        first_failure.run_noting_failure(place, sender, |sink, go_on| {
-                            run_on_fresh(setup, task, stop, sink, go_on);
-                        });
-                    }
-                });
+                let (work_off, mut own) = (work_off.clone(), Connected::Sim(setup.clone()));
+                scope.spawn(move || work_off(&mut own));
             }
         }
+        port @ Connected::Port(..) => drop(scope.spawn(move || work_off(port))),
     }
     receiver
 }

@@ -7,8 +7,8 @@ use std::path::Path;
 use hound::{SampleFormat, WavSpec, WavWriter};
 
 use super::wav_head::{self, Head};
-use crate::failure::{Failure, FileTrouble, Why};
-use crate::new_file::{NewFile, kind};
+use crate::failure::{Failure, FileTrouble};
+use crate::new_file::{NewFile, cannot_write, kind};
 
 /// Highest sample rate that is read, Hz.
 const MOST_HZ: u32 = 768_000;
@@ -154,12 +154,7 @@ pub fn write(
     full_scale_mv: f64,
     samples: impl Iterator<Item = f64>,
 ) -> Result<u64, Failure> {
-    let failed = |error: hound::Error| {
-        Failure::bench(FileTrouble::Unwritten(
-            path.display().to_string(),
-            Why::of(error),
-        ))
-    };
+    let failed = |error: hound::Error| cannot_write(path, &error);
     let spec = WavSpec {
         channels,
         sample_rate: sample_hz,

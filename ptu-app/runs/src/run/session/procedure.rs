@@ -32,20 +32,6 @@ struct Progress<'a> {
     traced: &'a [usize],
 }
 
-impl<'a> Progress<'a> {
-    fn new(procedure: &'a Procedure, traced: &'a [usize], now: Instant) -> Self {
-        Self {
-            traced,
-            procedure,
-            step: None,
-            turn: 0,
-            step_began: now,
-            explained: false,
-            faults: 0,
-        }
-    }
-}
-
 impl<L: UnitLink> Session<L> {
     /// Runs a procedure as often as it is to be repeated, each time with its set-up and clean-up, or as long as
     /// `go_on` says so after a step; `found` are faults of the bring-up.
@@ -72,7 +58,15 @@ impl<L: UnitLink> Session<L> {
         if let Some(why) = self.bench.rig.cannot_run(procedure) {
             runner.pass_over_all(why);
         }
-        let mut progress = Progress::new(procedure, &options.traced, self.bench.now());
+        let mut progress = Progress {
+            procedure,
+            step: None,
+            turn: 0,
+            step_began: self.bench.now(),
+            explained: false,
+            faults: 0,
+            traced: &options.traced,
+        };
         for fault in found {
             runner.found_before(&fault.name, fault.at);
             self.report(fault, &mut progress, sink);
