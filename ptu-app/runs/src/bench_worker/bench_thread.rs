@@ -121,7 +121,7 @@ impl BenchThread {
         }
     }
 
-    /// Monitors the unit until an order ends that; then makes outputs safe and disarms. The flag says whether
+    /// Monitors the unit until an order ends the monitoring; then makes outputs safe and disarms. The flag says whether
     /// safe outputs were confirmed.
     fn watch(&self, connected: &mut Connected, orders: &Receiver<Order>) -> (WatchEnd, bool) {
         match connected {
@@ -235,14 +235,13 @@ impl BenchThread {
         }
     }
 
-    /// An order given before the bench was last made safe is not executed, nor is one that is no longer
-    /// permitted.
+    /// Whether a stimulus is executed: not if it was ordered before the bench was last made safe, or is no longer permitted.
     fn is_permitted(&self, stimulus: &Stimulus, bench_epoch: u64) -> bool {
         let live = self.live_state.read();
         live.bench_epoch == bench_epoch && permit(stimulus, &live).is_ok()
     }
 
-    /// Applies a stimulus; its text if the bench accepted it.
+    /// Applies a stimulus; returns the text of the stimulus if the bench accepted it.
     fn apply<L: UnitLink>(&self, session: &mut Session<L>, stimulus: &Stimulus) -> Option<String> {
         let now = session.now();
         let asked = stimulus.to_string();
@@ -283,7 +282,7 @@ impl BenchThread {
         });
     }
 
-    /// Sends an event; after the worker is dropped it is lost.
+    /// Sends an event to the window; it is lost once the worker has been dropped.
     fn tell(&self, event: BenchEvent) {
         let _ = self.events.send(event);
         self.live_state.wake();

@@ -73,7 +73,7 @@ pub struct LiveState {
     live: Mutex<LiveData>,
     requests: Mutex<OperatorRequests>,
     pending: Mutex<Pending>,
-    /// What the window shows, by its place among [`Watched::ALL`].
+    /// What the window shows, as an index into [`Watched::ALL`].
     watched: AtomicUsize,
     began: time::Instant,
     wake: Wake,

@@ -147,9 +147,9 @@ impl Written {
 /// A bench file that was checked.
 #[derive(Clone, Debug)]
 pub struct Places {
-    /// As runs and notes call the bench.
+    /// Name of the bench in runs and notes.
     pub name: String,
-    /// SHA-256 of its text.
+    /// SHA-256 of the bench file's text.
     pub sha256: String,
     /// Instruments by name.
     pub instruments: BTreeMap<String, InstrumentEntry>,
@@ -161,7 +161,7 @@ pub struct Places {
     pub stimuli: BTreeMap<UnitInput, Point>,
     /// Readings that are not in the frames.
     pub readings: BTreeMap<Signal, Point>,
-    /// What the sound card makes of a whole sample of each channel, mV.
+    /// Voltage of a full-scale sample on each channel of the sound card, mV.
     pub full_scale_mv: [f64; 2],
 }
 
@@ -253,19 +253,19 @@ impl Places {
         )
     }
 
-    /// The instrument proves a relay or reads, so that its check times more than that it switches off.
+    /// Whether a check of the instrument times more than switching off, because it proves a relay or reads.
     pub fn times_more_than_off(&self, instrument: &str) -> bool {
         let (stimuli, readings) = self.points_at(instrument);
         !readings.is_empty() || (stimuli.iter()).any(|(_, point)| point.proved_by.is_some())
     }
 
-    /// Everything that frames to the unit's inputs carry has another place.
+    /// Whether everything that frames carry to the unit's inputs has another place.
     pub(super) fn leaves_no_input(&self) -> bool {
         (UnitInput::ALL.iter())
             .all(|input| !input.is_in_inputs() || self.stimuli.contains_key(input))
     }
 
-    /// Everything that frames of the unit's outputs carry has another place.
+    /// Whether everything that frames carry from the unit's outputs has another place.
     pub(super) fn leaves_no_output(&self) -> bool {
         (READINGS.iter()).all(|(signal, _)| self.readings.contains_key(signal))
     }

@@ -1,5 +1,5 @@
-//! What a bench makes of procedures: steps that it cannot do are skipped with the reason, a person is asked for what a
-//! person does, and limits are as much wider as its instruments are uncertain; each says so.
+//! Procedures as a bench can do them: steps that the bench cannot do are skipped with the reason, a person is asked for what
+//! a person does, and limits are widened by the uncertainty of the instruments; each step says so.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use super::widen::{Motion, READ_ANY, inner, inner_mut};
 use crate::words::BenchNote;
 
 impl Places {
-    /// The procedures as this bench does them, told so.
+    /// The procedures as this bench does them; `tell` puts the changes into words.
     pub fn fit(&self, procedures: Vec<Arc<Procedure>>, tell: &Teller<'_>) -> Vec<Arc<Procedure>> {
         let fit = |mut procedure: Arc<Procedure>| {
             self.fit_one(Arc::make_mut(&mut procedure), tell);
@@ -28,7 +28,7 @@ impl Places {
         procedures.into_iter().map(fit).collect()
     }
 
-    /// What is to be switched off by hand if the program was killed, of instruments without a watchdog.
+    /// Outputs of instruments without a watchdog, which a person has to switch off if the program was killed.
     pub fn by_hand(&self) -> impl Iterator<Item = BenchNote> {
         let told = |(name, entry): (&String, &InstrumentEntry)| {
             let what = entry.by_hand.clone().filter(|_| entry.watchdog.is_none())?;
@@ -60,7 +60,7 @@ impl Places {
             if !step.continues {
                 motion = Motion::default();
             }
-            // It cannot begin in the state that a step left which was not run.
+            // The step cannot begin in the state that the step before would have left.
             let lacks = own.or_else(|| before.clone().filter(|_| step.continues));
             if let Some(lacks) = &lacks {
                 step.lacks = Some(lacks.clone());
@@ -90,12 +90,12 @@ impl Places {
         }
     }
 
-    /// Why this bench cannot do the action, if so.
+    /// Reason for which this bench cannot do the action, if there is one.
     fn lacks_for(&self, action: &Action, tell: &Teller<'_>) -> Option<BenchNote> {
         use UnitInput as U;
         match inner(action) {
             Action::Stimulus(stimulus) => {
-                // Without word of doors by side, the unit goes by the line of all doors.
+                // A unit that is not told of doors by side goes by the line of all doors.
                 let of_all = matches!(
                     stimulus,
                     Stimulus::Doors { .. } | Stimulus::DoorsFollow { .. }
@@ -129,7 +129,7 @@ impl Places {
         point.is_some_and(|point| point.place() == Place::None)
     }
 
-    /// No instrument and no frame reads it.
+    /// Whether neither an instrument nor a frame reads the signal.
     fn unread(&self, signal: Signal) -> bool {
         let by_itself = |signal: &Signal| {
             let place = self.readings.get(signal).map(Point::place);
@@ -202,7 +202,7 @@ impl Places {
         matches!(inner(action), Action::Until { condition, .. } if self.seen(condition).is_some())
     }
 
-    /// The time in which a person says whether this holds, s; none: it is not for a person alone.
+    /// Time in which a person says whether the condition holds, s; `None` if the condition is not for a person alone.
     fn seen(&self, condition: &Condition) -> Option<u64> {
         let (mut all, mut within) = (true, None);
         condition.for_each_signal(
@@ -214,7 +214,7 @@ impl Places {
         within.filter(|_| all)
     }
 
-    /// What a person sees is asked at the end of the actions.
+    /// Asks the person at the end of the actions for what a person sees.
     fn see_for(&self, step: &mut Step, tell: &Teller<'_>) {
         let asked: Vec<_> = step
             .expectations
@@ -234,7 +234,7 @@ impl Places {
         }
     }
 
-    /// What a person does is asked for before it counts as done, and what a person sees in place of waiting for it.
+    /// Asks the person to do what a person does, before it counts as done, and for what a person sees, in place of waiting.
     fn ask_for(&self, actions: &mut Vec<Action>, tell: &Teller<'_>) {
         let asked = |mut action: Action| {
             let inner_action = inner_mut(&mut action);

@@ -112,7 +112,7 @@ impl InstrumentEntry {
         }
     }
 
-    /// Where it is.
+    /// Where the instrument is.
     pub(super) fn reach(&self) -> Reach {
         let at = self.at.split_once(':').map_or("", |(_, at)| at);
         Reach::of(at).unwrap_or_else(|| Reach::Tcp(at.to_owned()))

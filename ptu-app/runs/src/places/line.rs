@@ -25,7 +25,7 @@ pub(super) const LONGEST: usize = 4096;
 /// An open line.
 pub(super) enum Line {
     Tcp(TcpStream),
-    /// A serial port, its rate, and when its last byte has passed.
+    /// A serial port, its rate, and when the last byte on the line has passed.
     Serial(Box<dyn SerialPort>, u32, Instant),
     /// What is written to the device is a message, and so is what is read.
     Usb(File, Reading),
@@ -65,7 +65,7 @@ impl Reading {
 /// A line of one or several instruments.
 pub(super) type SharedLine = Arc<Mutex<Line>>;
 
-/// The lines of a bench, kept to this program.
+/// The lines of a bench, which no other program may use meanwhile.
 #[derive(Default)]
 pub(super) struct Lines {
     locks: BTreeMap<String, Option<File>>,
@@ -105,13 +105,13 @@ impl Lines {
     }
 }
 
-/// Keeps a place to this program, for as long as the file is open; none where the computer has no locks.
+/// Locks a place for this program as long as the file is open; `None` where the computer has no locks.
 fn lock(at: &str) -> std::result::Result<Option<File>, ()> {
     let name = at.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
     let path = std::env::temp_dir().join(format!("ptu-instrument-{name}.lock"));
     let mut options = OpenOptions::new();
     let made = options.write(true).create(true).truncate(false).open(&path);
-    // Another user made it.
+    // Another user made the file: it can be read, which is enough for a lock.
     let Ok(file) = made.or_else(|_| File::open(&path)) else {
         return Ok(None);
     };
@@ -200,7 +200,7 @@ fn characters(count: f64, baud: u32) -> Duration {
     Duration::from_secs_f64(11.0 * count / f64::from(baud.max(1)))
 }
 
-/// What is between two frames of Modbus RTU (Modbus over serial line 2.5.1.1).
+/// Silence between two frames of Modbus RTU (Modbus over serial line 2.5.1.1).
 fn silence(baud: u32) -> Duration {
     characters(3.5, baud).max(Duration::from_micros(1_750))
 }
@@ -213,7 +213,7 @@ fn connect(address: &str) -> Result<TcpStream> {
     Ok(stream)
 }
 
-/// What a failed exchange says of an instrument.
+/// Fault of an instrument whose exchange failed with this error.
 pub(super) fn io_fault(error: std::io::Error) -> InstrumentFault {
     match error.kind() {
         ErrorKind::WouldBlock | ErrorKind::TimedOut => {

@@ -31,17 +31,17 @@ pub(super) struct Module {
     transaction: u16,
     stimuli: Vec<(UnitInput, Point)>,
     readings: Vec<(Signal, Point)>,
-    /// What was last written; none = not known.
+    /// Coils as they were last written; `None` if that is not known.
     written: Option<Vec<bool>>,
-    /// When it was last asked, and after how long without a question it drops its outputs.
+    /// When the module was last asked, and the time without a question after which it drops its outputs.
     asked: Instant,
     drops_after: Option<Duration>,
     coils: usize,
     inputs: u16,
-    /// Count of marker pulses, and the coil that is on until then.
+    /// Count of marker pulses, and the coil that is on for the present pulse with the pulse's end.
     pulses: Option<f64>,
     pulse: Option<(u16, Instant)>,
-    /// Since when a relay is not where it is ordered, by coil.
+    /// Since when a relay is not as ordered, by coil.
     astray: BTreeMap<u16, Instant>,
 }
 
@@ -185,7 +185,7 @@ impl Instrument for Module {
         read: &mut BTreeMap<Signal, f64>,
     ) -> Result<bool, InstrumentFault> {
         let ordered = self.ordered(wanted);
-        // Where it was not asked for so long, it has dropped them itself.
+        // A module that was not asked for so long has dropped its outputs itself.
         let dropped = |after: Duration| self.asked.elapsed() >= after;
         let known = self.inputs > 0 && !self.drops_after.is_some_and(dropped);
         let written = self.written.as_ref().filter(|_| known);

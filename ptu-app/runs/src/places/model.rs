@@ -15,24 +15,24 @@ pub(super) type Values = BTreeMap<&'static str, f64>;
 #[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
-    /// Text that the instrument's answer to `*IDN?` contains.
+    /// What its answer to `*IDN?` holds.
     pub idn: String,
     /// The question for the next entry of its error queue, whose answer begins with a number, 0 for none.
     pub error: String,
     /// Commands after connecting.
     #[serde(default)]
     pub begin: Vec<String>,
-    /// Commands that switch all outputs of the instrument off.
+    /// Commands that switch all its outputs off.
     #[serde(default)]
     pub off: Vec<String>,
-    /// Commands for each kind of stimulus.
+    /// What it does for stimuli.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Act>")]
     pub acts: BTreeMap<String, Spanned<Act>>,
     /// Questions of the instrument, by the names that readings give.
     #[serde(default)]
     pub reads: BTreeMap<String, Read>,
-    /// Least and greatest value that the instrument takes.
+    /// Least and greatest of values that it takes.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, [f64; 2]>")]
     pub ranges: BTreeMap<String, Spanned<[f64; 2]>>,
@@ -42,10 +42,10 @@ pub struct Model {
 #[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Act {
-    /// Commands that set the stimulus to its values.
+    /// With these values.
     #[schemars(with = "Vec<String>")]
     pub on: Vec<Spanned<String>>,
-    /// Commands for a carrier without a code rate; none if the instrument cannot give one.
+    /// A carrier without a code rate; none: it cannot.
     #[serde(default)]
     #[schemars(with = "Vec<String>")]
     pub unmodulated: Vec<Spanned<String>>,
@@ -60,7 +60,7 @@ pub struct Act {
 pub struct Read {
     /// The line that is sent.
     pub ask: String,
-    /// Place of the value among the numbers of the answer, counted from 0.
+    /// Which of the numbers of the answer, counted from 0.
     #[serde(default)]
     pub field: usize,
 }
@@ -149,7 +149,7 @@ impl Model {
 
 /// Values of an antenna signal.
 pub(super) fn code_values(carrier_hz: f64, rate_hz: f64, level_mv: f64) -> Values {
-    // Without a carrier there is none, whatever its level.
+    // Without a carrier there is no signal, whatever level is asked for.
     let level_mv = if carrier_hz > 0.0 { level_mv } else { 0.0 };
     Values::from([
         ("carrier_hz", carrier_hz),

@@ -1,4 +1,4 @@
-//! Between rig and unit: what has a place leaves the frames here, and what instruments read enters them.
+//! Between rig and unit: signals that have a place are taken out of the frames, and readings of instruments are put in.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant as Clock};
@@ -36,9 +36,9 @@ pub struct Placed {
     from_unit: Relay,
     pulses: [PulseRate; 2],
     wanted: Wanted,
-    /// What the unit's own frames said last.
+    /// Outputs as the unit's last frame has them.
     outputs: IoOutput,
-    /// For outputs that no frame of the unit carries.
+    /// Sender of outputs that no frame of the unit carries.
     link: Link,
 }
 
@@ -62,7 +62,7 @@ impl Placed {
     /// Connects, checks and switches off each instrument, and reads each once.
     ///
     /// # Errors
-    /// The first that does not do its part.
+    /// Fault of the first instrument that does not do its part.
     pub fn open(places: &Arc<Places>) -> Result<Self, LinkTrouble> {
         let lines = Lines::of(places).map_err(|(name, fault)| trouble(&name, fault))?;
         let mut placed = Self {
@@ -111,7 +111,7 @@ impl Placed {
     pub fn check(places: &Places, rounds: u32) -> Vec<Checked> {
         let mut lines = match Lines::of(places) {
             Ok(lines) => lines,
-            // Another program works with them: nothing is touched.
+            // Another program works with an instrument: nothing is touched.
             Err((name, fault)) => return vec![(name, Err(fault))],
         };
         let mut tried = |name: &String| {
@@ -137,7 +137,7 @@ impl Placed {
             let slowest = (0..rounds).try_fold(Duration::ZERO, |slowest, _| {
                 round().map(|took| slowest.max(took))
             });
-            // A relay that is stuck leaves others closed.
+            // Where one relay is stuck, others may be closed still.
             let off = instrument.off();
             let slowest = slowest?;
             let poll_ms = places.instruments[name].poll_ms as f64;
@@ -147,7 +147,7 @@ impl Placed {
         names.map(|name| (name.clone(), tried(name))).collect()
     }
 
-    /// What of the rig's bytes the unit gets as frames; the rest is wanted of the instruments.
+    /// Passes on what the unit gets as frames of the rig's bytes; orders the rest from the instruments.
     pub fn take(&mut self, now: Instant, bytes: &[u8], out: &mut Vec<u8>) {
         self.to_unit.push(bytes);
         while let Some((mut header, message)) = self.to_unit.next(out) {

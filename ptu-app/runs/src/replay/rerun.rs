@@ -74,7 +74,7 @@ impl ReplayMatch {
 /// The result of a replay.
 #[derive(Debug)]
 pub struct Rerun {
-    /// The run it was recorded as.
+    /// Run as which the replay was recorded.
     pub run_id: Id,
     pub trace_id: Id,
     /// Serial number of the unit.

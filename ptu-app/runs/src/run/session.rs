@@ -21,7 +21,7 @@ use super::trace_data::trace_data;
 use crate::link::Pace;
 use crate::stop::Stop;
 
-/// A bench less behind than this is in time.
+/// A bench that is less behind than this is in time.
 const IN_TIME: Duration = Duration::from_us(2 * SCAN.as_us());
 
 /// A bench, its recorder and its pace.
@@ -205,7 +205,7 @@ impl<L: UnitLink> Session<L> {
         }
     }
 
-    /// Time in which the unit stood still as well is none, for both: nothing of what it does is spoiled.
+    /// Leaves out the time in which bench and unit stood still together: it spoils nothing that the unit does.
     fn keep_in_step(&mut self) {
         let pause = self.bench.link.take_pause();
         let now = self.bench.now();

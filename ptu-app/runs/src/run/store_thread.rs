@@ -25,8 +25,8 @@ const QUEUE: usize = 4096;
 /// Steps reach the file at least this often.
 const FLUSH: Duration = Duration::from_millis(250);
 
-/// How long a run under way waits for another writer. It would lose all that is still to come, and its thread
-/// keeps only the bench waiting.
+/// How long a run under way waits for another writer: a run that gave up would lose all that is still to come, and while it
+/// waits only the bench waits with it.
 #[derive(Clone, Copy)]
 struct BusyTimeout {
     /// After this time the bench is stopped: a unit is not driven for a run that may be lost.
@@ -49,11 +49,11 @@ pub struct RunStore {
 }
 
 impl RunStore {
-    /// Begins the run: its row is on the disk when this returns. What is to be said goes to `line_printer`. Should
+    /// Begins the run: its row is on the disk when this returns. Lines about the run go to `line_printer`. Should
     /// writing fail later, `stop` is pressed at once: a unit is not driven for a run that is not stored.
     ///
     /// # Errors
-    /// The database does not take it.
+    /// The database does not take the run.
     pub fn begin(
         store: Store,
         record: RunRecord,
@@ -102,8 +102,8 @@ impl RunStore {
         let _ = self.entries.send(entry);
     }
 
-    /// Ends the run and gives the store back that holds it: if the history does not, that of the file beside where it is
-    /// kept, and why and where in a sentence.
+    /// Ends the run and gives back the store that holds the run: the history, or the file beside, with a sentence that says
+    /// why and where.
     ///
     /// # Errors
     /// The first error of writing.
@@ -149,7 +149,7 @@ fn write(
     })
 }
 
-/// Records all that comes. An entry that was not taken comes back with the error.
+/// Records all entries that come. An entry that the database did not take comes back with the error.
 fn write_entries(
     writer: &mut RunWriter<'_>,
     kept: &mut RecordedIds,

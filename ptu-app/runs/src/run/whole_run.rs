@@ -79,10 +79,10 @@ fn run_as_prepared(
     run_on(&mut connected, &began, plan, &setup, store, stop, listener)
 }
 
-/// The unit, or what the run came to that could not reach it.
+/// The unit that was reached, or the outcome of the run that could not reach it.
 type Reached = Result<Connected, Box<Outcome>>;
 
-/// Reaches the unit; a run that cannot is recorded, too, and over.
+/// Reaches the unit; a run that cannot reach it is recorded and ended.
 fn reach(
     plan: &RunPlan,
     setup: &BenchSetup,
@@ -188,9 +188,8 @@ pub fn run_on(
     Ok((store, outcome))
 }
 
-/// Takes the procedures' streams one after the other. It steers no bench: what it knows comes later than
-/// what a bench does next. What was `due` and is in none of the streams, because the run was stopped, is recorded as
-/// not begun.
+/// Takes the procedures' streams one after the other, and steers no bench, because a bench has gone on when its events are
+/// taken here. Procedures that were `due` and are in no stream, because the run was stopped, are recorded as not begun.
 fn collect(
     procedures: impl IntoIterator<Item = ProcedureStream>,
     collector: &mut Collector<'_>,
