@@ -2,7 +2,7 @@
 //! it.
 
 use ptu_runs::signal::{
-    Level, NotUnderstood, Picture, Reading, Receivers, Source, Span, Tacho, Why,
+    Level, MOST_CHANNELS, NotUnderstood, Picture, Reading, Source, Span, Tacho, Why,
 };
 use ptu_runs::table::Table as TextTable;
 
@@ -130,7 +130,7 @@ pub fn not_understood(of: &NotUnderstood, words: &Words) -> String {
             fill(said.clipped, &[("n", channel), ("samples", samples)])
         }
         Why::Channels(n) => {
-            let most = Receivers::MOST_CHANNELS;
+            let most = MOST_CHANNELS;
             fill(said.many_channels, &[("n", n), ("most", &most)])
         }
         Why::Broken(why) => fill(said.broken, &[("why", why)]),

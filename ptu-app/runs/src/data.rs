@@ -164,16 +164,12 @@ impl ScriptsDirectory {
     /// # Errors
     /// There is none of that name, or it is wrong.
     pub fn line(&self, name: &str) -> Result<DataFile<Line>, Failure> {
-        let read = |text: &str| Line::from_toml(text).map(|line| (line, line::checksum(text)));
-        let file = self.load("lines", name, "line", read)?;
-        let (content, crc) = file.content;
-        Ok(DataFile {
-            name: file.name,
-            settings: file.settings,
-            content,
-            crc,
-            sha256: file.sha256,
-        })
+        let mut crc = 0;
+        let file = self.load("lines", name, "line", |text| {
+            crc = line::checksum(text);
+            Line::from_toml(text)
+        })?;
+        Ok(DataFile { crc, ..file })
     }
 
     /// The train called `name` in `trains/`, or of a file.
@@ -292,7 +288,7 @@ impl ScriptsDirectory {
     /// The fault modes of these names.
     ///
     /// # Errors
-    /// One of them is not in the catalogue.
+    /// The catalogue does not have one of the names.
     pub fn chosen_faults(&self, names: &[String]) -> Result<Vec<FaultMode>, Failure> {
         if names.is_empty() {
             return Ok(Vec::new());

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use btu_rig::procedure::Finding;
+use btu_rig::procedure::{Finding, Verdict};
 use btu_rig::rig::LinkTrouble;
 use fault_db::{Id, StoreError, TraceError};
 use script_files::ScriptsError;
@@ -29,6 +29,19 @@ impl Exit {
     /// The number the shell sees.
     pub const fn code(self) -> u8 {
         self as u8
+    }
+}
+
+/// Exit code of a command that answers with the verdict of a run.
+impl From<Verdict> for Exit {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Passed | Verdict::Skipped => Self::Passed,
+            Verdict::Failed => Self::Failed,
+            // Not all that a verdict on the unit takes was run.
+            Verdict::Error | Verdict::Inconclusive => Self::Bench,
+            Verdict::Aborted => Self::Aborted,
+        }
     }
 }
 

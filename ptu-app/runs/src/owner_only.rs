@@ -5,15 +5,7 @@ use std::path::Path;
 use crate::failure::{Failure, FileTrouble, Why};
 use crate::platform;
 
-/// Makes a folder and those above it, as far as they are missing, for their owner alone.
-///
-/// # Errors
-/// The system's.
-pub fn folder(path: &Path) -> std::io::Result<()> {
-    platform::make_folder(path)
-}
-
-/// Makes the folder in which a file is to lie, as [`folder`] does.
+/// Makes the folder in which a file is to lie, and the folders above it, as far as they are missing, for their owner alone.
 ///
 /// # Errors
 /// The folder cannot be made.
@@ -21,7 +13,7 @@ pub fn folder_of(file: &Path) -> Result<(), Failure> {
     let Some(path) = file.parent().filter(|f| !f.as_os_str().is_empty()) else {
         return Ok(());
     };
-    folder(path).map_err(|error| {
+    platform::make_folder(path).map_err(|error| {
         Failure::bench(FileTrouble::Unmade(
             path.display().to_string(),
             Why::of(error),

@@ -6,13 +6,37 @@ use btu_rig::procedure::plan::Connection;
 use btu_rig::procedure::{
     Findings, Measurement, Outside, OutsideStep, Procedure, ResultKind, StepResult, Verdict,
 };
-use fault_db::{FaultRecord, MeasurementRecord, StepKind, StepRecord};
+use fault_db::{FaultRecord, MeasurementRecord, RunRecord, StepKind, StepRecord, UnitRecord};
 use protocol::lru;
 
+use crate::platform;
 use crate::run::FaultSeen;
 
 /// Folder of the departure tests.
 pub const DEPARTURE: &str = "departure/";
+
+/// Record of a run that this process makes of a unit with this configuration, begun then, µs UTC; `source` says where the
+/// unit is.
+pub(crate) fn new_run(
+    serial: String,
+    config_name: String,
+    source: String,
+    started_at_us: i64,
+) -> RunRecord {
+    RunRecord {
+        unit: UnitRecord {
+            serial,
+            kind: "atc".into(),
+            config_name,
+            ..UnitRecord::default()
+        },
+        source,
+        started_at_us,
+        app_version: env!("CARGO_PKG_VERSION").into(),
+        owner: platform::this_process(),
+        ..RunRecord::default()
+    }
+}
 
 /// A verdict as the database stores it.
 pub fn stored(verdict: Verdict) -> fault_db::Verdict {
@@ -60,7 +84,7 @@ pub fn step_record(procedure: &str, result: StepResult, started_bench_us: i64) -
     }
 }
 
-/// A measurement as it is stored: its uncertainty, if it has one, is a measurement of its own.
+/// A measurement as it is stored: the uncertainty, if there is one, is stored as another measurement.
 fn records(measured: Measurement) -> impl Iterator<Item = MeasurementRecord> {
     let verdict = stored(measured.verdict);
     let unit = String::from(measured.unit);

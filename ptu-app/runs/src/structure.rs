@@ -6,6 +6,7 @@
 //! file or about the unit; the file lists those that are understood.
 
 mod chain;
+mod link;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -21,7 +22,8 @@ use serde::Deserialize;
 
 use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, FileTrouble};
-pub use chain::{Chain, Link, LinkOutput};
+use link::WayStep;
+pub use link::{Chain, Link, LinkOutput};
 
 /// Where it stands in the scripts directory.
 pub const FILE: &str = "units/structure.toml";
@@ -99,18 +101,16 @@ pub struct KnownOffWay {
 pub struct OffWay {
     /// Fault mode.
     pub fault: String,
-    /// The first step of its procedure that it fails.
+    /// First step of the procedure that the fault mode fails.
     pub step: CheckName,
 }
 
 /// The parts that each signal comes through.
 #[derive(Debug)]
 pub struct Structure {
-    signals: BTreeMap<Signal, BTreeSet<LruId>>,
-    events: BTreeMap<Event, BTreeSet<LruId>>,
-    /// As it is written: what each is made of, and by which parts.
-    steps: BTreeMap<Signal, WayStep>,
-    event_steps: BTreeMap<Event, WayStep>,
+    /// Last step of the way of each signal and event, as the file has it.
+    steps: BTreeMap<LinkOutput, WayStep>,
+    /// Parts on the way of every signal and event.
     everywhere: Vec<LruId>,
     on_the_train: Vec<LruId>,
     /// Parts that checks do not always tell apart, and what several parts share.
@@ -149,48 +149,45 @@ impl Structure {
             ));
         }
         let mut steps = BTreeMap::new();
-        let mut events = Vec::new();
         for way in &written.ways {
+            let from = way.from.iter().map(|name| signal(name));
             let made = WayStep {
                 parts: way.parts.clone(),
-                from: all(&way.from, signal)?,
+                from: from.collect::<Result<_, _>>()?,
             };
-            for signal in all(&way.signals, signal)? {
-                if steps.insert(signal, made.clone()).is_some() {
-                    return Err(format!("signal {} has two ways", signal.name()));
+            for name in &way.signals {
+                if steps.insert(signal(name)?, made.clone()).is_some() {
+                    return Err(format!("signal {name} has two ways"));
                 }
             }
-            let of_way = all(&way.events, event)?.into_iter();
-            events.extend(of_way.map(|event| (event, made.clone())));
+            for name in &way.events {
+                steps.insert(event(name)?, made.clone());
+            }
         }
         let of_unit = Signal::ALL.iter();
         let mut of_unit = of_unit.filter(|signal| signal.definition().origin == Origin::Unit);
-        if let Some(signal) = of_unit.find(|signal| !steps.contains_key(signal)) {
+        if let Some(signal) =
+            of_unit.find(|signal| !steps.contains_key(&LinkOutput::Signal(**signal)))
+        {
             return Err(format!("the unit's signal {} has no way", signal.name()));
         }
-        let makers = steps.iter().map(|(signal, step)| {
-            let parts = step.parts.iter().cloned().collect();
-            (signal.name().to_owned(), parts)
-        });
-        let makers = makers.collect();
-        let is_recorded = |signal: &&Signal| signal.definition().origin == Origin::Rig;
-        let on_the_way = steps.iter().map(|(signal, step)| {
-            let from = step.from.iter().filter(is_recorded);
-            let from = from.map(|signal| signal.name().to_owned());
-            (signal.name().to_owned(), from.collect())
-        });
-        let on_the_way = on_the_way.collect();
-        let of_signals = steps
+        let (mut makers, mut on_the_way) = (BTreeMap::new(), BTreeMap::new());
+        let is_recorded = |signal: &Signal| signal.definition().origin == Origin::Rig;
+        for (signal, step) in steps
             .iter()
-            .map(|(signal, step)| (*signal, upstream(step, &steps, &written.everywhere)));
-        let of_events = events
-            .iter()
-            .map(|(event, step)| (*event, upstream(step, &steps, &written.everywhere)));
+            .filter_map(|(made, step)| Some((made.signal()?, step)))
+        {
+            let name = signal.name().to_owned();
+            makers.insert(name.clone(), step.parts.iter().cloned().collect());
+            let from = step
+                .from
+                .iter()
+                .filter_map(|made| made.signal())
+                .filter(is_recorded);
+            on_the_way.insert(name, from.map(|signal| signal.name().to_owned()).collect());
+        }
         Ok(Self {
-            signals: of_signals.collect(),
-            events: of_events.collect(),
             steps,
-            event_steps: events.into_iter().collect(),
             everywhere: written.everywhere,
             on_the_train: written.on_the_train,
             relations: Relations {
@@ -206,8 +203,25 @@ impl Structure {
     }
 
     /// The signals that have a way, each with the parts that it comes through.
-    pub fn signals(&self) -> impl Iterator<Item = (Signal, &BTreeSet<LruId>)> {
-        self.signals.iter().map(|(signal, parts)| (*signal, parts))
+    pub fn signals(&self) -> impl Iterator<Item = (Signal, BTreeSet<LruId>)> {
+        let signals = self.steps.keys().filter_map(|made| made.signal());
+        signals.map(|signal| (signal, self.way(LinkOutput::Signal(signal))))
+    }
+
+    /// All parts up to the sensors, whatever turns the ways take, and those that are everywhere; none without a way.
+    fn way(&self, last: LinkOutput) -> BTreeSet<LruId> {
+        let Some(step) = self.steps.get(&last) else {
+            return BTreeSet::new();
+        };
+        let mut parts: BTreeSet<_> = step.parts.iter().chain(&self.everywhere).cloned().collect();
+        let (mut seen, mut ahead) = (BTreeSet::new(), step.from.clone());
+        while let Some(made) = ahead.pop() {
+            if let Some(step) = self.steps.get(&made).filter(|_| seen.insert(made)) {
+                parts.extend(step.parts.iter().cloned());
+                ahead.extend(&step.from);
+            }
+        }
+        parts
     }
 
     /// The parts on the way of what a step looks at, its signals and the events that it waits for, and the part that it
@@ -218,11 +232,11 @@ impl Structure {
             way.extend(self.on_the_train.iter().cloned());
         }
         step.for_each_signal(&mut |signal| {
-            way.extend(self.signals.get(&signal).into_iter().flatten().cloned());
+            way.extend(self.way(LinkOutput::Signal(signal)));
         });
         for expectation in &step.expectations {
             if let Expectation::Logs { event, .. } = expectation {
-                way.extend(self.events.get(event).into_iter().flatten().cloned());
+                way.extend(self.way(LinkOutput::Event(*event)));
                 way.extend(event.definition().lru.clone());
             }
         }
@@ -295,30 +309,6 @@ impl From<WrittenShared> for Shared {
     }
 }
 
-/// One step of a way: the parts that make a signal, and what they make it of.
-#[derive(Clone, Debug)]
-struct WayStep {
-    parts: Vec<LruId>,
-    from: Vec<Signal>,
-}
-
-/// All parts up to the sensors, whatever turns the ways take, and those that are everywhere.
-fn upstream(
-    last: &WayStep,
-    steps: &BTreeMap<Signal, WayStep>,
-    everywhere: &[LruId],
-) -> BTreeSet<LruId> {
-    let mut parts: BTreeSet<_> = last.parts.iter().chain(everywhere).cloned().collect();
-    let (mut seen, mut ahead) = (BTreeSet::new(), last.from.clone());
-    while let Some(signal) = ahead.pop() {
-        if let Some(step) = steps.get(&signal).filter(|_| seen.insert(signal)) {
-            parts.extend(step.parts.iter().cloned());
-            ahead.extend(&step.from);
-        }
-    }
-    parts
-}
-
 /// Whether a mode fails a step by what the step judges: what the unit logs meanwhile fails any step.
 fn fails(mode: &Mode, place: usize) -> bool {
     let fails = |cell: &Cell| {
@@ -336,17 +326,16 @@ fn fails(mode: &Mode, place: usize) -> bool {
     cells.any(fails)
 }
 
-fn all<T>(names: &[String], of: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, String> {
-    names.iter().map(|name| of(name)).collect()
+fn signal(name: &str) -> Result<LinkOutput, String> {
+    let signal = Signal::from_name(name);
+    let signal =
+        signal.ok_or_else(|| format!("no signal \"{name}\"; `ptu catalog signals` lists them"));
+    signal.map(LinkOutput::Signal)
 }
 
-fn signal(name: &str) -> Result<Signal, String> {
-    Signal::from_name(name)
-        .ok_or_else(|| format!("no signal \"{name}\"; `ptu catalog signals` lists them"))
-}
-
-fn event(name: &str) -> Result<Event, String> {
-    Event::from_name(name).ok_or_else(|| format!("no event \"{name}\""))
+fn event(name: &str) -> Result<LinkOutput, String> {
+    let event = Event::from_name(name).ok_or_else(|| format!("no event \"{name}\""));
+    event.map(LinkOutput::Event)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use fault_db::read_regular_file;
 
 use crate::failure::{Failure, FileTrouble, Why};
 use crate::new_file::{Kind, NewFile, cannot_write, head, kind};
-use crate::owner_only;
+use crate::platform;
 
 /// Longest script, data file or other text that is read, bytes.
 pub const LONGEST_FILE: u64 = 4 << 20;
@@ -74,7 +74,7 @@ pub fn write_text(file: &Path, text: impl AsRef<[u8]>) -> Result<(), Failure> {
 pub fn keep(file: &Path, value: &impl serde::Serialize) -> Result<(), Failure> {
     let failed = |error: &dyn Display| cannot_write(file, error);
     if let Some(folder) = file.parent() {
-        owner_only::folder(folder).map_err(|error| failed(&error))?;
+        platform::make_folder(folder).map_err(|error| failed(&error))?;
     }
     let content = serde_json::to_vec_pretty(value).map_err(|error| failed(&error))?;
     let mut new = NewFile::begin(file, kind::OWN)?;

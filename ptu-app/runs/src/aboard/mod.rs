@@ -136,7 +136,7 @@ impl UnitAboard {
         })
     }
 
-    /// Switches the unit's supply off, or on again: it is powered up again then.
+    /// Switches the unit's supply off, or on again, which powers the unit up.
     pub fn set_power(&mut self, on: bool) {
         let now = self.train.now();
         self.train.link.set_power(now, on);

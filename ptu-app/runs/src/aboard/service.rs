@@ -14,7 +14,7 @@ const OPEN: Duration = Duration::from_ms(20_000);
 const CLOSED: Duration = Duration::from_ms(3_000);
 /// How long a train takes to come to rest in a depot, at most: from 100 km/h at 1 m/s².
 const STANDS_WITHIN: Duration = Duration::from_ms(30_000);
-/// A button is pressed and what follows it has come.
+/// Time in which a button is pressed and the unit has answered.
 const SETTLES: Duration = Duration::from_ms(1_500);
 
 /// Doors at a station.
@@ -31,7 +31,7 @@ pub enum Doors {
 pub struct Arrival {
     pub section: u16,
     pub outcome: Outcome,
-    /// The doors at its end.
+    /// Doors at the end of the section.
     pub doors: Doors,
 }
 

@@ -1,4 +1,4 @@
-//! A file of runs while it is written, and the runs in memory.
+//! A file of runs while it is written.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -20,37 +20,24 @@ use crate::whole_file;
 /// A file has at most this many bytes: some twenty thousand runs of the suite.
 pub(super) const MOST_BYTES: u64 = 1 << 30;
 
-/// Runs by their names, and the file that keeps them, if one does.
-pub(super) struct KeptRuns<R> {
-    runs: BTreeMap<String, R>,
-    /// The file that keeps them.
-    pub file: Option<RunsFile>,
-}
-
-/// The file, open at its end.
+/// A file of runs, open at its end.
 pub(super) struct RunsFile {
     path: PathBuf,
-    /// And the first error of writing.
+    /// The open file, and the first error of writing to the file.
     state: Mutex<(File, Option<Failure>)>,
 }
 
-impl<R> Default for KeptRuns<R> {
-    fn default() -> Self {
-        Self {
-            runs: BTreeMap::new(),
-            file: None,
-        }
-    }
-}
-
-impl<R: DeserializeOwned> KeptRuns<R> {
-    /// Reads a file, which is made if it is not there, and opens it for more runs. What is damaged in it is
-    /// reported.
+impl RunsFile {
+    /// Reads a file, which is made if it is not there, and opens it for more runs: the runs by their names, and the file.
+    /// Damage in the file is reported.
     ///
     /// # Errors
     /// The file cannot be read or written, another process writes it, it is a file of another kind, or it holds runs
     /// of another program or other scripts.
-    pub fn open(path: &Path, head: &Head) -> Result<Self, Failure> {
+    pub fn open<R: DeserializeOwned>(
+        path: &Path,
+        head: &Head,
+    ) -> Result<(BTreeMap<String, R>, Self), Failure> {
         let wrong = |why| Failure::usage(KeepTrouble::Unusable(path.display().to_string(), why));
         if path.exists() {
             // No device or pipe.
@@ -98,38 +85,15 @@ impl<R: DeserializeOwned> KeptRuns<R> {
                 .map_err(|error| wrong(Why::of(error)))?;
         }
         let runs = found.map(|found| found.runs).unwrap_or_default();
-        Ok(Self {
-            runs: runs
-                .into_iter()
-                .map(|(name, (run, _))| (name, run))
-                .collect(),
-            file: Some(RunsFile {
-                path: path.to_owned(),
-                state: Mutex::new((file, None)),
-            }),
-        })
-    }
-}
-
-impl<R> KeptRuns<R> {
-    /// Whether the run of this name is among them.
-    pub fn has(&self, name: &str) -> bool {
-        self.runs.contains_key(name)
+        let runs = runs.into_iter().map(|(name, (run, _))| (name, run));
+        let file = Self {
+            path: path.to_owned(),
+            state: Mutex::new((file, None)),
+        };
+        Ok((runs.collect(), file))
     }
 
-    /// Adds a run that was made now.
-    pub fn put(&mut self, name: String, run: R) {
-        self.runs.insert(name, run);
-    }
-
-    /// Takes a run out.
-    pub fn take(&mut self, name: &str) -> Option<R> {
-        self.runs.remove(name)
-    }
-}
-
-impl RunsFile {
-    /// Appends a run: a program that is killed loses no other. False once the file takes none.
+    /// Appends the record of a run, so that a program that is killed loses no other run. False once writing has failed.
     pub fn append(&self, record: &[u8]) -> bool {
         let Ok(mut state) = self.state.lock() else {
             return false;

@@ -148,14 +148,18 @@ pub fn missing(files: &[PathBuf], shards: Option<u32>) -> Result<Missing, Failur
     let shards = shards
         .or_else(|| all.iter().find_map(made_with))
         .unwrap_or(1);
-    let mut of_shards = BTreeMap::<u32, (usize, usize)>::new();
+    let mut of_shards = BTreeMap::<u32, ShardMissing>::new();
     for i in 0..head.plan.len() {
         let name = head.plan.name(i);
         let is_there = all.iter().any(|read| read.found.runs.contains_key(&name));
         let shard = Shard::of_run(i, shards).number;
-        let (runs, missing) = of_shards.entry(shard).or_default();
-        *runs += 1;
-        *missing += usize::from(!is_there);
+        let of_shard = of_shards.entry(shard).or_insert(ShardMissing {
+            shard,
+            runs: 0,
+            missing: 0,
+        });
+        of_shard.runs += 1;
+        of_shard.missing += usize::from(!is_there);
     }
     let damage = all.iter().flat_map(|read| {
         let told = |told: &String| format!("{}: {told}", read.path.display());
@@ -164,17 +168,12 @@ pub fn missing(files: &[PathBuf], shards: Option<u32>) -> Result<Missing, Failur
     Ok(Missing {
         what: head.plan.what.clone(),
         runs: head.plan.len(),
-        missing: of_shards.values().map(|(_, missing)| missing).sum(),
+        missing: of_shards.values().map(|of_shard| of_shard.missing).sum(),
         shards,
         damage: damage.collect(),
         of_shards: of_shards
-            .into_iter()
-            .filter(|(_, (_, missing))| *missing > 0)
-            .map(|(shard, (runs, missing))| ShardMissing {
-                shard,
-                runs,
-                missing,
-            })
+            .into_values()
+            .filter(|of_shard| of_shard.missing > 0)
             .collect(),
     })
 }

@@ -14,12 +14,13 @@ mod shard;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use file::{KeptRuns, RunsFile};
+use file::RunsFile;
 pub use merge::{Merged, Missing, ShardMissing, merge, missing};
 pub use plan::{Head, Plan};
 pub use shard::Shard;
@@ -66,21 +67,24 @@ pub fn make<R: Serialize + DeserializeOwned + Send + Sync>(
     run: impl Fn(usize) -> Option<R> + Sync,
 ) -> Result<BatchResult<R>, Failure> {
     head.shard = keep.shard;
-    let mut known = match &keep.file {
-        Some(file) => KeptRuns::open(file, &head)?,
-        None => KeptRuns::default(),
+    let (mut known, file) = match &keep.file {
+        Some(path) => {
+            let (runs, file) = RunsFile::open(path, &head)?;
+            (runs, Some(file))
+        }
+        None => (BTreeMap::new(), None),
     };
     let plan = &head.plan;
     let ours: Vec<usize> = keep.ours(plan.len()).collect();
     let missing: Vec<usize> = ours
         .iter()
         .copied()
-        .filter(|i| !known.has(&plan.name(*i)))
+        .filter(|i| !known.contains_key(&plan.name(*i)))
         .collect();
     let before = ours.len() - missing.len();
     let run_one = |i: usize| {
         let run = run(missing[i])?;
-        if let Some(file) = known.file.as_ref()
+        if let Some(file) = &file
             && !file.append(&record::of_run(plan.name(missing[i]), &run))
         {
             // The campaign stops if a run could not be kept.
@@ -95,22 +99,24 @@ pub fn make<R: Serialize + DeserializeOwned + Send + Sync>(
         &mut |done| tell(before + done),
         run_one,
     );
-    if let Some(failure) = known.file.as_ref().and_then(RunsFile::take_failure) {
+    if let Some(failure) = file.as_ref().and_then(RunsFile::take_failure) {
         return Err(failure);
     }
     for (i, run) in made {
         if let Some(run) = run {
-            known.put(plan.name(missing[i]), run);
+            known.insert(plan.name(missing[i]), run);
         }
     }
-    let is_whole = ours.iter().all(|i| known.has(&plan.name(*i)));
-    if is_whole && let Some(file) = known.file.as_ref() {
+    let is_whole = ours.iter().all(|i| known.contains_key(&plan.name(*i)));
+    if is_whole && let Some(file) = &file {
         file.put_in_order(&head)?;
     }
     if is_whole && keep.shard.is_some() {
         return Ok(BatchResult::Part(ours.len()));
     }
-    let runs: Vec<Option<R>> = (0..plan.len()).map(|i| known.take(&plan.name(i))).collect();
+    let runs: Vec<Option<R>> = (0..plan.len())
+        .map(|i| known.remove(&plan.name(i)))
+        .collect();
     if !is_whole {
         return Ok(BatchResult::Stopped(runs));
     }

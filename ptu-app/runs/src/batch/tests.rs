@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use super::file::KeptRuns;
+use super::file::RunsFile;
 use super::record::{Found, head_record, of_run};
 use super::*;
 
@@ -159,22 +159,21 @@ fn a_run_is_kept_for_its_name_alone_and_for_its_scripts_alone() {
     let folder = tempfile::tempdir().expect("a folder for the test");
     let file = folder.path().join("runs");
     let head = head("a", 9);
-    let open = |head: &Head| KeptRuns::<Vec<String>>::open(&file, head);
-    let kept = open(&head).expect("no file yet");
-    let appended = kept.file.as_ref().expect("its file");
+    let open = |head: &Head| RunsFile::open::<Vec<String>>(&file, head);
+    let (_, appended) = open(&head).expect("no file yet");
     for number in 1..9 {
         assert!(appended.append(&of_run(head.plan.name(number), &result(number))));
     }
     let twice = open(&head).map(drop).expect_err("two at once");
     assert!(twice.to_string().contains("another campaign"), "{twice}");
-    drop(kept);
+    drop(appended);
     // Another plan of the same scripts finds the runs that it has in common with this one.
-    let mut read = open(&self::head("a", 12)).expect("read");
-    assert!(!read.has("run 0") && !read.has("run 10"));
+    let (mut read, appended) = open(&self::head("a", 12)).expect("read");
+    assert!(!read.contains_key("run 0") && !read.contains_key("run 10"));
     for number in 1..9 {
-        assert_eq!(read.take(&head.plan.name(number)), Some(result(number)));
+        assert_eq!(read.remove(&head.plan.name(number)), Some(result(number)));
     }
-    drop(read);
+    drop(appended);
     let other = open(&self::head("b", 9)).map(drop);
     assert!(
         other
@@ -223,7 +222,7 @@ fn a_damaged_file_gives_the_runs_put_in_or_fewer_and_names_the_record() {
     let file = folder.path().join("cut");
     for length in 0..first.len() {
         std::fs::write(&file, &whole[..length]).expect("written");
-        drop(KeptRuns::<Vec<String>>::open(&file, &head).expect("begun again"));
+        drop(RunsFile::open::<Vec<String>>(&file, &head).expect("begun again"));
         assert!(
             std::fs::read(&file).expect("its bytes") == first,
             "cut at {length}"

@@ -16,7 +16,8 @@ use protocol::{Duration, Instant, SCAN};
 
 use super::event::BenchEvent;
 use super::live_state::{LiveState, Phase};
-use super::{Order, RunOrder, permit};
+use super::order::{Order, RunOrder};
+use super::permit::permit;
 use crate::failure::RunTrouble;
 use crate::link::{Pace, keep_time};
 use crate::run::{
@@ -120,7 +121,7 @@ impl BenchThread {
         }
     }
 
-    /// Monitors the unit until an order ends that; then makes outputs safe and disarms. The flag says whether
+    /// Monitors the unit until an order ends the monitoring; then makes outputs safe and disarms. The flag says whether
     /// safe outputs were confirmed.
     fn watch(&self, connected: &mut Connected, orders: &Receiver<Order>) -> (WatchEnd, bool) {
         match connected {
@@ -234,14 +235,13 @@ impl BenchThread {
         }
     }
 
-    /// An order given before the bench was last made safe is not executed, nor is one that is no longer
-    /// permitted.
+    /// Whether a stimulus is executed: not if it was ordered before the bench was last made safe, or is no longer permitted.
     fn is_permitted(&self, stimulus: &Stimulus, bench_epoch: u64) -> bool {
         let live = self.live_state.read();
         live.bench_epoch == bench_epoch && permit(stimulus, &live).is_ok()
     }
 
-    /// Applies a stimulus; its text if the bench accepted it.
+    /// Applies a stimulus; returns the text of the stimulus if the bench accepted it.
     fn apply<L: UnitLink>(&self, session: &mut Session<L>, stimulus: &Stimulus) -> Option<String> {
         let now = session.now();
         let asked = stimulus.to_string();
@@ -282,7 +282,7 @@ impl BenchThread {
         });
     }
 
-    /// Sends an event; after the worker is dropped it is lost.
+    /// Sends an event to the window; it is lost once the worker has been dropped.
     fn tell(&self, event: BenchEvent) {
         let _ = self.events.send(event);
         self.live_state.wake();
@@ -314,8 +314,7 @@ mod tests {
     use std::time::{Duration, Instant};
 
     use crate::bench_worker::{BenchWorker, LiveState, Phase};
-    use crate::data::ScriptsDirectory;
-    use crate::run::BenchChoice;
+    use crate::test_support;
 
     /// Goal: an idle unit is never shown without its identity. Method: the state is read at each wake-up.
     #[test]
@@ -336,11 +335,7 @@ mod tests {
         };
         let mut worker = BenchWorker::new(Arc::new(wake)).expect("a thread");
         assert!(live_state.set(worker.live_state.clone()).is_ok());
-        let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-        let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-        let choice = BenchChoice::default();
-        let setup = choice.setup(&scripts).expect("its configuration");
-        worker.connect(setup);
+        worker.connect(test_support::setup(&[]));
         let began = Instant::now();
         while known.load(Ordering::Relaxed) == 0 {
             assert!(began.elapsed() < Duration::from_secs(60), "no unit");

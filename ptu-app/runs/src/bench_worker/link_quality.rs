@@ -19,7 +19,7 @@ pub struct LinkQuality {
 }
 
 impl LinkQuality {
-    /// Takes the counts as they are now; those of another bench begin at 0.
+    /// Takes the present counts; counts of a new bench begin at 0.
     pub fn note(&mut self, now: Instant, counters: &Counters) {
         let taken = Channel::ALL
             .iter()

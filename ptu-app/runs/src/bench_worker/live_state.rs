@@ -13,8 +13,8 @@ use protocol::message::{Identity, SelfTestItem};
 use protocol::signal::Sample;
 use protocol::{Duration, Instant};
 
-use super::waking::{Waking, Watched};
-use super::{LinkQuality, Wake};
+use super::link_quality::LinkQuality;
+use super::waking::{Wake, Waking, Watched};
 use crate::pool::held;
 use crate::run::RunControl;
 
@@ -73,7 +73,7 @@ pub struct LiveState {
     live: Mutex<LiveData>,
     requests: Mutex<OperatorRequests>,
     pending: Mutex<Pending>,
-    /// What the window shows, by its place among [`Watched::ALL`].
+    /// What the window shows, as an index into [`Watched::ALL`].
     watched: AtomicUsize,
     began: time::Instant,
     wake: Wake,

@@ -12,6 +12,7 @@ mod bench_thread;
 mod event;
 mod link_quality;
 mod live_state;
+mod order;
 mod permit;
 mod progress;
 mod waking;
@@ -25,37 +26,16 @@ use btu_rig::stimulus::Stimulus;
 pub use event::BenchEvent;
 pub use link_quality::LinkQuality;
 pub use live_state::{HISTORY, LiveData, LiveState, Phase};
+pub use order::RunOrder;
 pub use permit::{Refused, permit};
 pub use progress::{ProcedureProgress, Progress, RunPosition, Waiting, outside_place};
-pub use waking::Watched;
+pub use waking::{Wake, Watched};
 
 use crate::failure::{Failure, RunTrouble};
-use crate::run::{BenchSetup, RunPlan};
+use crate::run::BenchSetup;
 use crate::stop::Stop;
 use bench_thread::BenchThread;
-
-/// Told when there is something new to look at; must not block.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
-
-/// What is to be run and where it is recorded.
-pub struct RunOrder {
-    /// Procedures and steps.
-    pub plan: RunPlan,
-    /// The database the run is recorded in, open: a bench does not wait for one.
-    pub store: fault_db::Store,
-    /// The embedded unit runs at the wall clock's pace.
-    pub realtime: bool,
-}
-
-enum Order {
-    Connect(Box<BenchSetup>, Stop),
-    Disconnect,
-    /// A manual stimulus, and the bench epoch in which it was given.
-    Apply(Stimulus, u64),
-    Arm(u64),
-    MakeSafe,
-    Run(Box<RunOrder>, Stop),
-}
+use order::Order;
 
 /// The window's side of a bench thread. Dropping it stops the run, makes outputs safe and disarms.
 pub struct BenchWorker {

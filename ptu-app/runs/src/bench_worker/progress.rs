@@ -64,7 +64,7 @@ pub struct ProcedureProgress {
 }
 
 /// The procedure and step that a run has reached.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct RunPosition {
     /// Place of the procedure in the run.
     pub procedure: usize,
@@ -312,14 +312,12 @@ impl Progress {
         self.done += usize::from(result.kind != ResultKind::Attempt);
         self.counter
             .note((place, result.index), stored(result.verdict));
-        if !matches!(result.verdict, Verdict::Passed | Verdict::Skipped) {
-            self.not_passed += 1;
-        }
+        let passed = matches!(result.verdict, Verdict::Passed | Verdict::Skipped);
+        self.not_passed += usize::from(!passed);
         let progress = &mut self.procedures[place];
         if let Some(step) = progress.procedure.steps.get(result.index) {
             self.worst_left = self.worst_left - step.worst_case;
         }
-        let passed = matches!(result.verdict, Verdict::Passed | Verdict::Skipped);
         if self.done < KEPT || (!passed && self.not_passed < KEPT) {
             progress.results.push(result.clone());
         }
@@ -356,13 +354,8 @@ impl RunPosition {
     fn of(procedure: usize) -> Self {
         Self {
             procedure,
-            step: None,
-            name: String::new(),
             turn: [1, 1],
-            waiting: None,
-            prompt: None,
-            paused: None,
-            measured: Vec::new(),
+            ..Self::default()
         }
     }
 }

@@ -1,9 +1,13 @@
 //! When the window is woken: soon after something it shows has changed, and seldom while nothing has, because each
 //! time it is painted whole.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use protocol::signal::{Sample, Signal};
+
+/// Told when there is something new to look at; must not block.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// The window is woken at most this often: at every second cycle of 50 ms, so that a change is seen within 100 ms. It
 /// is less than two cycles, because a cycle may end a little early …
@@ -28,10 +32,10 @@ const ALWAYS_SHOWN: [Signal; 2] = [Signal::Armed, Signal::MaintenanceKey];
 /// Signals that the window shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Watched {
-    /// Work of the connection bar.
+    /// Signals of the connection bar.
     Bar,
     Curves,
-    /// All of them as in the cab.
+    /// All signals, as the cab shows them.
     #[default]
     All,
 }
@@ -94,7 +98,7 @@ impl Waking {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::{Arc, Mutex};
+    use std::sync::Mutex;
 
     use btu_rig::procedure::Runner;
     use btu_rig::rig::Rig;
@@ -102,10 +106,10 @@ mod tests {
     use protocol::{Instant, Speed};
 
     use super::*;
-    use crate::data::ScriptsDirectory;
     use crate::link::Pace;
-    use crate::run::{BenchChoice, Connected, READY_WITHIN, RunControl, settled};
+    use crate::run::{READY_WITHIN, RunControl, settled};
     use crate::stop::Stop;
+    use crate::test_support;
 
     /// Counts by bench time, which is virtual, when a window would be woken, and how late it shows a change of speed.
     #[derive(Default)]
@@ -155,14 +159,9 @@ mod tests {
     #[test]
     fn a_window_is_woken_once_a_second_at_rest_and_ten_times_while_the_train_moves() {
         let window = Arc::<Window>::default();
-        let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-        let scripts = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-        let mut setup = BenchChoice::default().setup(&scripts).expect("its setup");
+        let mut setup = test_support::setup(&[]);
         setup.run_control = Some(window.clone());
         let stop = Stop::default();
-        let Ok(Connected::Sim(setup)) = setup.connect(&stop) else {
-            panic!("the embedded unit is there");
-        };
         let mut session = setup.sim_session("live", &stop);
         session.set_pace(Pace::Virtual);
         session.idle(READY_WITHIN + READY_WITHIN, |_, _, _| {}, settled());

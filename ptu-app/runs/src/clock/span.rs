@@ -11,18 +11,11 @@ use super::now_us;
 /// Microseconds of an hour.
 const HOUR_US: i64 = 3_600_000_000;
 
-/// From and until, microseconds since 1970; the end is not in it. None = open.
+/// From and until, microseconds since 1970, without the end itself. None = open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {
     pub since_us: Option<i64>,
     pub until_us: Option<i64>,
-}
-
-/// One of its ends, as it was written: a stretch of time of its own.
-struct SpanEnd {
-    since_us: i64,
-    /// End of the span; none for a span that lasts until now.
-    until_us: Option<i64>,
 }
 
 impl FromStr for Span {
@@ -30,13 +23,7 @@ impl FromStr for Span {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let (from, to) = match text.split_once("..") {
-            None => {
-                let stretch = stretch(text)?;
-                return Ok(Self {
-                    since_us: Some(stretch.since_us),
-                    until_us: stretch.until_us,
-                });
-            }
+            None => return stretch(text),
             Some(("", "")) => {
                 return Err("a span has a beginning or an end, such as 2026-03..".into());
             }
@@ -45,9 +32,9 @@ impl FromStr for Span {
         let end = |text: &str| (!text.is_empty()).then(|| stretch(text)).transpose();
         let (from, to) = (end(from)?, end(to)?);
         let span = Self {
-            since_us: from.map(|from| from.since_us),
+            since_us: from.and_then(|from| from.since_us),
             // `..30d` ends thirty days ago.
-            until_us: to.map(|to| to.until_us.unwrap_or(to.since_us)),
+            until_us: to.and_then(|to| to.until_us.or(to.since_us)),
         };
         match (span.since_us, span.until_us) {
             (Some(since), Some(until)) if since >= until => {
@@ -84,7 +71,8 @@ pub fn months(since_us: i64, until_us: i64) -> Vec<(String, i64, i64)> {
     months
 }
 
-fn stretch(text: &str) -> Result<SpanEnd, String> {
+/// The stretch of time that a word, a date or a number of days means, with its beginning; without an end it lasts until now.
+fn stretch(text: &str) -> Result<Span, String> {
     let ago = [("h", 1), ("d", 24), ("w", 7 * 24)]
         .into_iter()
         .find_map(|(unit, hours)| {
@@ -94,8 +82,8 @@ fn stretch(text: &str) -> Result<SpanEnd, String> {
     if let Some(ago_us) = ago {
         let since_us = ago_us.and_then(|ago_us| now_us().checked_sub(ago_us));
         let since_us = since_us.ok_or_else(|| format!("\"{text}\" is too long ago"))?;
-        return Ok(SpanEnd {
-            since_us,
+        return Ok(Span {
+            since_us: Some(since_us),
             until_us: None,
         });
     }
@@ -113,8 +101,8 @@ fn stretch(text: &str) -> Result<SpanEnd, String> {
             "\"{text}\" is no time; write 30d, 12h, today, 2026, 2026-03, 2026-03-21, or a span such as 2026-03..2026-05"
         )
     })?;
-    Ok(SpanEnd {
-        since_us,
+    Ok(Span {
+        since_us: Some(since_us),
         until_us: Some(until_us),
     })
 }

@@ -22,7 +22,7 @@ const CONTROLLER_KEY: &str = "ato.controller";
 const DEFAULT_LINE: &str = "line8";
 const DEFAULT_SECTION: SectionChoice = SectionChoice::One(61);
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Request {
     /// Line, `lines/NAME.toml`; none = line8.
     pub line: Option<String>,
@@ -42,7 +42,7 @@ pub struct Request {
     pub code: Option<String>,
     /// Unit configuration, `units/NAME.toml`.
     pub unit_config: String,
-    /// Keys changed in it.
+    /// Keys changed in the unit configuration.
     pub settings: Vec<Setting>,
     pub seed: u64,
 }

@@ -39,10 +39,10 @@ impl FromStr for SectionChoice {
 }
 
 impl SectionChoice {
-    /// Their numbers on `line`, in running order.
+    /// Numbers of the chosen sections on `line`, in running order.
     ///
     /// # Errors
-    /// The line has none of them, or not both ends.
+    /// The line does not have the section, or one end of the range.
     pub fn numbers(self, line: &Line) -> Result<Vec<u16>, Failure> {
         let all = line.sections.iter().map(|section| section.section);
         let (from, to) = match self {
@@ -73,7 +73,7 @@ pub const S1: Disturbance = Disturbance::Sine {
 /// Force against the train by its name: `none`, `s1` [S1: 2e4 N·s/m at 1 Hz] or AMP@HZ.
 ///
 /// # Errors
-/// Neither of them, or a number out of range.
+/// The text is no such name, or a number is out of range.
 pub fn disturbance(text: &str) -> Result<Disturbance, String> {
     let (amplitude, hz) = match text {
         "none" => return Ok(Disturbance::None),

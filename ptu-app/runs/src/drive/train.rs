@@ -2,7 +2,7 @@
 
 use btu_rig::conditions::Conditions;
 use btu_rig::drive::Load;
-use btu_rig::train::{IdealData, TrainData};
+use btu_rig::train::TrainData;
 use protocol::config::UnitConfig;
 
 use super::{Fixed, Setting};
@@ -61,13 +61,9 @@ pub fn load(
 /// Settings by which the unit's configuration fits the train. A train of cars is the one the
 /// configuration is made for; the papers' ideal train is another, and their controller knew it.
 pub fn told(train: &TrainData) -> Vec<Setting> {
-    match train {
-        TrainData::Cars(_) => Vec::new(),
-        TrainData::Ideal(ideal) => told_ideal(ideal),
-    }
-}
-
-fn told_ideal(ideal: &IdealData) -> Vec<Setting> {
+    let TrainData::Ideal(ideal) = train else {
+        return Vec::new();
+    };
     [
         ("empty_kg", ideal.mass_kg),
         ("rotating_kg", 0.0),

@@ -1,5 +1,6 @@
 //! The file of a private key: PKCS#8, encrypted with a PIN by scrypt and AES-256, below the name it signs by.
 
+use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -49,6 +50,10 @@ pub fn public_name(private: &Path) -> PathBuf {
     private.with_extension("pub")
 }
 
+fn not_made(error: impl Display) -> Failure {
+    Failure::bench(KeyTrouble::NotMade(error.to_string()))
+}
+
 impl NewKey<'_> {
     /// Makes a key and writes its two files: the private key for its owner alone, and the public one beside it.
     ///
@@ -58,13 +63,11 @@ impl NewKey<'_> {
         if pin.chars().filter(|c| c.is_alphanumeric()).count() < SHORTEST_PIN {
             return Err(Failure::usage(KeyTrouble::ShortPin(SHORTEST_PIN)));
         }
-        let failed =
-            |error: &dyn std::fmt::Display| Failure::bench(KeyTrouble::NotMade(error.to_string()));
         let (mut seed, mut salt, mut iv) = ([0; 32], [0; 16], [0; 16]);
-        getrandom::fill(&mut seed).map_err(|error| failed(&error))?;
-        getrandom::fill(&mut salt).map_err(|error| failed(&error))?;
-        getrandom::fill(&mut iv).map_err(|error| failed(&error))?;
-        let signer = Signer::new(self.who, self.kind, &seed).map_err(|error| failed(&error))?;
+        getrandom::fill(&mut seed).map_err(not_made)?;
+        getrandom::fill(&mut salt).map_err(not_made)?;
+        getrandom::fill(&mut iv).map_err(not_made)?;
+        let signer = Signer::new(self.who, self.kind, &seed).map_err(not_made)?;
         let entry = KeyEntry {
             who: self.who.to_owned(),
             kind: self.kind.to_owned(),
@@ -84,7 +87,7 @@ impl NewKey<'_> {
             let key = PrivateKeyInfoRef::from_der(&plain)?.encrypt_with_params(by, pin)?;
             Ok(key.to_pem(EncryptedPrivateKeyInfoRef::PEM_LABEL, LineEnding::LF)?)
         };
-        let pem = encrypted().map_err(|error| failed(&error))?;
+        let pem = encrypted().map_err(not_made)?;
         let public = KeyList {
             keys: vec![entry.clone()],
         }
@@ -114,7 +117,7 @@ impl KeyFile {
             return Err(Failure::usage(KeyTrouble::Missing(sought(named))));
         }
         let bytes = read_regular_file(path, LONGEST)
-            .map_err(|error| Failure::usage(FileTrouble::Unread(shown.clone(), Why::of(error))))?;
+            .map_err(|error| Failure::usage(FileTrouble::unread(path, error)))?;
         let text = String::from_utf8_lossy(&bytes);
         let no_key = |why| Failure::usage(KeyTrouble::NoKeyFile(shown.clone(), why));
         let place = text.find(BEGIN).ok_or_else(|| no_key(Why::NoPrivateKey))?;

@@ -110,12 +110,7 @@ impl KeyList {
         if !path.is_dir() {
             return Ok(vec![path.to_path_buf()]);
         }
-        let cannot = |error| {
-            Failure::bench(FileTrouble::Unread(
-                path.display().to_string(),
-                Why::of(error),
-            ))
-        };
+        let cannot = |error| Failure::bench(FileTrouble::unread(path, error));
         let mut files: Vec<PathBuf> = Vec::new();
         for entry in std::fs::read_dir(path).map_err(cannot)? {
             let file = entry.map_err(cannot)?.path();
@@ -132,7 +127,7 @@ impl KeyList {
         let shown = path.display().to_string();
         let no_list = |why| Failure::bench(KeyTrouble::NoKeyList(shown.clone(), why));
         let bytes = read_regular_file(path, LONGEST)
-            .map_err(|error| Failure::bench(FileTrouble::Unread(shown.clone(), Why::of(error))))?;
+            .map_err(|error| Failure::bench(FileTrouble::unread(path, error)))?;
         let text = String::from_utf8(bytes).map_err(|_| no_list(Why::NoText))?;
         Self::of_text(&text).map_err(|why| no_list(Why::Said(why)))
     }
@@ -244,7 +239,7 @@ impl KeyEntry {
     /// Checks the name, the digits of the key and the days.
     ///
     /// # Errors
-    /// One of them has another form, in words.
+    /// Name, key or day has another form, in words.
     pub fn check(&self) -> Result<(), String> {
         name_argument(&self.who)?;
         let hex = self

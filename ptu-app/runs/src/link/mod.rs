@@ -5,6 +5,7 @@ mod pace;
 mod port_lock;
 pub mod ports;
 mod sim;
+mod tcp;
 mod wire;
 
 pub use crate::endpoint::Endpoint;
@@ -13,4 +14,5 @@ pub use delayed::Delayed;
 pub use pace::Pace;
 pub(crate) use port_lock::open_port;
 pub use sim::{SIM_SERIAL, SimLink};
+pub(crate) use tcp::connect_to;
 pub use wire::WireLink;

@@ -2,7 +2,7 @@
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::mem::take;
-use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
+use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
 use ato_under_test::serve::{PORT_WAITS, SerialEnd};
@@ -11,7 +11,7 @@ use protocol::frame::SCAN_END;
 use protocol::{Backlog, Duration as BenchDuration, Instant, SCAN};
 use serialport::SerialPort;
 
-use super::{Pace, open_port};
+use super::{Pace, connect_to, open_port};
 use crate::endpoint::Endpoint;
 use crate::failure::{EndpointError, Failure, NoUnit, RunTrouble};
 use crate::places::Placed;
@@ -163,22 +163,9 @@ fn open_serial(path: &str, baud: u32, waits: Duration) -> Result<Box<dyn SerialP
     Ok(port)
 }
 
-/// The first of these addresses at which somebody listens: a unit at 127.0.0.1 is at `localhost`, whose first address may
-/// be another.
-fn connect_to(addresses: impl Iterator<Item = SocketAddr>) -> io::Result<TcpStream> {
-    let mut tried = Err(io::Error::other("the name has no address"));
-    for address in addresses {
-        tried = TcpStream::connect_timeout(&address, CONNECT);
-        if tried.is_ok() {
-            break;
-        }
-    }
-    tried
-}
-
 fn connect(address: &str) -> Result<Port, Failure> {
     let cannot = |error: io::Error| NoUnit::NotServed(address.to_owned(), error.to_string());
-    let stream = connect_to(address.to_socket_addrs().map_err(cannot)?).map_err(cannot)?;
+    let stream = connect_to(address.to_socket_addrs().map_err(cannot)?, CONNECT).map_err(cannot)?;
     stream.set_nonblocking(true).map_err(cannot)?;
     stream.set_nodelay(true).map_err(cannot)?;
     Ok(Port::Tcp(stream))
@@ -306,26 +293,4 @@ fn is_nothing(error: &std::io::Error) -> bool {
         error.kind(),
         ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use std::net::TcpListener;
-
-    use super::*;
-
-    #[test]
-    fn a_unit_is_found_at_any_address_of_its_name() {
-        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-        let unit = listener.local_addr().expect("bound");
-        // A port that no test is given.
-        let closed = SocketAddr::from(([127, 0, 0, 1], 1));
-        for addresses in [&[unit][..], &[closed, unit], &[unit, closed]] {
-            let stream = connect_to(addresses.iter().copied()).expect("there is a unit");
-            assert_eq!(stream.peer_addr().expect("connected"), unit);
-        }
-        for nobody in [&[][..], &[closed]] {
-            connect_to(nobody.iter().copied()).expect_err("nobody listens");
-        }
-    }
 }

@@ -7,17 +7,17 @@ use btu_rig::rig::{InstrumentFault, LinkTrouble};
 use protocol::message::{COIL_PART, COIL_SAMPLES, COIL_STEP_MV, Coil, CoilSamples};
 
 use super::file::Places;
-use super::placed::trouble;
+use super::worker::trouble;
 use crate::signal::FULL_SCALE_MV;
 use crate::sound::{Stream, record};
 use crate::stop::Stop;
 
-/// A scan.
+/// Duration of a scan.
 const SCAN: Duration = Duration::from_millis(10);
-/// Scans of a beep, and of the silence around it, in which what was heard before is over.
+/// Scans of a beep, and of the silence before and after, in which the beep before has faded.
 const BEEP: u32 = 5;
 const QUIET: u32 = 40;
-/// Level of a beep, mV, and by how much it is louder than the silence before it.
+/// Level of a beep, mV, and the least ratio of a beep to the silence before the beep.
 const BEEP_MV: f32 = 500.0;
 const LOUDER: f32 = 4.0;
 
@@ -26,10 +26,10 @@ pub(super) struct BySound {
     pub name: String,
     pub stream: Stream,
     coils: Vec<Coil>,
-    /// How late it may be heard.
+    /// How late the sound may be heard, as the bench file states.
     uncertainty: Duration,
     pub late: Duration,
-    /// This scan's samples: codes; TWC and markers.
+    /// Samples of this scan, two channels: codes, and TWC with markers.
     samples: [[f32; 2]; COIL_SAMPLES],
     /// Frames that were played and not sent: the numbers of later frames are lower by so many.
     pub left_out: u16,
@@ -84,8 +84,8 @@ impl BySound {
     }
 }
 
-/// How long sound is on its way, ms: of beeps to where they are heard; else half a second of silence is played, as fast as
-/// it comes.
+/// Time that sound takes, ms: from playing beeps to hearing them where the bench file has `heard_at`; otherwise the longest
+/// time that half a second of silence waits in the sound server.
 pub(super) fn try_sound(places: &Places, name: &str, rounds: u32) -> Result<f64, InstrumentFault> {
     let entry = &places.instruments[name];
     let stream = Stream::start(&entry.reach().to_string(), places.full_scale_mv)?;
@@ -101,7 +101,7 @@ pub(super) fn try_sound(places: &Places, name: &str, rounds: u32) -> Result<f64,
     stream.clipped().map(|_| takes_ms as f64)
 }
 
-/// The longest of so many beeps, with the time in which the input hands them on.
+/// Longest time from playing to hearing of so many beeps, with the time in which the input hands samples on.
 fn hear_beeps(stream: &Stream, at: &str, rounds: u32) -> Result<f64, InstrumentFault> {
     let stop = Stop::default();
     let (told, heard) = channel();
@@ -126,7 +126,7 @@ fn hear_beeps(stream: &Stream, at: &str, rounds: u32) -> Result<f64, InstrumentF
     })
 }
 
-/// How long a beep takes from here until it is heard, if it is.
+/// Time from playing a beep until it is heard; `None` if it is not heard.
 fn beep(stream: &Stream, heard: &Receiver<(Instant, f32)>) -> Option<Duration> {
     let mut silence = 1.0f32;
     let play = |scans: u32, mv: f32| {
@@ -147,7 +147,7 @@ fn beep(stream: &Stream, heard: &Receiver<(Instant, f32)>) -> Option<Duration> {
     play(BEEP, BEEP_MV);
     play(QUIET, 0.0);
     let loud = heard.try_iter().filter(|(_, mv)| *mv > LOUDER * silence);
-    // All are taken, so that none is silence before the next.
+    // All samples are taken, so that this beep does not count as the silence before the next.
     let first = loud.map(|(at, _)| at).min();
     first.map(|at| at.saturating_duration_since(began))
 }

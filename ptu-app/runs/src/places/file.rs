@@ -1,131 +1,18 @@
 //! The bench file, `benches/NAME.toml`.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 use std::sync::Arc;
 
 use protocol::message::{Coil, Outputs};
 use protocol::signal::Signal;
 use serde::Deserialize;
-use thiserror::Error;
 use toml::Spanned;
 
+use super::error::PlacesError;
 use super::instrument::{InstrumentEntry, Kind};
 use super::model::Model;
-use super::points::{Named, UnitInput, check_reading};
+use super::points::{Named, Place, Point, UnitInput, check_reading};
 use crate::signal::FULL_SCALE_MV;
-
-/// Why a bench file or a driver is refused.
-#[derive(Debug, Error)]
-pub enum PlacesError {
-    /// It is not as TOML, or has another key.
-    #[error("{0}")]
-    Toml(#[from] toml::de::Error),
-    /// A value of the file does not fit.
-    #[error("line {line}: {why}")]
-    Wrong {
-        /// Counted from 1.
-        line: usize,
-        /// What is wrong there.
-        why: String,
-    },
-}
-
-/// One stimulus or reading.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Point {
-    /// `frames`, `none`, `operator` or the name of an instrument.
-    at: String,
-    /// Coils of a module, of which one is on: as many as the point has positions.
-    #[serde(default)]
-    pub coils: Vec<u16>,
-    /// How long a pulse lasts, ms.
-    #[serde(default)]
-    pub pulse_ms: u64,
-    /// Input of a module that proves the coil's relay.
-    pub proved_by: Option<u16>,
-    /// Input of a module that is read.
-    pub input: Option<u16>,
-    /// The input is closed where the signal's contact is open.
-    #[serde(default)]
-    pub inverted: bool,
-    /// Channel of the instrument, put into its commands.
-    #[serde(default)]
-    pub channel: u8,
-    /// Name of the driver's question for the reading.
-    pub read: Option<String>,
-    /// Signal per unit of what is read.
-    pub scale: Option<f64>,
-    /// Voltage of the unit's supply, V.
-    pub volts: Option<f64>,
-    /// Expanded uncertainty of the reading, in the unit of the signal.
-    #[serde(default)]
-    pub uncertainty: f64,
-    /// Time allowed to a person, s.
-    pub within_s: Option<u64>,
-}
-
-/// Where a point is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place<'a> {
-    /// In the frames, as without a bench file.
-    Frames,
-    /// Nowhere: the bench does not have it.
-    None,
-    /// A person does it, in so many seconds.
-    Operator(u64),
-    /// The instrument of this name.
-    Instrument(&'a str),
-}
-
-impl Point {
-    /// What the word of `at` means.
-    pub fn place(&self) -> Place<'_> {
-        match self.at.as_str() {
-            "frames" => Place::Frames,
-            "none" => Place::None,
-            "operator" => Place::Operator(self.within_s.unwrap_or(OPERATOR_S)),
-            name => Place::Instrument(name),
-        }
-    }
-
-    /// No number of it is beyond reason.
-    fn check(&self) -> Result<(), String> {
-        let terminals = self.coils.iter().copied();
-        let terminals = terminals.chain(self.proved_by).chain(self.input);
-        if terminals.max() > Some(LAST_TERMINAL) {
-            return Err(format!("coils and inputs are 0 to {LAST_TERMINAL}"));
-        }
-        if self.pulse_ms > MOST_MS {
-            return Err(format!("pulse_ms is at most {MOST_MS}"));
-        }
-        if !(1..=MOST_S).contains(&self.within_s.unwrap_or(OPERATOR_S)) {
-            return Err(format!("within_s is 1 to {MOST_S}"));
-        }
-        if !(self.uncertainty.is_finite() && self.uncertainty >= 0.0) {
-            return Err("uncertainty is a number, and not negative".into());
-        }
-        if self
-            .volts
-            .is_some_and(|volts| !(volts.is_normal() && volts > 0.0))
-        {
-            return Err("volts is a number above 0".into());
-        }
-        match self.scale.is_none_or(|scale| scale.is_normal()) {
-            true => Ok(()),
-            false => Err("scale is a number, and not 0".into()),
-        }
-    }
-}
-
-/// Time a person has, s [default].
-const OPERATOR_S: u64 = 60;
-/// Greatest times that a bench file may state.
-const MOST_MS: u64 = 60_000;
-const MOST_S: u64 = 3_600;
-/// As many coils as one request writes (Modbus application protocol 6.11), counted from 0.
-const LAST_TERMINAL: u16 = 1967;
 
 /// A bench file as it is written.
 #[derive(Deserialize, schemars::JsonSchema)]
@@ -144,18 +31,13 @@ pub struct Written {
     readings: BTreeMap<String, Spanned<Point>>,
 }
 
-/// What is wrong in the part of the text that begins there.
-fn wrong(text: &str, at: &Range<usize>, why: impl Into<String>) -> PlacesError {
-    PlacesError::Wrong {
-        line: 1 + text[..at.start].matches('\n').count(),
-        why: why.into(),
-    }
-}
-
+/// Stimuli and readings of an instrument.
+type PointsAt = (Vec<(UnitInput, Point)>, Vec<(Signal, Point)>);
 type Drivers = BTreeMap<String, Arc<Model>>;
 
 impl Written {
-    /// Instruments and their drivers: each is whole, has an address of its own, and is named in `safe`.
+    /// Instruments and their drivers, checked: each instrument has what its protocol needs and its own address, and stands in
+    /// `safe`.
     fn instruments(
         &self,
         text: &str,
@@ -164,8 +46,9 @@ impl Written {
         let (mut instruments, mut models) = (BTreeMap::new(), Drivers::new());
         let switches = |name: &str| (self.stimuli.values()).any(|point| point.get_ref().at == name);
         for (place, (name, entry)) in self.instruments.iter().enumerate() {
-            let refuse =
-                |why: String| wrong(text, &entry.span(), format!("instrument {name}: {why}"));
+            let refuse = |why: String| {
+                PlacesError::at(text, &entry.span(), format!("instrument {name}: {why}"))
+            };
             let entry = entry.get_ref();
             let checked = entry.check(switches(name), self.instruments.len());
             checked.map_err(refuse)?;
@@ -189,14 +72,14 @@ impl Written {
             let why = format!(
                 "safe names each instrument once, in the order in which they are switched off: see {name}"
             );
-            return Err(wrong(text, &self.safe.span(), why));
+            return Err(PlacesError::at(text, &self.safe.span(), why));
         }
         let cards = instruments
             .values()
             .filter(|entry| entry.kind() == Kind::Sound);
         match cards.count() {
             0 | 1 => Ok((instruments, models)),
-            _ => Err(wrong(
+            _ => Err(PlacesError::at(
                 text,
                 &self.safe.span(),
                 "there is one sound card at most",
@@ -212,8 +95,9 @@ impl Written {
     ) -> Result<BTreeMap<UnitInput, Point>, PlacesError> {
         let (mut stimuli, mut taken) = (BTreeMap::new(), BTreeSet::new());
         for (name, point) in &self.stimuli {
-            let refuse =
-                |why: String| wrong(text, &point.span(), format!("stimulus {name}: {why}"));
+            let refuse = |why: String| {
+                PlacesError::at(text, &point.span(), format!("stimulus {name}: {why}"))
+            };
             let known = UnitInput::from_name(name);
             let known = known.ok_or_else(|| refuse("there is no such stimulus".into()))?;
             let point = point.get_ref();
@@ -243,7 +127,9 @@ impl Written {
     ) -> Result<BTreeMap<Signal, Point>, PlacesError> {
         let mut readings = BTreeMap::new();
         for (name, point) in &self.readings {
-            let refuse = |why: String| wrong(text, &point.span(), format!("reading {name}: {why}"));
+            let refuse = |why: String| {
+                PlacesError::at(text, &point.span(), format!("reading {name}: {why}"))
+            };
             let known = READINGS.iter().find(|(known, _)| known.name() == name);
             let (known, contact) =
                 *known.ok_or_else(|| refuse("no contact or display of the unit".into()))?;
@@ -261,9 +147,9 @@ impl Written {
 /// A bench file that was checked.
 #[derive(Clone, Debug)]
 pub struct Places {
-    /// As runs and notes call the bench.
+    /// Name of the bench in runs and notes.
     pub name: String,
-    /// SHA-256 of its text.
+    /// SHA-256 of the bench file's text.
     pub sha256: String,
     /// Instruments by name.
     pub instruments: BTreeMap<String, InstrumentEntry>,
@@ -275,7 +161,7 @@ pub struct Places {
     pub stimuli: BTreeMap<UnitInput, Point>,
     /// Readings that are not in the frames.
     pub readings: BTreeMap<Signal, Point>,
-    /// What the sound card makes of a whole sample of each channel, mV.
+    /// Voltage of a full-scale sample on each channel of the sound card, mV.
     pub full_scale_mv: [f64; 2],
 }
 
@@ -304,7 +190,7 @@ impl Places {
     /// Reads a bench file; `model` reads the driver of that name.
     ///
     /// # Errors
-    /// It is wrong, in a line that is named.
+    /// The file is wrong, in a line that is named.
     pub fn from_toml(
         text: &str,
         mut model: impl FnMut(&str) -> Result<Model, String>,
@@ -356,19 +242,30 @@ impl Places {
         by_sound.map(|(_, coil)| coil).collect()
     }
 
-    /// The instrument proves a relay or reads, so that its check times more than that it switches off.
+    /// The stimuli and readings that this instrument has.
+    pub(super) fn points_at(&self, instrument: &str) -> PointsAt {
+        let here = |point: &Point| point.place() == Place::Instrument(instrument);
+        let stimuli = self.stimuli.iter().filter(|(_, point)| here(point));
+        let readings = self.readings.iter().filter(|(_, point)| here(point));
+        (
+            stimuli.map(|(at, point)| (*at, point.clone())).collect(),
+            readings.map(|(at, point)| (*at, point.clone())).collect(),
+        )
+    }
+
+    /// Whether a check of the instrument times more than switching off, because it proves a relay or reads.
     pub fn times_more_than_off(&self, instrument: &str) -> bool {
         let (stimuli, readings) = self.points_at(instrument);
         !readings.is_empty() || (stimuli.iter()).any(|(_, point)| point.proved_by.is_some())
     }
 
-    /// Everything that frames to the unit's inputs carry has another place.
+    /// Whether everything that frames carry to the unit's inputs has another place.
     pub(super) fn leaves_no_input(&self) -> bool {
         (UnitInput::ALL.iter())
             .all(|input| !input.is_in_inputs() || self.stimuli.contains_key(input))
     }
 
-    /// Everything that frames of the unit's outputs carry has another place.
+    /// Whether everything that frames carry from the unit's outputs has another place.
     pub(super) fn leaves_no_output(&self) -> bool {
         (READINGS.iter()).all(|(signal, _)| self.readings.contains_key(signal))
     }

@@ -1,5 +1,5 @@
-//! What a bench makes of procedures: steps that it cannot do are skipped with the reason, a person is asked for what a
-//! person does, and limits are as much wider as its instruments are uncertain; each says so.
+//! Procedures as a bench can do them: steps that the bench cannot do are skipped with the reason, a person is asked for what
+//! a person does, and limits are widened by the uncertainty of the instruments; each step says so.
 
 use std::sync::Arc;
 
@@ -9,44 +9,17 @@ use btu_rig::stimulus::Stimulus;
 use protocol::Duration;
 use protocol::signal::Signal;
 
-use super::file::{Place, Places, Point};
+use super::file::Places;
 use super::instrument::InstrumentEntry;
 use super::model::code_values;
 use super::needs::{DRIVES, FOLLOWS, needs};
-use super::points::UnitInput;
-use super::widen::{Motion, READ_ANY};
+use super::points::{Place, Point, UnitInput};
+use super::teller::Teller;
+use super::widen::{Motion, READ_ANY, inner, inner_mut};
 use crate::words::BenchNote;
 
-/// The action itself, wherever it is done.
-pub(super) fn inner(action: &Action) -> &Action {
-    match action {
-        Action::OnBench(action) | Action::OnTrain(action) => action,
-        action => action,
-    }
-}
-
-pub(super) fn inner_mut(action: &mut Action) -> &mut Action {
-    match action {
-        Action::OnBench(action) | Action::OnTrain(action) => action,
-        action => action,
-    }
-}
-
-/// How what a bench makes of procedures is put into words.
-#[derive(Clone, Copy)]
-pub struct Teller<'a> {
-    /// A note.
-    pub note: &'a dyn Fn(BenchNote) -> String,
-    /// Name of a signal for people.
-    pub signal: &'a dyn Fn(Signal) -> String,
-    /// What a person is to do, and the key of an input.
-    pub text: &'a dyn Fn(&str) -> String,
-    /// Question whether a signal has the value that a step expects.
-    pub condition: &'a dyn Fn(&Condition) -> String,
-}
-
 impl Places {
-    /// The procedures as this bench does them, told so.
+    /// The procedures as this bench does them; `tell` puts the changes into words.
     pub fn fit(&self, procedures: Vec<Arc<Procedure>>, tell: &Teller<'_>) -> Vec<Arc<Procedure>> {
         let fit = |mut procedure: Arc<Procedure>| {
             self.fit_one(Arc::make_mut(&mut procedure), tell);
@@ -55,7 +28,7 @@ impl Places {
         procedures.into_iter().map(fit).collect()
     }
 
-    /// What is to be switched off by hand if the program was killed, of instruments without a watchdog.
+    /// Outputs of instruments without a watchdog, which a person has to switch off if the program was killed.
     pub fn by_hand(&self) -> impl Iterator<Item = BenchNote> {
         let told = |(name, entry): (&String, &InstrumentEntry)| {
             let what = entry.by_hand.clone().filter(|_| entry.watchdog.is_none())?;
@@ -87,7 +60,7 @@ impl Places {
             if !step.continues {
                 motion = Motion::default();
             }
-            // It cannot begin in the state that a step left which was not run.
+            // The step cannot begin in the state that the step before would have left.
             let lacks = own.or_else(|| before.clone().filter(|_| step.continues));
             if let Some(lacks) = &lacks {
                 step.lacks = Some(lacks.clone());
@@ -117,12 +90,12 @@ impl Places {
         }
     }
 
-    /// Why this bench cannot do the action, if so.
+    /// Reason for which this bench cannot do the action, if there is one.
     fn lacks_for(&self, action: &Action, tell: &Teller<'_>) -> Option<BenchNote> {
         use UnitInput as U;
         match inner(action) {
             Action::Stimulus(stimulus) => {
-                // Without word of doors by side, the unit goes by the line of all doors.
+                // A unit that is not told of doors by side goes by the line of all doors.
                 let of_all = matches!(
                     stimulus,
                     Stimulus::Doors { .. } | Stimulus::DoorsFollow { .. }
@@ -156,7 +129,7 @@ impl Places {
         point.is_some_and(|point| point.place() == Place::None)
     }
 
-    /// No instrument and no frame reads it.
+    /// Whether neither an instrument nor a frame reads the signal.
     fn unread(&self, signal: Signal) -> bool {
         let by_itself = |signal: &Signal| {
             let place = self.readings.get(signal).map(Point::place);
@@ -219,12 +192,12 @@ impl Places {
         Some((condition, self.seen(condition)?))
     }
 
-    /// It waits for what a person sees.
+    /// The action waits for something that a person sees.
     fn is_seen(&self, action: &Action) -> bool {
         matches!(inner(action), Action::Until { condition, .. } if self.seen(condition).is_some())
     }
 
-    /// The time in which a person says whether this holds, s; none: it is not for a person alone.
+    /// Time in which a person says whether the condition holds, s; `None` if the condition is not for a person alone.
     fn seen(&self, condition: &Condition) -> Option<u64> {
         let (mut all, mut within) = (true, None);
         condition.for_each_signal(
@@ -236,7 +209,7 @@ impl Places {
         within.filter(|_| all)
     }
 
-    /// What a person sees is asked at the end of the actions.
+    /// Asks the person at the end of the actions for what a person sees.
     fn see_for(&self, step: &mut Step, tell: &Teller<'_>) {
         let asked: Vec<_> = step
             .expectations
@@ -256,7 +229,7 @@ impl Places {
         }
     }
 
-    /// What a person does is asked for before it counts as done, and what a person sees in place of waiting for it.
+    /// Asks the person to do what a person does, before it counts as done, and for what a person sees, in place of waiting.
     fn ask_for(&self, actions: &mut Vec<Action>, tell: &Teller<'_>) {
         let asked = |mut action: Action| {
             let inner_action = inner_mut(&mut action);

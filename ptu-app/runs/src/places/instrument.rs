@@ -1,11 +1,14 @@
 //! An instrument as the bench file has it: its protocol, where it is, and what it has to state.
 
 use std::fmt;
+use std::time::Duration;
 
 use serde::Deserialize;
 
-use super::placed::SAFE_WITHIN;
 use crate::sound::TAKES_MS;
+
+/// Time in which all outputs of a bench are off, on every end.
+pub(super) const SAFE_WITHIN: Duration = Duration::from_secs(1);
 
 /// Protocol of an instrument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,7 +112,7 @@ impl InstrumentEntry {
         }
     }
 
-    /// Where it is.
+    /// Where the instrument is.
     pub(super) fn reach(&self) -> Reach {
         let at = self.at.split_once(':').map_or("", |(_, at)| at);
         Reach::of(at).unwrap_or_else(|| Reach::Tcp(at.to_owned()))

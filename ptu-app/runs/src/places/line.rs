@@ -15,20 +15,23 @@ use serialport::{ClearBuffer, SerialPort};
 
 use super::file::Places;
 use super::instrument::Reach;
-use super::scpi::LONGEST;
 use super::worker::{ANSWERS_WITHIN, span};
+use crate::link::connect_to;
 use crate::platform;
+
+/// Longest answer of an instrument, bytes.
+pub(super) const LONGEST: usize = 4096;
 
 /// An open line.
 pub(super) enum Line {
     Tcp(TcpStream),
-    /// A serial port, its rate, and when its last byte has passed.
+    /// A serial port, its rate, and when the last byte on the line has passed.
     Serial(Box<dyn SerialPort>, u32, Instant),
     /// What is written to the device is a message, and so is what is read.
     Usb(File, Reading),
 }
 
-/// Reading of a device whose driver has a time of its own, 5 s as shipped: another thread waits for that.
+/// Reading of a device whose driver waits for a time of its own, 5 s as shipped: another thread waits in the driver.
 #[derive(Default)]
 pub(super) struct Reading {
     within: Duration,
@@ -62,7 +65,7 @@ impl Reading {
 /// A line of one or several instruments.
 pub(super) type SharedLine = Arc<Mutex<Line>>;
 
-/// The lines of a bench, kept to this program.
+/// The lines of a bench, which no other program may use meanwhile.
 #[derive(Default)]
 pub(super) struct Lines {
     locks: BTreeMap<String, Option<File>>,
@@ -70,10 +73,10 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// Those of all instruments, none open yet.
+    /// Lines of all instruments, none open yet.
     ///
     /// # Errors
-    /// Another program has one: the name of its instrument.
+    /// Another program uses an instrument, which is named.
     pub fn of(places: &Places) -> std::result::Result<Self, (String, InstrumentFault)> {
         let mut lines = Self::default();
         for (name, entry) in &places.instruments {
@@ -102,13 +105,13 @@ impl Lines {
     }
 }
 
-/// Keeps a place to this program, for as long as the file is open; none where the computer has no locks.
+/// Locks a place for this program as long as the file is open; `None` where the computer has no locks.
 fn lock(at: &str) -> std::result::Result<Option<File>, ()> {
     let name = at.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
     let path = std::env::temp_dir().join(format!("ptu-instrument-{name}.lock"));
     let mut options = OpenOptions::new();
     let made = options.write(true).create(true).truncate(false).open(&path);
-    // Another user made it.
+    // Another user made the file: it can be read, which is enough for a lock.
     let Ok(file) = made.or_else(|_| File::open(&path)) else {
         return Ok(None);
     };
@@ -197,28 +200,21 @@ fn characters(count: f64, baud: u32) -> Duration {
     Duration::from_secs_f64(11.0 * count / f64::from(baud.max(1)))
 }
 
-/// What is between two frames of Modbus RTU (Modbus over serial line 2.5.1.1).
+/// Silence between two frames of Modbus RTU (Modbus over serial line 2.5.1.1).
 fn silence(baud: u32) -> Duration {
     characters(3.5, baud).max(Duration::from_micros(1_750))
 }
 
 fn connect(address: &str) -> Result<TcpStream> {
-    let mut tried = Err(std::io::Error::other("the name has no address"));
-    for address in address.to_socket_addrs()? {
-        tried = TcpStream::connect_timeout(&address, ANSWERS_WITHIN);
-        if tried.is_ok() {
-            break;
-        }
-    }
-    let stream = tried?;
+    let stream = connect_to(address.to_socket_addrs()?, ANSWERS_WITHIN)?;
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(ANSWERS_WITHIN))?;
     stream.set_write_timeout(Some(ANSWERS_WITHIN))?;
     Ok(stream)
 }
 
-/// What a failed exchange says of an instrument.
-pub(super) fn io_fault(error: &std::io::Error) -> InstrumentFault {
+/// Fault of an instrument whose exchange failed with this error.
+pub(super) fn io_fault(error: std::io::Error) -> InstrumentFault {
     match error.kind() {
         ErrorKind::WouldBlock | ErrorKind::TimedOut => {
             InstrumentFault::Silent(span(ANSWERS_WITHIN))

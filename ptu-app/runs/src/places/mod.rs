@@ -8,6 +8,7 @@
 //! Terms: a *point* is one stimulus or one reading; an *act* is what a SCPI instrument does for a point.
 
 mod by_sound;
+mod error;
 mod file;
 mod fit;
 mod instrument;
@@ -19,14 +20,16 @@ mod placed;
 mod points;
 mod relay;
 mod scpi;
+mod teller;
 #[cfg(test)]
 mod tests;
 mod widen;
 mod worker;
 
-pub use file::{Place, Places, PlacesError, Point, Written};
-pub use fit::Teller;
+pub use error::PlacesError;
+pub use file::{Places, Written};
 pub use instrument::InstrumentEntry;
 pub use model::Model;
 pub use placed::{Checked, Placed};
-pub use points::UnitInput;
+pub use points::{Place, Point, UnitInput};
+pub use teller::Teller;

@@ -10,11 +10,12 @@ use rmodbus::client::ModbusRequest;
 use rmodbus::guess_response_frame_len;
 use rmodbus::{ErrorKind, ModbusProto};
 
-use super::file::{Places, Point};
+use super::file::Places;
 use super::instrument::{Reach, Watchdog};
 use super::line::{SharedLine, io_fault};
-use super::points::UnitInput;
-use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted};
+use super::model::Values;
+use super::points::{Point, UnitInput};
+use super::worker::{ANSWERS_WITHIN, Instrument, Wanted};
 use crate::pool::held;
 
 /// Bytes of an answer that say how many there are, over TCP and RTU.
@@ -30,17 +31,17 @@ pub(super) struct Module {
     transaction: u16,
     stimuli: Vec<(UnitInput, Point)>,
     readings: Vec<(Signal, Point)>,
-    /// What was last written; none = not known.
+    /// Coils as they were last written; `None` if that is not known.
     written: Option<Vec<bool>>,
-    /// When it was last asked, and after how long without a question it drops its outputs.
+    /// When the module was last asked, and the time without a question after which it drops its outputs.
     asked: Instant,
     drops_after: Option<Duration>,
     coils: usize,
     inputs: u16,
-    /// Count of marker pulses, and the coil that is on until then.
+    /// Count of marker pulses, and the coil that is on for the present pulse with the pulse's end.
     pulses: Option<f64>,
     pulse: Option<(u16, Instant)>,
-    /// Since when a relay is not where it is ordered, by coil.
+    /// Since when a relay is not as ordered, by coil.
     astray: BTreeMap<u16, Instant>,
 }
 
@@ -105,13 +106,13 @@ impl Module {
             .wait_for(ANSWERS_WITHIN)
             .and_then(|()| line.write_all(&out))
             .and_then(|()| line.read_exact(&mut answer));
-        exchanged.map_err(|error| io_fault(&error))?;
+        exchanged.map_err(io_fault)?;
         let length = guess_response_frame_len(&answer, self.proto);
         let length = length.map_err(|error| refused(&request, error))?;
         let head = answer.len();
         answer.resize(head.max(length.into()), 0);
         let rest = line.read_exact(&mut answer[head..]);
-        rest.map_err(|error| io_fault(&error))?;
+        rest.map_err(io_fault)?;
         drop(line);
         request
             .parse_ok(&answer)
@@ -184,7 +185,7 @@ impl Instrument for Module {
         read: &mut BTreeMap<Signal, f64>,
     ) -> Result<bool, InstrumentFault> {
         let ordered = self.ordered(wanted);
-        // Where it was not asked for so long, it has dropped them itself.
+        // A module that was not asked for so long has dropped its outputs itself.
         let dropped = |after: Duration| self.asked.elapsed() >= after;
         let known = self.inputs > 0 && !self.drops_after.is_some_and(dropped);
         let written = self.written.as_ref().filter(|_| known);
@@ -210,7 +211,7 @@ impl Instrument for Module {
         for (signal, point) in &self.readings {
             let input = point.input.map(usize::from).and_then(|at| inputs.get(at));
             if let Some(closed) = input {
-                read.insert(*signal, f64::from(u8::from(*closed != point.inverted)));
+                read.insert(*signal, f64::from(*closed != point.inverted));
             }
         }
         self.prove(&ordered, &inputs).map(|()| true)

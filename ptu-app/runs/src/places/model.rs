@@ -1,14 +1,15 @@
 //! The driver of a SCPI instrument, `instruments/NAME.toml`: templates of commands, questions, ranges.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use btu_rig::rig::InstrumentFault;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::file::PlacesError;
-use super::worker::Values;
+use super::error::PlacesError;
+
+/// Values of a stimulus by name.
+pub(super) type Values = BTreeMap<&'static str, f64>;
 
 /// A driver whose names and values were checked.
 #[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
@@ -85,17 +86,14 @@ impl Model {
     /// Reads a driver.
     ///
     /// # Errors
-    /// It is wrong, in a line that is named.
+    /// The driver is wrong, in a line that is named.
     pub fn from_toml(text: &str) -> Result<Self, PlacesError> {
         let model: Self = toml::from_str(text)?;
-        let wrong = |at: Range<usize>, why: String| PlacesError::Wrong {
-            line: 1 + text[..at.start].matches('\n').count(),
-            why,
-        };
         for (name, act) in &model.acts {
             let Some((_, values)) = ACTS.iter().find(|(known, _)| known == name) else {
-                return Err(wrong(
-                    act.span(),
+                return Err(PlacesError::at(
+                    text,
+                    &act.span(),
                     format!("no act \"{name}\": it is code, pulses or supply"),
                 ));
             };
@@ -105,8 +103,9 @@ impl Model {
                 let mut used = used.map(|rest| rest.split('}').next().unwrap_or(rest));
                 if let Some(other) = used.find(|value| !values.contains(value)) {
                     let known = values.join(", ");
-                    return Err(wrong(
-                        command.span(),
+                    return Err(PlacesError::at(
+                        text,
+                        &command.span(),
                         format!("no value \"{other}\" of {name}: {known}"),
                     ));
                 }
@@ -116,12 +115,13 @@ impl Model {
             let mut known = ACTS.iter().flat_map(|(_, values)| *values);
             if !known.any(|known| known == name) {
                 let why = format!("range of {name}: no act has this value");
-                return Err(wrong(range.span(), why));
+                return Err(PlacesError::at(text, &range.span(), why));
             }
             let [low, high] = range.get_ref();
             if !(low.is_finite() && low < high) {
-                return Err(wrong(
-                    range.span(),
+                return Err(PlacesError::at(
+                    text,
+                    &range.span(),
                     format!("range of {name}: [least, greatest]"),
                 ));
             }
@@ -130,7 +130,7 @@ impl Model {
     }
 
     /// The value that is out of range, if one is.
-    pub fn out_of_range(&self, values: &BTreeMap<&'static str, f64>) -> Option<InstrumentFault> {
+    pub fn out_of_range(&self, values: &Values) -> Option<InstrumentFault> {
         // A carrier that is not modulated has no rate.
         let given = |(what, value): &(&&str, &f64)| {
             !["rate_hz", "period_s"].contains(what) || **value > 0.0
@@ -149,7 +149,7 @@ impl Model {
 
 /// Values of an antenna signal.
 pub(super) fn code_values(carrier_hz: f64, rate_hz: f64, level_mv: f64) -> Values {
-    // Without a carrier there is none, whatever its level.
+    // Without a carrier there is no signal, whatever level is asked for.
     let level_mv = if carrier_hz > 0.0 { level_mv } else { 0.0 };
     Values::from([
         ("carrier_hz", carrier_hz),
@@ -161,7 +161,7 @@ pub(super) fn code_values(carrier_hz: f64, rate_hz: f64, level_mv: f64) -> Value
 }
 
 /// A command with its values.
-pub(super) fn filled(template: &str, values: &BTreeMap<&'static str, f64>) -> String {
+pub(super) fn filled(template: &str, values: &Values) -> String {
     let mut command = template.to_owned();
     for (name, value) in values {
         command = command.replace(&format!("{{{name}}}"), &value.to_string());

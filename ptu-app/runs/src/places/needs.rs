@@ -5,14 +5,14 @@ use protocol::signal::Signal;
 
 use super::points::UnitInput;
 
-/// What the bench's own train makes of the unit's contacts, which it has to read for that.
+/// Signals that the bench's own train derives from contacts of the unit, with the contacts that the bench has to read.
 pub(super) const FOLLOWS: [(Signal, &[Signal]); 4] = [
     (Signal::EbLoop, &[Signal::Eb]),
     (Signal::TcmsFsb, &[Signal::Fsb]),
     (Signal::TcmsMsb, &[Signal::Fsb]),
     (Signal::PowerCutCauses, &[Signal::Fsb, Signal::PowerCut]),
 ];
-/// Contacts that a train follows which drives.
+/// Contacts that a train follows while it drives.
 pub(super) const DRIVES: [Signal; 4] = [
     Signal::Eb,
     Signal::Fsb,

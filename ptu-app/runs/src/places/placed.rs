@@ -1,4 +1,4 @@
-//! Between rig and unit: what has a place leaves the frames here, and what instruments read enters them.
+//! Between rig and unit: signals that have a place are taken out of the frames, and readings of instruments are put in.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant as Clock};
@@ -10,18 +10,16 @@ use protocol::signal::Signal;
 use protocol::{Instant, Speed};
 
 use super::by_sound::{BySound, try_sound};
-use super::file::{Place, Places, Point, READINGS};
-use super::instrument::Kind;
+use super::file::{Places, READINGS};
+use super::instrument::{Kind, SAFE_WITHIN};
 use super::line::Lines;
 use super::modbus::Module;
-use super::model::code_values;
-use super::points::UnitInput;
+use super::model::{Values, code_values};
+use super::points::{Place, UnitInput};
 use super::relay::{Relay, send};
 use super::scpi::Scpi;
-use super::worker::{Instrument, Timing, Values, Wanted, Worker, span};
+use super::worker::{Instrument, Timing, Wanted, Worker, span, trouble};
 
-/// All outputs are off after this, on every end.
-pub(super) const SAFE_WITHIN: Duration = Duration::from_secs(1);
 /// Periods without a pulse after which a wheel stands.
 const STANDS_AFTER: u64 = 2;
 /// A frequency that differs by less is not set again.
@@ -38,21 +36,14 @@ pub struct Placed {
     from_unit: Relay,
     pulses: [PulseRate; 2],
     wanted: Wanted,
-    /// What the unit's own frames said last.
+    /// Outputs as the unit's last frame has them.
     outputs: IoOutput,
-    /// For outputs that no frame of the unit carries.
+    /// Sender of outputs that no frame of the unit carries.
     link: Link,
 }
 
 /// An instrument that was tried: its name, and how long it takes to act and to read, ms, or what is wrong.
 pub type Checked = (String, Result<f64, InstrumentFault>);
-
-pub(super) fn trouble(instrument: &str, fault: InstrumentFault) -> LinkTrouble {
-    LinkTrouble::Instrument {
-        instrument: instrument.to_owned(),
-        fault: Box::new(fault),
-    }
-}
 
 fn open(
     places: &Places,
@@ -71,7 +62,7 @@ impl Placed {
     /// Connects, checks and switches off each instrument, and reads each once.
     ///
     /// # Errors
-    /// The first that does not do its part.
+    /// Fault of the first instrument that does not do its part.
     pub fn open(places: &Arc<Places>) -> Result<Self, LinkTrouble> {
         let lines = Lines::of(places).map_err(|(name, fault)| trouble(&name, fault))?;
         let mut placed = Self {
@@ -120,7 +111,7 @@ impl Placed {
     pub fn check(places: &Places, rounds: u32) -> Vec<Checked> {
         let mut lines = match Lines::of(places) {
             Ok(lines) => lines,
-            // Another program works with them: nothing is touched.
+            // Another program works with an instrument: nothing is touched.
             Err((name, fault)) => return vec![(name, Err(fault))],
         };
         let mut tried = |name: &String| {
@@ -128,12 +119,12 @@ impl Placed {
                 return try_sound(places, name, rounds);
             }
             let mut instrument = open(places, name, &mut lines)?;
-            let here = |point: &Point| point.place() == Place::Instrument(name);
-            let proved = |point: &Point| here(point) && point.proved_by.is_some();
-            let loops = places.stimuli.iter().filter(|(_, point)| proved(point));
-            let on = loops
-                .map(|(loop_, _)| (*loop_, Values::from([("on", 1.0)])))
-                .collect();
+            let (stimuli, _) = places.points_at(name);
+            let proved = stimuli
+                .iter()
+                .filter(|(_, point)| point.proved_by.is_some());
+            let on = proved.map(|(input, _)| (*input, Values::from([("on", 1.0)])));
+            let on = on.collect();
             let mut round = || {
                 let began = Clock::now();
                 instrument.off()?;
@@ -146,7 +137,7 @@ impl Placed {
             let slowest = (0..rounds).try_fold(Duration::ZERO, |slowest, _| {
                 round().map(|took| slowest.max(took))
             });
-            // A relay that is stuck leaves others closed.
+            // Where one relay is stuck, others may be closed still.
             let off = instrument.off();
             let slowest = slowest?;
             let poll_ms = places.instruments[name].poll_ms as f64;
@@ -156,7 +147,7 @@ impl Placed {
         names.map(|name| (name.clone(), tried(name))).collect()
     }
 
-    /// What of the rig's bytes the unit gets as frames; the rest is wanted of the instruments.
+    /// Passes on what the unit gets as frames of the rig's bytes; orders the rest from the instruments.
     pub fn take(&mut self, now: Instant, bytes: &[u8], out: &mut Vec<u8>) {
         self.to_unit.push(bytes);
         while let Some((mut header, message)) = self.to_unit.next(out) {
@@ -258,7 +249,7 @@ impl Placed {
         for (line_input, line) in UnitInput::lines().filter(|(input, _)| placed(*input)) {
             want(
                 line_input,
-                Values::from([("on", f64::from(u8::from(input.lines.contains(line))))]),
+                Values::from([("on", f64::from(input.lines.contains(line)))]),
             );
             input.lines.remove(line);
         }
@@ -321,11 +312,7 @@ impl Placed {
         let mut output = self.outputs;
         for (signal, point) in &self.places.readings {
             if let Place::None | Place::Operator(_) = point.place() {
-                set(
-                    &mut output,
-                    *signal,
-                    f64::from(u8::from(*signal == Signal::Eb)),
-                );
+                set(&mut output, *signal, f64::from(*signal == Signal::Eb));
             }
         }
         for worker in &self.workers {

@@ -4,17 +4,110 @@
 use std::collections::BTreeMap;
 
 use protocol::message::{ModeSwitch, TrainLines};
-use protocol::signal::Signal;
 
-use super::file::{Place, Places, Point};
+use serde::Deserialize;
+
 use super::instrument::{InstrumentEntry, Kind};
 use super::model::Model;
 
+/// One stimulus or reading.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// `frames`, `none`, `operator` or the name of an instrument.
+    pub(super) at: String,
+    /// Coils of a module, of which one is on: as many as the point has positions.
+    #[serde(default)]
+    pub coils: Vec<u16>,
+    /// How long a pulse lasts, ms.
+    #[serde(default)]
+    pub pulse_ms: u64,
+    /// Input of a module that proves the coil's relay.
+    pub proved_by: Option<u16>,
+    /// Input of a module that is read.
+    pub input: Option<u16>,
+    /// The input is closed where the signal's contact is open.
+    #[serde(default)]
+    pub inverted: bool,
+    /// Channel of the instrument, put into its commands.
+    #[serde(default)]
+    pub channel: u8,
+    /// Name of the driver's question for the reading.
+    pub read: Option<String>,
+    /// Signal per unit of what is read.
+    pub scale: Option<f64>,
+    /// Voltage of the unit's supply, V.
+    pub volts: Option<f64>,
+    /// Expanded uncertainty of the reading, in the unit of the signal.
+    #[serde(default)]
+    pub uncertainty: f64,
+    /// Time allowed to a person, s.
+    pub within_s: Option<u64>,
+}
+
+/// Where a point is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place<'a> {
+    /// In the frames, as without a bench file.
+    Frames,
+    /// Nowhere: the bench does not have it.
+    None,
+    /// A person does it, in so many seconds.
+    Operator(u64),
+    /// The instrument of this name.
+    Instrument(&'a str),
+}
+
+impl Point {
+    /// What the word of `at` means.
+    pub fn place(&self) -> Place<'_> {
+        match self.at.as_str() {
+            "frames" => Place::Frames,
+            "none" => Place::None,
+            "operator" => Place::Operator(self.within_s.unwrap_or(OPERATOR_S)),
+            name => Place::Instrument(name),
+        }
+    }
+
+    /// Refuses numbers that are beyond reason.
+    pub(super) fn check(&self) -> Result<(), String> {
+        let terminals = self.coils.iter().copied();
+        let terminals = terminals.chain(self.proved_by).chain(self.input);
+        if terminals.max() > Some(LAST_TERMINAL) {
+            return Err(format!("coils and inputs are 0 to {LAST_TERMINAL}"));
+        }
+        if self.pulse_ms > MOST_MS {
+            return Err(format!("pulse_ms is at most {MOST_MS}"));
+        }
+        if !(1..=MOST_S).contains(&self.within_s.unwrap_or(OPERATOR_S)) {
+            return Err(format!("within_s is 1 to {MOST_S}"));
+        }
+        if !(self.uncertainty.is_finite() && self.uncertainty >= 0.0) {
+            return Err("uncertainty is a number, and not negative".into());
+        }
+        if self
+            .volts
+            .is_some_and(|volts| !(volts.is_normal() && volts > 0.0))
+        {
+            return Err("volts is a number above 0".into());
+        }
+        match self.scale.is_none_or(|scale| scale.is_normal()) {
+            true => Ok(()),
+            false => Err("scale is a number, and not 0".into()),
+        }
+    }
+}
+
+/// Time a person has, s [default].
+const OPERATOR_S: u64 = 60;
+/// Greatest times that a bench file may state.
+const MOST_MS: u64 = 60_000;
+const MOST_S: u64 = 3_600;
+/// As many coils as one request writes (Modbus application protocol 6.11), counted from 0.
+const LAST_TERMINAL: u16 = 1967;
+
 /// The instrument at which a point is, and its driver.
 pub(super) type Named<'a> = (Option<&'a InstrumentEntry>, Option<&'a Model>);
-
-/// Stimuli and readings of an instrument.
-pub(super) type PointsAt = (Vec<(UnitInput, Point)>, Vec<(Signal, Point)>);
 
 macro_rules! inputs {
     ($($name:ident $key:literal,)*) => {
@@ -26,7 +119,7 @@ macro_rules! inputs {
             /// All, in the order of the train lines first.
             pub const ALL: &[Self] = &[$(Self::$name,)*];
 
-            /// Its key in a bench file.
+            /// Key of the input in a bench file.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$name => $key,)* }
             }
@@ -58,7 +151,7 @@ impl UnitInput {
             .zip(bits)
     }
 
-    /// What a SCPI instrument does for it.
+    /// Act of a SCPI instrument that drives the input.
     pub(super) const fn act(self) -> Option<&'static str> {
         match self {
             Self::Code => Some("code"),
@@ -87,7 +180,7 @@ impl UnitInput {
         )
     }
 
-    /// A person is quick enough for it.
+    /// A person is quick enough to drive the input.
     const fn is_by_hand(self) -> bool {
         !matches!(
             self,
@@ -141,19 +234,6 @@ impl UnitInput {
             }
             _ => Err(format!("{instrument} is no instrument for it")),
         }
-    }
-}
-
-impl Places {
-    /// The stimuli and readings that this instrument has.
-    pub(super) fn points_at(&self, instrument: &str) -> PointsAt {
-        let here = |point: &Point| point.place() == Place::Instrument(instrument);
-        let stimuli = self.stimuli.iter().filter(|(_, point)| here(point));
-        let readings = self.readings.iter().filter(|(_, point)| here(point));
-        (
-            stimuli.map(|(at, point)| (*at, point.clone())).collect(),
-            readings.map(|(at, point)| (*at, point.clone())).collect(),
-        )
     }
 }
 

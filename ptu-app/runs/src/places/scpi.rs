@@ -9,11 +9,11 @@ use btu_rig::rig::InstrumentFault;
 use protocol::signal::Signal;
 use toml::Spanned;
 
-use super::file::{Places, Point};
-use super::line::{SharedLine, io_fault};
-use super::model::{Model, filled};
-use super::points::UnitInput;
-use super::worker::{ANSWERS_WITHIN, Instrument, Values, Wanted, span};
+use super::file::Places;
+use super::line::{LONGEST, SharedLine, io_fault};
+use super::model::{Model, Values, filled};
+use super::points::{Point, UnitInput};
+use super::worker::{ANSWERS_WITHIN, Instrument, Wanted, span};
 use crate::pool::held;
 
 /// Number of the error that says that its queue is full (SCPI-99 21.8.11).
@@ -21,8 +21,6 @@ const QUEUE_OVERFLOW: i32 = -350;
 
 /// Infinities and what is no number are answered as this and more (SCPI-99 7.2.1.4 and 7.2.1.5).
 const OVERLOAD: f64 = 9.9e37;
-/// Longest answer, bytes.
-pub(super) const LONGEST: usize = 4096;
 
 /// An instrument whose model was checked, with the points of the bench file that it has.
 pub(super) struct Scpi {
@@ -73,7 +71,7 @@ impl Scpi {
 
     fn say(&self, text: &str) -> Result<(), InstrumentFault> {
         let sent = held(&self.line).write_all(format!("{text}\n").as_bytes());
-        sent.map_err(|error| io_fault(&error))
+        sent.map_err(io_fault)
     }
 
     fn ask(&mut self, question: &str) -> Result<String, InstrumentFault> {
@@ -100,7 +98,7 @@ impl Scpi {
             }
             let mut chunk = [0; LONGEST];
             let count = line.wait_for(left).and_then(|()| line.read(&mut chunk));
-            match count.map_err(|error| io_fault(&error))? {
+            match count.map_err(io_fault)? {
                 0 => return Err(InstrumentFault::Closed),
                 count => self.came.extend_from_slice(&chunk[..count]),
             }

@@ -7,9 +7,25 @@ use btu_rig::stimulus::Stimulus;
 use protocol::Duration;
 use protocol::signal::Signal;
 
-use super::file::{Place, Places, Point};
-use super::fit::{Teller, inner, inner_mut};
+use super::file::Places;
+use super::points::{Place, Point};
+use super::teller::Teller;
 use crate::words::BenchNote;
+
+/// The action itself, without the word that it is for a bench or a train only.
+pub(super) fn inner(action: &Action) -> &Action {
+    match action {
+        Action::OnBench(action) | Action::OnTrain(action) => action,
+        action => action,
+    }
+}
+
+pub(super) fn inner_mut(action: &mut Action) -> &mut Action {
+    match action {
+        Action::OnBench(action) | Action::OnTrain(action) => action,
+        action => action,
+    }
+}
 
 /// Greatest speed and acceleration of steps that continue each other.
 #[derive(Clone, Copy, Debug, Default)]

@@ -6,9 +6,10 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use btu_rig::rig::InstrumentFault;
+use btu_rig::rig::{InstrumentFault, LinkTrouble};
 use protocol::signal::Signal;
 
+use super::model::Values;
 use super::points::UnitInput;
 use crate::pool::held;
 
@@ -21,8 +22,6 @@ const AFTER_EACH_OTHER: Duration = Duration::from_millis(50);
 /// An instrument that is late once may have waited for this computer; one that is so often in a row is slow.
 const SLOW_AFTER: u32 = 3;
 
-/// Values of a stimulus by name.
-pub(super) type Values = BTreeMap<&'static str, f64>;
 /// What is wanted of an instrument, by stimulus.
 pub(super) type Wanted = BTreeMap<UnitInput, Values>;
 
@@ -139,7 +138,7 @@ impl Worker {
     /// Switches its outputs off and waits for that, no longer than this.
     pub fn end(&mut self, within: Duration) {
         let mut state = held(&self.shared.0);
-        // It was waited for once.
+        // The end of the thread was waited for once.
         if std::mem::replace(&mut state.ends, true) {
             return;
         }
@@ -220,6 +219,14 @@ fn kept<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
+/// The fault of an instrument, as the trouble of the bench's link.
+pub(super) fn trouble(instrument: &str, fault: InstrumentFault) -> LinkTrouble {
+    LinkTrouble::Instrument {
+        instrument: instrument.to_owned(),
+        fault: Box::new(fault),
+    }
+}
+
 pub(super) fn span(time: Duration) -> protocol::Duration {
     protocol::Duration::from_us(u64::try_from(time.as_micros()).unwrap_or(u64::MAX))
 }
@@ -228,7 +235,7 @@ pub(super) fn span(time: Duration) -> protocol::Duration {
 mod tests {
     use super::*;
 
-    /// It takes so long, panics in the cycle of this number, and counts how often it was switched off.
+    /// An instrument that takes so long, panics in the cycle of this number, and counts how often it was switched off.
     struct Odd(Duration, u32, Arc<Mutex<u32>>);
 
     impl Instrument for Odd {

@@ -79,15 +79,30 @@ pub struct RecordComparison {
     pub notes: Vec<String>,
 }
 
+/// A run as rows from its departure on.
+#[derive(Default)]
 struct Curve {
-    /// Seconds since departure, place, speed and target, effort, marker count; rows that are known.
+    /// Rows whose place and speed are known.
     rows: Vec<Point>,
+    /// Markers in the order in which they were passed.
     markers: Vec<u8>,
 }
 
+/// Signals that a curve is made of, in the order of [`Curve::of`].
+const SIGNALS: [Signal; 6] = [
+    Signal::Speed,
+    Signal::Target,
+    Signal::Position,
+    Signal::Effort,
+    Signal::Marker,
+    Signal::MarkerCount,
+];
+
 #[derive(Clone, Copy)]
 struct Point {
+    /// Seconds since departure.
     t_s: f64,
+    /// Place in the section, m.
     x_m: f64,
     speed_kmh: f64,
     target_kmh: f64,
@@ -107,7 +122,9 @@ pub fn compare(
     let mut plan = case.plan.clone();
     plan.tester = true;
     let outcome = drive(&case.bench, plan, case.seed);
-    let twin = Curve::of_rows(&outcome.rows);
+    let rows = outcome.rows.iter();
+    let rows = rows.map(|row| SIGNALS.map(|signal| row.value(signal)));
+    let twin = Curve::of(rows.collect(), CYCLE.as_secs()).unwrap_or_default();
     // No controller is at its target at once: as far behind it as the sound unit is, it follows.
     let follows = |row: &Point| {
         let behind = twin
@@ -200,55 +217,35 @@ impl Curve {
                 .column(name)
                 .ok_or_else(|| Failure::usage(RecordTrouble::NoRunRecord(name.to_owned())))
         };
-        let (speed, target) = (column(Signal::Speed)?, column(Signal::Target)?);
-        let (position, effort) = (column(Signal::Position)?, column(Signal::Effort)?);
-        let (marker, count) = (column(Signal::Marker)?, column(Signal::MarkerCount)?);
-        let departs = speed.iter().position(|kmh| *kmh > 0.0);
-        let departs = departs.ok_or_else(|| Failure::usage(RecordTrouble::NeverMoves))?;
-        let period_s = trace.period_us as f64 / 1e6;
-        let point = |row: usize| Point {
-            t_s: (row as f64 - departs as f64) * period_s,
-            x_m: position[row],
-            speed_kmh: speed[row],
-            target_kmh: target[row],
-            effort: effort[row],
-        };
-        let known = |row: &usize| !speed[*row].is_nan() && !position[*row].is_nan();
-        let passed = (1..trace.rows()).filter(|row| count[*row] != count[*row - 1]);
-        Ok(Self {
-            markers: passed
-                .map(|row| marker[row] as u8)
-                .filter(|m| *m != 0)
-                .collect(),
-            rows: (departs..trace.rows()).filter(known).map(point).collect(),
-        })
+        let columns: Vec<_> = SIGNALS.into_iter().map(column).collect::<Result<_, _>>()?;
+        let rows = (0..trace.rows()).map(|row| std::array::from_fn(|at| columns[at][row]));
+        Self::of(rows.collect(), trace.period_us as f64 / 1e6)
+            .ok_or_else(|| Failure::usage(RecordTrouble::NeverMoves))
     }
 
-    fn of_rows(rows: &[btu_rig::drive::Row]) -> Self {
-        let value = |row: &btu_rig::drive::Row, signal| row.value(signal);
-        let departs = rows.iter().position(|row| value(row, Signal::Speed) > 0.0);
-        let rows = &rows[departs.unwrap_or(rows.len())..];
-        let point = |(place, row): (usize, &btu_rig::drive::Row)| Point {
-            t_s: place as f64 * CYCLE.as_secs(),
-            x_m: value(row, Signal::Position),
-            speed_kmh: value(row, Signal::Speed),
-            target_kmh: value(row, Signal::Target),
-            effort: value(row, Signal::Effort),
-        };
-        let passed = rows.windows(2).filter(|pair| {
-            value(&pair[0], Signal::MarkerCount) != value(&pair[1], Signal::MarkerCount)
+    /// The curve of rows of [`SIGNALS`] that are `period_s` apart; none if the train never moves.
+    fn of(rows: Vec<[f64; SIGNALS.len()]>, period_s: f64) -> Option<Self> {
+        let departs = rows.iter().position(|[speed_kmh, ..]| *speed_kmh > 0.0)?;
+        let points = (0..).zip(&rows[departs..]).map(|(place, row)| {
+            let [speed_kmh, target_kmh, x_m, effort, ..] = *row;
+            Point {
+                t_s: f64::from(place) * period_s,
+                x_m,
+                speed_kmh,
+                target_kmh,
+                effort,
+            }
         });
-        Self {
-            markers: passed
-                .map(|pair| value(&pair[1], Signal::Marker) as u8)
+        let markers = rows.windows(2).filter_map(|pair| {
+            let ([.., before], [.., marker, count]) = (pair[0], pair[1]);
+            (count != before && marker as u8 != 0).then_some(marker as u8)
+        });
+        Some(Self {
+            rows: points
+                .filter(|point| !point.speed_kmh.is_nan() && !point.x_m.is_nan())
                 .collect(),
-            rows: rows
-                .iter()
-                .enumerate()
-                .map(point)
-                .filter(|p| !p.x_m.is_nan())
-                .collect(),
-        }
+            markers: markers.collect(),
+        })
     }
 
     /// The row nearest to a place; none beyond the ends.

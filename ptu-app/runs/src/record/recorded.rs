@@ -29,7 +29,7 @@ const SIGNALS: [Signal; 7] = [
 pub struct RecordedRun {
     /// Id of the run, equal on every laptop: made from the unit and all rows of the run.
     pub id: Id,
-    /// Power-up that it was made in.
+    /// Power-up in which the run was made.
     pub power_up: u32,
     /// Run since that power-up.
     pub run: u16,

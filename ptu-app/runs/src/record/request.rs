@@ -5,7 +5,7 @@ use fault_db::{Id, Store};
 
 use super::{RecordComparison, compare, find_section};
 use crate::data::ScriptsDirectory;
-use crate::drive::{Fixed, Request, SectionChoice};
+use crate::drive::{Request, SectionChoice};
 use crate::failure::{Failure, Unknown};
 
 /// The train of the sound unit.
@@ -52,20 +52,16 @@ impl CompareRequest {
         let data = store.trace(trace)?;
         let number = match self.section {
             Some(number) => number,
-            None => find_section(&line.content, &data)?.section,
+            None => find_section(&line.content, &data)?,
         };
         let request = Request {
             line: Some(line_name.clone()),
             sections: Some(SectionChoice::One(number)),
-            controllers: Vec::new(),
             train: TRAIN.into(),
-            mass_kg: None,
             load: self.load,
-            fixed: Fixed::default(),
-            code: None,
             unit_config: unit_config.clone(),
-            settings: Vec::new(),
             seed: 1,
+            ..Request::default()
         };
         let cases = request.cases(directory)?;
         let case = cases

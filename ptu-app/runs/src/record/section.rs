@@ -10,19 +10,11 @@ use crate::failure::{Failure, RecordTrouble};
 /// Greatest difference of a marker's place, or of the stop, that is still of this section, m.
 const NEAR_M: f64 = 30.0;
 
-/// A section, and how well it fits.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SectionMatch {
-    pub section: u16,
-    /// Root mean square of the differences of markers and stop, m.
-    pub off_m: f64,
-}
-
-/// The section of `line` whose markers and stop are where the run found them.
+/// The number of the section of `line` whose markers and stop are where the run found them.
 ///
 /// # Errors
 /// None fits, or several do as well: which.
-pub fn find_section(line: &Line, trace: &TraceData) -> Result<SectionMatch, Failure> {
+pub fn find_section(line: &Line, trace: &TraceData) -> Result<u16, Failure> {
     let seen = places(trace);
     if seen.is_empty() {
         return Err(Failure::usage(RecordTrouble::NoMarkers));
@@ -30,21 +22,21 @@ pub fn find_section(line: &Line, trace: &TraceData) -> Result<SectionMatch, Fail
     let mut matches: Vec<_> = line
         .sections
         .iter()
-        .filter_map(|section| fit(section, &seen))
+        .filter_map(|section| Some((off_m(section, &seen)?, section.section)))
         .collect();
-    matches.sort_by(|a, b| a.off_m.total_cmp(&b.off_m));
+    matches.sort_by(|a, b| a.0.total_cmp(&b.0));
     match &matches[..] {
         [] => Err(Failure::usage(RecordTrouble::NoSectionFits(
             line.name.clone(),
         ))),
-        [best, other, ..] if other.off_m < 2.0 * best.off_m + 1.0 => {
-            let near = matches.iter().filter(|m| m.off_m < 2.0 * best.off_m + 1.0);
-            let near: Vec<_> = near.map(|m| m.section.to_string()).collect();
+        [(best_m, _), (other_m, _), ..] if *other_m < 2.0 * best_m + 1.0 => {
+            let near = (matches.iter()).filter(|(off_m, _)| *off_m < 2.0 * best_m + 1.0);
+            let near: Vec<_> = near.map(|(_, section)| section.to_string()).collect();
             Err(Failure::usage(RecordTrouble::SectionsAlike(
                 near.join(", "),
             )))
         }
-        [best, ..] => Ok(best.clone()),
+        [(_, best), ..] => Ok(*best),
     }
 }
 
@@ -70,7 +62,8 @@ fn places(trace: &TraceData) -> Vec<(usize, f64)> {
     seen
 }
 
-fn fit(section: &Section, seen: &[(usize, f64)]) -> Option<SectionMatch> {
+/// Root mean square of the differences of markers and stop from those of a section, m; none if one is too far off.
+fn off_m(section: &Section, seen: &[(usize, f64)]) -> Option<f64> {
     let mut sum = 0.0;
     for (marker, at_m) in seen {
         let place_m = match marker {
@@ -84,8 +77,5 @@ fn fit(section: &Section, seen: &[(usize, f64)]) -> Option<SectionMatch> {
         }
         sum += off_m * off_m;
     }
-    Some(SectionMatch {
-        section: section.section,
-        off_m: (sum / seen.len() as f64).sqrt(),
-    })
+    Some((sum / seen.len() as f64).sqrt())
 }

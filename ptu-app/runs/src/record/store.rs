@@ -1,6 +1,6 @@
 //! Stores runs of a unit's record that are new to the history, as a run without a verdict.
 
-use fault_db::{RunEnd, RunWriter, StepRecord, Store, StoreError, Verdict};
+use fault_db::{RunWriter, StepRecord, Store, StoreError, Verdict};
 use protocol::message::Mode;
 use protocol::signal::Signal;
 
@@ -44,16 +44,8 @@ pub fn pull(store: &Store, source: &Source, runs: Vec<RecordedRun>) -> Result<Pu
         writer.recorded_trace(run.id, &run.trace)?;
         writer.step(step(index, run))?;
     }
-    writer.finish(&RunEnd {
-        // A broken link is an error; otherwise nothing was judged.
-        verdict: match source.broken_off {
-            true => Verdict::Error,
-            false => Verdict::Skipped,
-        },
-        finished_at_us: source.until_us,
-        bench_time_us: 0,
-        wall_time_us: source.until_us - source.from_us,
-    })?;
+    // Nothing was judged.
+    writer.finish(&source.end(Verdict::Skipped))?;
     pulled.run = Some(writer.id());
     Ok(pulled)
 }

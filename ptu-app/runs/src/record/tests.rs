@@ -5,7 +5,7 @@ use fault_db::Store;
 
 use super::*;
 use crate::clock::open_options;
-use crate::drive::{Case, Fixed, Request, SectionChoice};
+use crate::drive::{Case, Request, SectionChoice};
 use crate::link::Pace;
 use crate::stop::Stop;
 use crate::test_support::scripts;
@@ -13,26 +13,18 @@ use crate::unit_log::{LogRead, Source, UnitReading, read_log};
 
 const NOW_US: i64 = 1_000_000_000_000;
 
-fn case(settings: &[&str], wheel: Option<f64>) -> Case {
+fn case(settings: &[&str]) -> Case {
     let directory = scripts();
     let request = Request {
-        line: None,
         sections: Some(SectionChoice::One(61)),
-        controllers: Vec::new(),
         train: "line6".into(),
-        mass_kg: None,
-        load: None,
-        fixed: Fixed {
-            wheel_factor: wheel,
-            ..Fixed::default()
-        },
-        code: None,
         unit_config: "sg100".into(),
         settings: settings
             .iter()
             .map(|text| text.parse().expect("a setting"))
             .collect(),
         seed: 1,
+        ..Request::default()
     };
     request.cases(&directory).expect("a case").remove(0)
 }
@@ -77,7 +69,7 @@ fn only_run(read: &LogRead) -> RecordedRun {
 
 #[test]
 fn a_sound_units_record_is_found_on_the_line_and_is_as_expected() {
-    let case = case(&[], None);
+    let case = case(&[]);
     let run = only_run(&driven(&case));
     assert!(!run.is_cut && !run.trace.gaps, "{}", run.summary());
     assert!(
@@ -85,7 +77,7 @@ fn a_sound_units_record_is_found_on_the_line_and_is_as_expected() {
         "the unit was sent the time while it was read"
     );
     let line = &case.bench.line.content;
-    assert_eq!(find_section(line, &run.trace).expect("found").section, 61);
+    assert_eq!(find_section(line, &run.trace).expect("found"), 61);
     let compared = compare(&run.trace, &case.plan.section, &case).expect("compared");
     assert!(
         compared.is_as_expected() && compared.late_m().is_none(),
@@ -104,9 +96,9 @@ fn a_sound_units_record_is_found_on_the_line_and_is_as_expected() {
 /// profile, held against the one it should have driven.
 #[test]
 fn a_unit_that_drives_another_profile_parts_from_the_sound_one() {
-    let other = case(&["ato.controller=\"pss\""], None);
+    let other = case(&["ato.controller=\"pss\""]);
     let run = only_run(&driven(&other));
-    let sound = case(&[], None);
+    let sound = case(&[]);
     let compared = compare(&run.trace, &sound.plan.section, &sound).expect("compared");
     assert!(!compared.is_as_expected());
     let target = compared
@@ -128,7 +120,7 @@ fn a_unit_that_drives_another_profile_parts_from_the_sound_one() {
 
 #[test]
 fn pulling_a_record_again_adds_nothing_and_two_laptops_make_the_same_trace() {
-    let read = driven(&case(&[], None));
+    let read = driven(&case(&[]));
     let dir = tempfile::tempdir().expect("a directory");
     let open = |name: &str| Store::open(&dir.path().join(name), open_options()).expect("opened");
     let (a, b) = (open("a.db"), open("b.db"));
@@ -141,13 +133,10 @@ fn pulling_a_record_again_adds_nothing_and_two_laptops_make_the_same_trace() {
             endpoint: "serial:a".into(),
             serial: "SG-1".into(),
             config_name: "sg100".into(),
-            unit_config_sha256: String::new(),
             line: "line8".into(),
-            operator: String::new(),
-            train: String::new(),
             from_us: until_us - 1_000_000,
             until_us,
-            broken_off: false,
+            ..Source::default()
         },
         clock: crate::clock::ClockState::Synchronised,
         warnings: Vec::new(),

@@ -25,7 +25,8 @@ const CLOCK_TOLERANCES: [(&str, f64); 6] = [
     ("mV", 2.0),
     ("%", 0.1),
 ];
-/// Units of what is left out there: efforts and their accelerations lag behind what the train was asked for
+/// Units of signals that are left out where a unit runs by a clock of its own: efforts and their accelerations lag behind
+/// what the train was asked for
 /// before the procedure began, and jump with every frame that is late. What TCMS orders is compared.
 const CLOCK_LEFT_OUT: [&str; 3] = ["N", "m/s²", "m/s³"];
 /// Tolerance of quantities without a unit (efforts of 1 024), where a unit runs by a clock of its
@@ -338,7 +339,7 @@ impl Rows {
 struct Pair<'a> {
     came: &'a [f64],
     expected: &'a [f64],
-    /// Taken off what came.
+    /// Value that is subtracted from the value that came.
     offset: f64,
     /// `None`: any difference counts.
     tolerance: Option<f64>,
@@ -346,7 +347,8 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// Neither came what was expected around this row, nor was expected what came.
+    /// Whether the values of a row deviate: the expected one did not come in the rows around, and the one that came was not
+    /// expected there.
     fn apart(&self, row: usize) -> bool {
         let same = |a: f64, b: f64| match self.tolerance {
             _ if a.is_nan() || b.is_nan() => a.is_nan() && b.is_nan(),

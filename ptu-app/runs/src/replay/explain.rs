@@ -12,11 +12,11 @@ const LONGEST_CHAIN: usize = 12;
 #[derive(Debug)]
 pub struct Explanation {
     pub id: Id,
-    /// The procedure it comes from.
+    /// Procedure in which the trace was recorded.
     pub procedure: String,
     /// Expected trace, made by the good twin.
     pub twin: TraceData,
-    /// Where they differ; the first one first.
+    /// Deviations of the trace from the expected one, the earliest first.
     pub comparison: Comparison,
     /// From the first deviation to the brake, or to the end of the trace when none came.
     pub chain: Vec<Link>,
@@ -34,7 +34,7 @@ pub enum Link {
         at_s: f64,
         code: i64,
         name: String,
-        /// Part it points at.
+        /// Part at which the fault points.
         lru: String,
     },
 }

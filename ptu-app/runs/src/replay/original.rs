@@ -25,12 +25,12 @@ pub fn rule_between(store: &Store, a: Id, b: Id) -> Result<Rule, Failure> {
     })
 }
 
-/// A trace that can be had again.
+/// A stored trace whose stimuli are recorded, so that it can be made again.
 #[derive(Debug)]
 pub struct Original {
     /// The trace's id.
     pub id: Id,
-    /// The run it was recorded in.
+    /// Run in which the trace was recorded.
     pub run_id: Id,
     pub procedure: String,
     pub trace: TraceData,

@@ -47,7 +47,7 @@ pub fn place(signal: &str) -> usize {
         .unwrap_or(usize::MAX)
 }
 
-/// A deviation of it is a link of a chain.
+/// Whether a deviation of the signal can be a link of a chain.
 pub fn is_link(signal: &str) -> bool {
     let bulk = ["motor_", "air_"]
         .iter()

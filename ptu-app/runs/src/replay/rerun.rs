@@ -1,9 +1,7 @@
 //! The recorded stimuli again, on the embedded unit or one on a port: the situation of a fault set up on
 //! the bench, and kept as a run of its own.
 
-use fault_db::{
-    Id, RunEnd, RunRecord, RunWriter, StepRecord, Store, TraceData, UnitRecord, Verdict,
-};
+use fault_db::{Id, RunEnd, RunRecord, RunWriter, StepRecord, Store, TraceData, Verdict};
 use protocol::Instant;
 use protocol::injection::FaultMode;
 
@@ -13,9 +11,9 @@ use crate::clock;
 use crate::data::ScriptsDirectory;
 use crate::failure::{Exit, Failure, RunTrouble};
 use crate::link::Endpoint;
-use crate::platform;
 use crate::run::{BenchContents, BenchSetup, Connected};
 use crate::stop::Stop;
+use crate::stored::{from_stored, new_run};
 use crate::words::{Say, TextStyle};
 
 /// Settings of a replay.
@@ -76,7 +74,7 @@ impl ReplayMatch {
 /// The result of a replay.
 #[derive(Debug)]
 pub struct Rerun {
-    /// The run it was recorded as.
+    /// Run as which the replay was recorded.
     pub run_id: Id,
     pub trace_id: Id,
     /// Serial number of the unit.
@@ -154,12 +152,7 @@ pub fn rerun(
         from_twin,
         refused: again.refused,
         cut_short,
-        exit: match verdict {
-            Verdict::Passed | Verdict::Skipped => Exit::Passed,
-            Verdict::Failed => Exit::Failed,
-            Verdict::Error | Verdict::Inconclusive => Exit::Bench,
-            Verdict::Aborted => Exit::Aborted,
-        },
+        exit: from_stored(verdict).into(),
     })
 }
 
@@ -237,24 +230,16 @@ fn run_record(
     rerunning: &Rerunning,
     started_at_us: i64,
 ) -> RunRecord {
+    let config_name = setup.config.content.name.clone();
+    let source = format!("replay of {} on {}", original.id.short(), setup.endpoint);
     RunRecord {
-        unit: UnitRecord {
-            serial: serial.to_owned(),
-            kind: "atc".into(),
-            config_name: setup.config.content.name.clone(),
-            sw_versions: std::collections::BTreeMap::new(),
-        },
         line: setup.line.content.name.clone(),
         seed: setup.seed,
         operator: rerunning.operator.clone(),
-        source: format!("replay of {} on {}", original.id.short(), setup.endpoint),
-        started_at_us,
-        app_version: env!("CARGO_PKG_VERSION").into(),
         // No script is run.
         unit_config_sha256: setup.config.sha256.clone(),
         injected: setup.injected(),
-        owner: platform::this_process(),
-        ..RunRecord::default()
+        ..new_run(serial.to_owned(), config_name, source, started_at_us)
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::mpsc::{self, Receiver};
 use std::thread::Scope;
 
 use btu_rig::procedure::RunOptions;
@@ -13,10 +13,9 @@ use super::bench_setup::Connected;
 use super::event::SessionEvent;
 use super::observe::ObservationBuilder;
 use super::plan::{Adaptive, ProcedureStream, RunPlan, Task, stream};
-use super::workers::Worker;
 use crate::stop::Stop;
 
-/// Starts the worker; procedures come as it chooses them.
+/// Starts the search on a thread of its own; procedures come as the search chooses them.
 pub fn start<'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: &'scope RunPlan,
@@ -26,44 +25,31 @@ pub fn start<'scope>(
 ) -> Receiver<ProcedureStream> {
     let (procedures, receiver) = mpsc::channel();
     scope.spawn(move || {
-        let mut worker = Worker::new(connected, stop);
-        run_adaptively(plan, adaptive, &mut worker, stop, &procedures);
+        let model = Model::new(
+            &adaptive.dictionary,
+            &adaptive.settings,
+            &adaptive.lru_factors,
+        );
+        isolate(&model, &plan.tasks, &mut |task, saw, go_on| {
+            let (sender, events) = stream();
+            if procedures.send((task.procedure.clone(), events)).is_err() {
+                return false;
+            }
+            if !stop.may_begin() {
+                // The stream of events ends empty: the collector counts this procedure as due and not
+                // run.
+                return false;
+            }
+            let mut sink = |event| {
+                saw(&event);
+                // The collector listens until the stream ends, so that sending cannot fail.
+                drop(sender.send(event));
+            };
+            connected.run(task, stop, &mut sink, go_on);
+            true
+        });
     });
     receiver
-}
-
-fn run_adaptively(
-    plan: &RunPlan,
-    adaptive: &Adaptive,
-    worker: &mut Worker<'_>,
-    stop: &Stop,
-    procedures: &Sender<ProcedureStream>,
-) {
-    let Adaptive {
-        dictionary,
-        settings,
-        lru_factors,
-        ..
-    } = adaptive;
-    let model = Model::new(dictionary, settings, lru_factors);
-    isolate(&model, &plan.tasks, &mut |task, saw, go_on| {
-        let (sender, events) = stream();
-        if procedures.send((task.procedure.clone(), events)).is_err() {
-            return false;
-        }
-        if !stop.may_begin() {
-            // The stream of events ends empty: the collector counts this procedure as due and not
-            // run.
-            return false;
-        }
-        let mut sink = |event| {
-            saw(&event);
-            // The collector listens until the stream ends, so that sending cannot fail.
-            drop(sender.send(event));
-        };
-        worker.run(task, &mut sink, go_on);
-        true
-    });
 }
 
 /// Runs a task: each event goes to the first function, and after each step the second says whether to go on. False where the

@@ -15,8 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bench_setup::BenchSetup;
 use super::event::RecordedStimuli;
-use crate::data::ScriptsDirectory;
-use crate::data::sha256;
+use crate::data::{DataFile, ScriptsDirectory, sha256};
 use crate::drive::{Setting, unit_config};
 use crate::failure::{Exit, Failure, RecordTrouble};
 use crate::fleet;
@@ -31,6 +30,16 @@ pub struct BenchFile {
     pub settings: Vec<String>,
     /// SHA-256 of it with its changes, in hex; of a train, of its content.
     pub sha256: String,
+}
+
+impl BenchFile {
+    fn of<T>(file: &DataFile<T>) -> Self {
+        Self {
+            name: file.name.clone(),
+            settings: file.settings.clone(),
+            sha256: file.sha256.clone(),
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,20 +82,11 @@ pub struct Stimuli {
 impl BenchContents {
     /// Content of the benches that `setup` makes for a unit of this serial number and connection.
     pub fn of(setup: &BenchSetup, serial: String, connection: Connection) -> Self {
-        let (config, line) = (&setup.config, &setup.line);
         Self {
             source: setup.endpoint.to_string(),
             serial,
-            unit_config: BenchFile {
-                name: config.name.clone(),
-                settings: config.settings.clone(),
-                sha256: config.sha256.clone(),
-            },
-            line: BenchFile {
-                name: line.name.clone(),
-                settings: line.settings.clone(),
-                sha256: line.sha256.clone(),
-            },
+            unit_config: BenchFile::of(&setup.config),
+            line: BenchFile::of(&setup.line),
             train: BenchFile {
                 name: setup.train.name().to_owned(),
                 settings: Vec::new(),

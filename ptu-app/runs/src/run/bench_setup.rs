@@ -15,7 +15,6 @@ use protocol::line::Line;
 use protocol::message::{Coil, Identity};
 use protocol::{Duration, Instant};
 
-use super::connect_port::ReadyUnit;
 use super::fault_watch::FaultSeen;
 use super::run_control::RunControl;
 use super::session::Session;
@@ -98,7 +97,7 @@ impl UnitLink for SimUnit {
 pub enum Connected {
     /// The embedded unit, a new one for each procedure.
     Sim(Box<BenchSetup>),
-    /// The unit on a port, and what TCMS found before the first procedure.
+    /// The unit on a port, and the faults that TCMS and the unit's self-test found before the first procedure.
     Port(Box<Session<WireLink>>, Identity, Vec<FaultSeen>),
 }
 
@@ -132,12 +131,7 @@ impl BenchSetup {
         if self.endpoint == Endpoint::Sim {
             return Ok(Connected::Sim(Box::new(self.clone())));
         }
-        let ReadyUnit {
-            session,
-            identity,
-            found,
-        } = self.reach(stop)?;
-        Ok(Connected::Port(Box::new(session), identity, found))
+        self.reach(stop)
     }
 
     pub(super) fn rig(&self, seed: u64, power_at: Instant) -> Rig {
@@ -225,9 +219,21 @@ impl BenchSetup {
         } else {
             Pace::Virtual
         };
-        Session::new(Bench::new(rig, wired(link)), pace, stop.clone(), true)
-            .controlled_by(self.run_control.clone())
-            .recorded_whole(self.record_whole)
+        self.session(Bench::new(rig, wired(link)), pace, stop, true)
+    }
+
+    /// As [`Session::new`], watched, controlled and recorded as this setup says.
+    pub(super) fn session<L: UnitLink>(
+        &self,
+        bench: Bench<L>,
+        pace: Pace,
+        stop: &Stop,
+        fresh_unit: bool,
+    ) -> Session<L> {
+        let mut session = Session::new(bench, pace, stop.clone(), fresh_unit);
+        session.run_control.clone_from(&self.run_control);
+        session.rows = self.record_whole.then(Vec::new);
+        session
     }
 }
 

@@ -210,14 +210,8 @@ impl BenchChoice {
 /// # Errors
 /// The text is not three numbers up to 255.
 pub fn software_version(text: &str) -> Result<[u8; 3], RunTrouble> {
-    let parts: Vec<u8> = text
-        .split('.')
-        .map_while(|part| part.parse::<u8>().ok())
-        .collect();
-    let version = parts
-        .try_into()
-        .ok()
-        .filter(|_| text.split('.').count() == 3);
+    let parts: Option<Vec<u8>> = text.split('.').map(|part| part.parse().ok()).collect();
+    let version = parts.and_then(|parts| parts.try_into().ok());
     version.ok_or_else(|| RunTrouble::NoVersion(text.to_owned()))
 }
 

@@ -11,7 +11,7 @@ use super::bench_contents::BenchContents;
 use super::event::{RecordedStimuli, SessionEvent};
 use super::fault_watch::FaultSeen;
 use super::run_start::RunStart;
-use super::store_thread::{LinePrinter, RunStore};
+use super::store_thread::{Entry, LinePrinter, RunStore};
 use super::trace_data::trace_data;
 use crate::failure::{Exit, Failure, Trouble, prevented_by};
 use crate::stored::{WHOLE_RUN, fault_record, outside_record, step_record, stored, whole_run};
@@ -249,7 +249,7 @@ impl<'a> Collector<'a> {
             SessionEvent::Ended { bench_time } => self.before += bench_time,
         }
         if let Some(line) = line {
-            self.store.say(line);
+            self.store.record(Entry::Say(line));
         }
     }
 
@@ -280,7 +280,7 @@ impl<'a> Collector<'a> {
             self.counter.note_outside(stored(entry.verdict));
             let at = self.before + Duration::from_us(entry.at.as_us());
             let record = outside_record(procedure, &entry, at.as_us() as i64);
-            self.store.step(StepRecord { index, ..record });
+            (self.store).record(Entry::Step(StepRecord { index, ..record }));
         }
     }
 
@@ -290,7 +290,7 @@ impl<'a> Collector<'a> {
         self.counter.note(step, stored(result.verdict));
         let started = self.before + Duration::from_us(result.started.as_us());
         let record = step_record(&procedure.id, result, started.as_us() as i64);
-        self.store.step(StepRecord { index, ..record });
+        (self.store).record(Entry::Step(StepRecord { index, ..record }));
     }
 
     fn fault(&mut self, fault: FaultSeen) {
@@ -300,7 +300,7 @@ impl<'a> Collector<'a> {
         self.dates.push((bench_us, at_us));
         let step_index = fault.step.map(|turn| self.steps_before + turn as u32);
         let record = fault_record(fault, at_us, bench_us, step_index);
-        self.store.fault(record);
+        self.store.record(Entry::Fault(record));
     }
 
     fn trace(&mut self, cut: &RecordedWindow) {
@@ -316,16 +316,16 @@ impl<'a> Collector<'a> {
             Some((bench_us, at_us)) => at_us - (bench_us - trace.t0_bench_us),
             None => self.began.now_us() - length_us,
         };
-        self.store.trace(faults, trace);
+        self.store.record(Entry::Trace(faults, trace));
     }
 
     fn recording(&mut self, procedure: &str, stimuli: &RecordedStimuli) {
         let recording = self.made.recording(procedure, stimuli);
-        self.store.recording(RecordingRecord {
+        self.store.record(Entry::Recording(RecordingRecord {
             ordinal: self.ordinal,
             t0_bench_us: self.before.as_us() as i64,
             ..recording
-        });
+        }));
     }
 
     /// The end of all streams; `stopped` = what that makes of what was still due: somebody pressed stop, or the
@@ -365,26 +365,16 @@ impl<'a> Collector<'a> {
         }
         // Also what a procedure said that the program did not run to its end.
         self.store_outside(WHOLE_RUN);
-        let counts = self.counter.counts(self.planned);
-        let exit = match verdict {
-            Verdict::Passed | Verdict::Skipped => Exit::Passed,
-            Verdict::Failed => Exit::Failed,
-            // Not all that a verdict on the unit takes was run.
-            Verdict::Error | Verdict::Inconclusive => Exit::Bench,
-            Verdict::Aborted => Exit::Aborted,
+        let outcome = Outcome {
+            id,
+            verdict,
+            bench_time: self.before,
+            exit: verdict.into(),
+            lost: None,
+            prevented: None,
+            counts: self.counter.counts(self.planned),
         };
-        (
-            self.store,
-            Outcome {
-                id,
-                verdict,
-                bench_time: self.before,
-                exit,
-                lost: None,
-                prevented: None,
-                counts,
-            },
-        )
+        (self.store, outcome)
     }
 }
 

@@ -12,7 +12,7 @@ use protocol::message::Identity;
 use protocol::signal::Sample;
 use protocol::{CYCLE, Duration, Instant};
 
-use super::bench_setup::BenchSetup;
+use super::bench_setup::{BenchSetup, Connected};
 use super::fault_watch::{self, FaultSeen};
 use super::session::Session;
 use super::settle::{READY_WITHIN, started};
@@ -35,20 +35,13 @@ const CLOCK_DOUBTED: Duration = Duration::from_ms(10_000);
 /// Time in which the unit's log is answered or given up.
 const LOG_WITHIN: Duration = Duration::from_ms(10_000);
 
-/// A connected unit on a port that has said it is ready.
-pub(super) struct ReadyUnit {
-    pub session: Session<WireLink>,
-    pub identity: Identity,
-    /// Faults that TCMS found meanwhile, and the unit in its own self-test.
-    pub found: Vec<FaultSeen>,
-}
-
 impl BenchSetup {
-    /// Reaches the unit on its port, identifies it and brings it to a known state.
+    /// Reaches the unit on its port, identifies it and brings it to a known state. Faults that TCMS finds meanwhile, and the
+    /// unit in its own self-test, are those of [`Connected::Port`].
     ///
     /// # Errors
     /// The unit cannot be reached, is another one, or has another configuration.
-    pub(super) fn reach(&self, stop: &Stop) -> Result<ReadyUnit, Failure> {
+    pub(super) fn reach(&self, stop: &Stop) -> Result<Connected, Failure> {
         let mut link = WireLink::open(&self.endpoint)?.slower(self.slower);
         if let Some(places) = &self.places {
             link = link.with_instruments(Placed::open(places).map_err(|why| self.bad_bench(why))?);
@@ -65,10 +58,8 @@ impl BenchSetup {
                 uncertainty_ms: ClockState::now().uncertainty_ms(),
             });
         }
-        let mut session = Session::new(bench, self.endpoint.pace(self.slower), stop.clone(), false)
-            .controlled_by(self.run_control.clone())
-            .recorded_whole(self.record_whole)
-            .with_max_lag(self.max_lag(None));
+        let mut session = self.session(bench, self.endpoint.pace(self.slower), stop, false);
+        session.max_lag = Some(self.max_lag(None));
         let mut found = Vec::new();
         let identity = self.bring_up(&mut session, &mut found);
         if session.has_stalled() {
@@ -86,11 +77,7 @@ impl BenchSetup {
         let identity = identity?;
         let connection = session.bench.rig.connection();
         session.max_lag = Some(self.max_lag(connection));
-        Ok(ReadyUnit {
-            session,
-            identity,
-            found,
-        })
+        Ok(Connected::Port(Box::new(session), identity, found))
     }
 
     /// How far the bench may lag behind the unit. The unit misses its inputs after a silence of `io_timeout_ms`, and the

@@ -8,9 +8,9 @@ use protocol::message::{AtoState, Mode, ModeSwitch, Refusals};
 use protocol::signal::Signal;
 use protocol::{Duration, Instant, Speed};
 
-use crate::data::ScriptsDirectory;
 use crate::link::SimLink;
-use crate::run::{BenchChoice, BenchSetup};
+use crate::run::BenchSetup;
+use crate::test_support;
 
 /// Passengers of a full train, kg.
 const FULL_KG: f64 = 160_000.0;
@@ -20,9 +20,7 @@ const POSITION_M: f64 = 0.06;
 const WAY_M: f64 = 200.0;
 
 fn setup(controller: ControllerKind, permille: f64) -> BenchSetup {
-    let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scripts");
-    let directory = ScriptsDirectory::find(Some(scripts.as_ref())).expect("scripts");
-    let mut setup = BenchChoice::default().setup(&directory).expect("a bench");
+    let mut setup = test_support::setup(&[]);
     setup.config.content.ato.controller = controller;
     // A short way to the stop point, with the whole train on the gradient.
     let section = &mut setup.line.content.sections[0];

@@ -5,6 +5,7 @@
 //! input as JSON, and what was loaded goes out as lines of JSON.
 
 use std::borrow::Cow;
+use std::fmt::Display;
 use std::io::{BufRead as _, BufReader, BufWriter, Read, Write as _};
 use std::path::PathBuf;
 use std::process::{Command, ExitStatus, Stdio};
@@ -97,9 +98,7 @@ pub fn load(
         line: Cow::Borrowed(line),
         train: Cow::Borrowed(train),
     };
-    let cannot = |error: &dyn std::fmt::Display| {
-        Failure::bench(RunTrouble::NotLoadedApart(error.to_string()))
-    };
+    let most_s = most_time_s(scripts);
     let mut command = Command::new(program);
     let mut child = platform::without_window(&mut command)
         .arg(WORD)
@@ -108,11 +107,11 @@ pub fn load(
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
-        .map_err(|error| cannot(&error))?;
+        .map_err(cannot)?;
     let (Some(input), Some(output), Some(words)) =
         (child.stdin.take(), child.stdout.take(), child.stderr.take())
     else {
-        return Err(cannot(&"it has no standard streams"));
+        return Err(cannot("it has no standard streams"));
     };
     std::thread::scope(|scope| {
         // A process that ends before it has read its order says why itself.
@@ -120,21 +119,18 @@ pub fn load(
         let words = scope.spawn(move || last_words(words));
         let (sender, lines) = sync_channel(QUEUE);
         scope.spawn(move || read_lines(output, &sender));
-        let heard = listen(&lines, most_time_s(scripts));
+        let heard = listen(&lines, most_s);
         drop(lines);
         if heard.is_err() {
             // The process may have ended by itself.
             let _ = child.kill();
         }
-        let status = child.wait().map_err(|error| cannot(&error))?;
+        let status = child.wait().map_err(cannot)?;
         let words = words.join().unwrap_or_default();
         match heard {
             Ok(loaded) => Ok(loaded),
-            Err(Broken { at: None, .. }) => {
-                Err(cannot(&reason(status, &words, most_time_s(scripts))))
-            }
+            Err(Broken { at: None, .. }) => Err(cannot(reason(status, &words, most_s))),
             Err(Broken { at: Some(at), why }) => {
-                let most_s = most_time_s(scripts);
                 let message = why.unwrap_or_else(|| reason(status, &words, most_s));
                 Ok(Loaded {
                     errors: vec![LoadError {
@@ -148,6 +144,10 @@ pub fn load(
             }
         }
     })
+}
+
+fn cannot(error: impl Display) -> Failure {
+    Failure::bench(RunTrouble::NotLoadedApart(error.to_string()))
 }
 
 /// A process that broke off.
@@ -278,21 +278,18 @@ fn reason(status: ExitStatus, words: &str, most_s: u64) -> String {
 /// # Errors
 /// Input is not understood, output is no longer read, or a limit cannot be set.
 pub fn serve() -> Result<(), Failure> {
-    let failed = |error: &dyn std::fmt::Display| {
-        Failure::bench(RunTrouble::NotLoadedApart(error.to_string()))
-    };
-    platform::limit_memory(MOST_MEMORY_MIB << 20).map_err(|error| failed(&error))?;
+    platform::limit_memory(MOST_MEMORY_MIB << 20).map_err(cannot)?;
     let order = serde_json::from_reader(BufReader::new(std::io::stdin().lock()));
-    let order: Order<'static> = order.map_err(|error| failed(&error))?;
+    let order: Order<'static> = order.map_err(cannot)?;
     let most_s = most_time_s(&order.scripts);
-    platform::limit_time(most_s).map_err(|error| failed(&error))?;
+    platform::limit_time(most_s).map_err(cannot)?;
     let thread = std::thread::Builder::new().stack_size(STACK);
     let done = thread.spawn(move || say_all(&order));
-    let done = done.map_err(|error| failed(&error))?;
+    let done = done.map_err(cannot)?;
     match done.join() {
-        Ok(said) => said.map_err(|error| failed(&error)),
+        Ok(said) => said.map_err(cannot),
         // The panic has said what it was.
-        Err(_) => Err(failed(&"it broke off")),
+        Err(_) => Err(cannot("it broke off")),
     }
 }
 

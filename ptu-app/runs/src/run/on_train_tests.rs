@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use btu_rig::procedure::{Measurement, Procedure, RunEvent, Verdict};
+use btu_rig::procedure::{Procedure, Verdict};
 use btu_rig::rig::{Bench, Harness, LinkTrouble, UnitLink};
 use btu_rig::stimulus::Stimulus;
 use protocol::frame::Decoder;
@@ -15,11 +15,11 @@ use super::bench_setup::SWITCHED_OFF;
 use super::session::Session;
 use super::settle::{READY_WITHIN, settled};
 use super::workers::run_task;
-use super::{BenchSetup, SessionEvent, Task};
+use super::{BenchSetup, Task};
 use crate::aboard::UnitAboard;
 use crate::link::Pace;
 use crate::stop::Stop;
-use crate::test_support::{procedures, setup};
+use crate::test_support::{Heard, procedures, setup};
 
 /// When it happens, after power-up: the steps are under way.
 const AT_MS: u64 = 10_000;
@@ -124,15 +124,6 @@ impl UnitLink for Line {
     }
 }
 
-#[derive(Default)]
-struct Came {
-    verdict: Option<Verdict>,
-    message: String,
-    steps: Vec<(String, Verdict, String)>,
-    measured: Vec<Measurement>,
-    faults: Vec<String>,
-}
-
 struct Laptop {
     setup: BenchSetup,
     procedures: Vec<Arc<Procedure>>,
@@ -167,30 +158,14 @@ impl Laptop {
         session
     }
 
-    fn run(&self, id: &str, session: &mut Session<Line>) -> Came {
+    fn run(&self, id: &str, session: &mut Session<Line>) -> Heard {
         let procedure = self.procedures.iter().find(|p| p.id == id).expect("there");
         let task = Task::from(procedure.clone());
-        let mut came = Came::default();
-        let mut sink = |event| match event {
-            SessionEvent::Run(RunEvent::Measured { measurement, .. }) => {
-                came.measured.push(measurement);
-            }
-            SessionEvent::Run(RunEvent::StepFinished(step)) => {
-                came.steps
-                    .push((step.name, step.verdict, step.findings.to_string()));
-            }
-            SessionEvent::Run(RunEvent::ProcedureFinished {
-                verdict, findings, ..
-            }) => {
-                came.verdict = Some(verdict);
-                came.message = findings.to_string();
-            }
-            SessionEvent::Fault(fault) => came.faults.push(fault.name),
-            _ => {}
-        };
+        let mut heard = Heard::default();
+        let mut sink = |event| heard.take(event);
         let began = session.now();
         run_task(session, &task, Vec::new(), began, &mut sink, &|| true);
-        came
+        heard
     }
 }
 
@@ -212,18 +187,15 @@ fn the_suite_of_a_laptop_passes_on_a_good_train_within_the_bytes_of_its_line() {
     let mut session = laptop.on_train(Happens::Nothing);
     let mut timed = 0;
     for id in SUITE {
-        let came = laptop.run(id, &mut session);
+        let heard = laptop.run(id, &mut session);
         assert_eq!(
-            came.verdict,
+            heard.verdict,
             Some(Verdict::Passed),
             "{id}: {:?}",
-            came.steps
+            heard.steps
         );
-        for measurement in came
-            .measured
-            .iter()
-            .filter(|m| m.name.ends_with("reaction"))
-        {
+        let measured = heard.steps.iter().flat_map(|step| &step.measurements);
+        for measurement in measured.filter(|m| m.name.ends_with("reaction")) {
             let off = measurement.uncertainty.expect("by the unit's clock");
             assert!(off > 0.0 && off <= 60.0, "{} ± {off}", measurement.name);
             timed += 1;
@@ -267,11 +239,11 @@ fn what_happens_to_the_train_meanwhile_is_an_error_and_no_fault() {
         (Happens::Unplugged, "unit silent for"),
     ] {
         let mut session = laptop.on_train(happens);
-        let came = laptop.run("ptu/overspeed", &mut session);
-        let what = format!("{happens:?}: {} {:?}", came.message, came.steps);
-        assert_eq!(came.verdict, Some(Verdict::Error), "{what}");
-        assert!(came.message.contains(words), "{what}");
-        assert_eq!(came.faults, [""; 0], "{what}");
+        let heard = laptop.run("ptu/overspeed", &mut session);
+        let what = format!("{happens:?}: {} {:?}", heard.message, heard.steps);
+        assert_eq!(heard.verdict, Some(Verdict::Error), "{what}");
+        assert!(heard.message.contains(words), "{what}");
+        assert_eq!(heard.faults, [""; 0], "{what}");
         assert!(session.bench.link.safe, "{what}");
         let train = session.bench.link.train.rig().sample();
         if happens == Happens::Moves {
@@ -288,13 +260,18 @@ fn a_train_that_is_not_at_rest_is_refused_with_the_reason() {
     let key = Stimulus::MaintenanceKey { on: false };
     let train = &mut session.bench.link.train;
     train.apply(&key).expect("done");
-    let came = laptop.run("ptu/markers", &mut session);
-    assert_eq!(came.verdict, Some(Verdict::Error), "{}", came.message);
-    assert!(came.message.contains("maintenance_key"), "{}", came.message);
+    let heard = laptop.run("ptu/markers", &mut session);
+    assert_eq!(heard.verdict, Some(Verdict::Error), "{}", heard.message);
     assert!(
-        came.steps
+        heard.message.contains("maintenance_key"),
+        "{}",
+        heard.message
+    );
+    assert!(
+        heard
+            .steps
             .iter()
-            .all(|(_, verdict, _)| *verdict == Verdict::Skipped)
+            .all(|step| step.verdict == Verdict::Skipped)
     );
 }
 
@@ -303,29 +280,35 @@ fn a_train_that_is_not_at_rest_is_refused_with_the_reason() {
 fn a_slow_relay_is_found_on_a_train() {
     let laptop = Laptop::new(&["eb_relay.slow"]);
     let mut session = laptop.on_train(Happens::Nothing);
-    let came = laptop.run("ptu/overspeed", &mut session);
-    assert_eq!(came.verdict, Some(Verdict::Failed), "{:?}", came.steps);
-    let reaction = came.measured.iter().find(|m| m.name == "eb_reaction");
+    let heard = laptop.run("ptu/overspeed", &mut session);
+    assert_eq!(heard.verdict, Some(Verdict::Failed), "{:?}", heard.steps);
+    let mut measured = heard.steps.iter().flat_map(|step| &step.measurements);
+    let reaction = measured.find(|m| m.name == "eb_reaction");
     let reaction = reaction.expect("measured");
     assert_eq!(reaction.verdict, Verdict::Failed, "{reaction:?}");
     let (value, off) = (reaction.value.expect("a value"), reaction.uncertainty);
     let (off, high) = (off.expect("uncertain"), reaction.high.expect("a limit"));
     assert!(value - off > high, "{value} ± {off}, at most {high}");
-    assert!(came.steps.iter().any(|(_, _, why)| why.contains(" ± ")));
+    assert!(
+        heard
+            .steps
+            .iter()
+            .any(|step| step.findings.to_string().contains(" ± "))
+    );
 }
 
 #[test]
 fn a_procedure_of_a_bench_is_skipped_on_a_train() {
     let laptop = Laptop::new(&[]);
     let mut session = laptop.on_train(Happens::Nothing);
-    let came = laptop.run("atp/overspeed", &mut session);
-    assert_eq!(came.verdict, Some(Verdict::Skipped));
+    let heard = laptop.run("atp/overspeed", &mut session);
+    assert_eq!(heard.verdict, Some(Verdict::Skipped));
     assert!(
-        came.message.contains("needs the bench harness"),
+        heard.message.contains("needs the bench harness"),
         "{}",
-        came.message
+        heard.message
     );
-    assert!(!came.steps.is_empty());
+    assert!(!heard.steps.is_empty());
 }
 
 /// Goal: a unit that restarts by itself says so, and is the finding: not an error, as a supply that somebody switched is.
@@ -333,8 +316,9 @@ fn a_procedure_of_a_bench_is_skipped_on_a_train() {
 fn a_supply_that_dips_on_a_train_is_a_fault_of_the_unit() {
     let laptop = Laptop::new(&["power_supply.dips"]);
     let mut session = laptop.on_train(Happens::Nothing);
-    let came = laptop.run("ptu/overspeed", &mut session);
-    let what = format!("{} {:?}", came.message, came.steps);
-    assert_eq!(came.verdict, Some(Verdict::Failed), "{what}");
-    assert!(came.faults.contains(&"supply_dip".to_owned()), "{what}");
+    let heard = laptop.run("ptu/overspeed", &mut session);
+    let what = format!("{} {:?}", heard.message, heard.steps);
+    assert_eq!(heard.verdict, Some(Verdict::Failed), "{what}");
+    let mut faults = heard.faults.iter();
+    assert!(faults.any(|told| told.starts_with("supply_dip ")), "{what}");
 }

@@ -11,7 +11,7 @@ use protocol::{Duration, Instant};
 use super::workers::{TO_THE_END, run_on_fresh};
 use super::{BenchSetup, RunControl, SessionEvent, Task};
 use crate::stop::Stop;
-use crate::test_support::{procedures, setup};
+use crate::test_support::{Heard, procedures, setup};
 
 /// Stands still once in each step, so many scans after it began, if it lasts so long.
 struct StandsStill {
@@ -64,31 +64,15 @@ fn amiss(setup: &mut BenchSetup, procedure: &Arc<Procedure>, after: u32) -> Vec<
     });
     setup.run_control = Some(stands_still.clone());
     let task = Task::from(procedure.clone());
-    let mut said = Vec::new();
-    let mut sink = |event| match event {
-        SessionEvent::Run(event) => {
-            stands_still.take(&event);
-            match event {
-                RunEvent::StepFinished(step)
-                    if !matches!(step.verdict, Verdict::Passed | Verdict::Skipped) =>
-                {
-                    said.push(format!(
-                        "line {}, {}: {}",
-                        step.line, step.name, step.findings
-                    ));
-                }
-                RunEvent::ProcedureFinished { findings, .. } => {
-                    let told = Some(findings).filter(|findings| !findings.is_empty());
-                    said.extend(told.map(|findings| findings.to_string()));
-                }
-                _ => {}
-            }
+    let mut heard = Heard::default();
+    let mut sink = |event| {
+        if let SessionEvent::Run(event) = &event {
+            stands_still.take(event);
         }
-        SessionEvent::Fault(fault) => said.push(format!("fault: {}", fault.finding)),
-        _ => {}
+        heard.take(event);
     };
     run_on_fresh(setup, &task, &Stop::default(), &mut sink, &TO_THE_END);
-    said
+    heard.amiss(|step| step.verdict == Verdict::Skipped)
 }
 
 /// Goal: a step that is repeated after a new set-up finds the state it needs: it says if it continues from the one

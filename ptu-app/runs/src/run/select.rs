@@ -16,10 +16,10 @@ use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, RunTrouble, Unknown, did_you_mean};
 use crate::whole_file;
 
-/// Sets the order apart from what else the same seed gives.
+/// Keeps the drawn order independent of what else is drawn by the same seed.
 const ORDER_SEQUENCE: u64 = 0x0D1C_E0F5_7E95_A3C1;
 
-/// Puts them into an order drawn by the seed.
+/// Puts the items into an order drawn by the seed.
 pub fn shuffle<T>(items: &mut [T], seed: u64) {
     let mut random = Random::new(seed ^ ORDER_SEQUENCE);
     for last in (1..items.len()).rev() {
@@ -32,8 +32,8 @@ pub fn in_order(order: &[String], procedures: &mut [Arc<Procedure>]) {
     procedures.sort_by_key(|procedure| order.iter().position(|path| *path == procedure.path));
 }
 
-/// The texts the loader needs for the procedures asked for: those, and all libraries; and the paths of those, in the order in
-/// which they were asked for, or none where all were.
+/// Texts of the scripts that were asked for, with all libraries, and the paths of these scripts in the order in which they
+/// were asked for; no paths where all scripts are.
 ///
 /// # Errors
 /// A path or glob that names nothing, or a file that cannot be read.

@@ -21,7 +21,7 @@ use super::trace_data::trace_data;
 use crate::link::Pace;
 use crate::stop::Stop;
 
-/// A bench less behind than this is in time.
+/// A bench that is less behind than this is in time.
 const IN_TIME: Duration = Duration::from_us(2 * SCAN.as_us());
 
 /// A bench, its recorder and its pace.
@@ -32,7 +32,8 @@ pub struct Session<L: UnitLink> {
     recorder: Recorder,
     sample: Sample,
     link_failure: Option<LinkTrouble>,
-    /// Permitted lag of the bench behind the wall clock; `None` for a unit in virtual time.
+    /// Permitted lag of the bench behind the wall clock: beyond it a unit in real time misses its inputs and brakes, so that
+    /// nothing the unit does then is judged. `None` for a unit in virtual time.
     pub max_lag: Option<Duration>,
     /// Largest lag beyond `max_lag` since it was last taken.
     stalled: Option<Duration>,
@@ -40,9 +41,9 @@ pub struct Session<L: UnitLink> {
     /// Largest time that unit and bench stood still together since it was last taken.
     paused: Option<Duration>,
     fresh_unit: bool,
-    run_control: Option<Arc<dyn RunControl>>,
+    pub(super) run_control: Option<Arc<dyn RunControl>>,
     /// Rows that were not handed on yet, of a run that is recorded whole.
-    rows: Option<Vec<Row>>,
+    pub(super) rows: Option<Vec<Row>>,
     /// Virtual time goes at the clock's pace, because a person is waited for.
     with_person: bool,
 }
@@ -78,25 +79,6 @@ impl<L: UnitLink> Session<L> {
             rows: None,
             with_person: false,
         }
-    }
-
-    /// Sets the run control.
-    pub fn controlled_by(mut self, run_control: Option<Arc<dyn RunControl>>) -> Self {
-        self.run_control = run_control;
-        self
-    }
-
-    /// Hands every row on, if the run is to be recorded whole.
-    pub fn recorded_whole(mut self, is_it: bool) -> Self {
-        self.rows = is_it.then(Vec::new);
-        self
-    }
-
-    /// Sets the lag beyond which a unit in real time misses its inputs and brakes, so that nothing it does then
-    /// is judged.
-    pub fn with_max_lag(mut self, max_lag: Duration) -> Self {
-        self.max_lag = Some(max_lag);
-        self
     }
 
     /// Replaces the stop that ends runs on this session.
@@ -139,12 +121,8 @@ impl<L: UnitLink> Session<L> {
         self.stalled.take().is_some()
     }
 
-    /// Makes up the scans that were missed; events go to `seen`.
-    pub fn catch_up(&mut self, mut seen: impl FnMut(&UnitEvent, Instant, &Sample)) {
-        self.make_up(&mut |_| {}, &mut seen);
-    }
-
-    fn make_up(
+    /// Makes up the scans that were missed; completed windows go to `cut`, events to `seen`.
+    pub(super) fn make_up(
         &mut self,
         cut: &mut dyn FnMut(RecordedWindow),
         seen: &mut dyn FnMut(&UnitEvent, Instant, &Sample),
@@ -224,6 +202,30 @@ impl<L: UnitLink> Session<L> {
         }
         if let Some(done) = self.recorder.record(now, &self.sample) {
             cut(done);
+        }
+    }
+
+    /// Leaves out the time in which bench and unit stood still together: it spoils nothing that the unit does.
+    fn keep_in_step(&mut self) {
+        let pause = self.bench.link.take_pause();
+        let now = self.bench.now();
+        if pause > Duration::ZERO {
+            self.bench.rig.note_pause(now, pause);
+            self.in_step.begin(now, pause);
+            self.paused = self.paused.max(Some(pause));
+            self.shift(pause.as_us() as i64);
+        }
+        if self.max_lag.is_some() {
+            let stamp = self.bench.rig.unit_stamp_ms();
+            let correction_us = self.in_step.correction_us(stamp);
+            self.shift(correction_us);
+        }
+    }
+
+    fn shift(&mut self, later_us: i64) {
+        if later_us != 0 {
+            self.pace.shift(later_us);
+            self.bench.link.shift_clock(later_us);
         }
     }
 

@@ -13,7 +13,7 @@ use super::session::Session;
 pub(crate) const READY_WITHIN: Duration = Duration::from_ms(8_000);
 /// Quiet time after a unit is ready, before anything is judged.
 const SETTLE: Duration = Duration::from_ms(500);
-/// Number of waits for that on a computer that is held up.
+/// Number of waits for a quiet unit on a computer that is held up.
 const SETTLES: usize = 3;
 
 /// Waits until the unit has settled. What the last procedure's end still makes it log is not the next one's,
@@ -29,7 +29,7 @@ pub(super) fn between_procedures<L: UnitLink>(session: &mut Session<L>) -> Vec<F
     };
     // A bench that was held up has made the unit brake, and it has to settle again.
     for _ in 0..SETTLES {
-        session.catch_up(&mut seen);
+        session.make_up(&mut |_| {}, &mut seen);
         session.has_stalled();
         session.idle(READY_WITHIN, &mut seen, settled());
         if !session.has_stalled() {

@@ -2,6 +2,7 @@
 //! them once they are in the file.
 
 mod beside;
+mod records;
 #[cfg(test)]
 mod tests;
 
@@ -10,12 +11,12 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use fault_db::{
-    FaultRecord, Id, RecordingRecord, RunEnd, RunRecord, RunWriter, StepRecord, Store, StoreError,
-    TraceData,
-};
+use fault_db::{Id, RunEnd, RunRecord, RunWriter, Store, StoreError};
 
 use self::beside::{keep_beside, keep_rest};
+pub(super) use self::records::Entry;
+pub use self::records::LinePrinter;
+use self::records::{RecordedIds, keep};
 use crate::failure::{Failure, RunTrouble, Trouble, prevented_by};
 use crate::stop::Stop;
 
@@ -24,8 +25,8 @@ const QUEUE: usize = 4096;
 /// Steps reach the file at least this often.
 const FLUSH: Duration = Duration::from_millis(250);
 
-/// How long a run under way waits for another writer. It would lose all that is still to come, and its thread
-/// keeps only the bench waiting.
+/// How long a run under way waits for another writer: a run that gave up would lose all that is still to come, and while it
+/// waits only the bench waits with it.
 #[derive(Clone, Copy)]
 struct BusyTimeout {
     /// After this time the bench is stopped: a unit is not driven for a run that may be lost.
@@ -39,45 +40,6 @@ const BUSY_TIMEOUT: BusyTimeout = BusyTimeout {
     gives_up: Duration::from_secs(180),
 };
 
-/// Values of traces of a run that are held until its end (32 MB), to write the run again if its file is lost.
-const MOST_TRACE_VALUES: usize = 4_000_000;
-/// Steps that are held (about 90 MB); a longer run is kept only as far as its open file can be copied.
-const MOST_STEPS: usize = 100_000;
-
-enum Entry {
-    Step(StepRecord),
-    /// A fault, numbered from 0 through the run.
-    Fault(FaultRecord),
-    /// A trace and the numbers of the faults it shows.
-    Trace(Vec<usize>, TraceData),
-    /// Recording behind the traces since the last one.
-    Recording(RecordingRecord),
-    /// Something to say once all before it is in the file.
-    Say(String),
-    Finish(RunEnd),
-}
-
-/// Prints a line; must not block.
-pub type LinePrinter = Box<dyn FnMut(String) + Send>;
-
-/// Lines that are printed once the records they report are in the file.
-#[derive(Default)]
-struct Lines {
-    line_printer: Option<LinePrinter>,
-    waiting: Vec<String>,
-}
-
-impl Lines {
-    /// Prints the waiting lines: their records are in the file.
-    fn stored(&mut self) {
-        for line in self.waiting.drain(..) {
-            if let Some(line_printer) = &mut self.line_printer {
-                line_printer(line);
-            }
-        }
-    }
-}
-
 /// The sender's side of the writer thread.
 pub struct RunStore {
     entries: SyncSender<Entry>,
@@ -87,11 +49,11 @@ pub struct RunStore {
 }
 
 impl RunStore {
-    /// Begins the run: its row is on the disk when this returns. What is to be said goes to `line_printer`. Should
+    /// Begins the run: its row is on the disk when this returns. Lines about the run go to `line_printer`. Should
     /// writing fail later, `stop` is pressed at once: a unit is not driven for a run that is not stored.
     ///
     /// # Errors
-    /// The database does not take it.
+    /// The database does not take the run.
     pub fn begin(
         store: Store,
         record: RunRecord,
@@ -134,42 +96,19 @@ impl RunStore {
         }
     }
 
-    pub fn step(&self, step: StepRecord) {
-        self.send(Entry::Step(step));
-    }
-
-    /// Records a fault at once; faults are numbered from 0 in the order of these calls.
-    pub fn fault(&self, fault: FaultRecord) {
-        self.send(Entry::Fault(fault));
-    }
-
-    /// Records a trace of the faults with these numbers.
-    pub fn trace(&self, faults: Vec<usize>, trace: TraceData) {
-        self.send(Entry::Trace(faults, trace));
-    }
-
-    /// Records what was done in the procedure whose traces were recorded last.
-    pub fn recording(&self, recording: RecordingRecord) {
-        self.send(Entry::Recording(recording));
-    }
-
-    /// Prints a line as soon as all that was recorded before is in the file.
-    pub fn say(&self, line: String) {
-        self.send(Entry::Say(line));
-    }
-
-    /// A send fails only after the writer has ended with an error, which `finish` returns.
-    fn send(&self, entry: Entry) {
+    /// Records an entry.
+    pub(super) fn record(&self, entry: Entry) {
+        // A send fails only after the writer has ended with an error, which `finish` returns.
         let _ = self.entries.send(entry);
     }
 
-    /// Ends the run and gives the store back that holds it: if the history does not, that of the file beside where it is
-    /// kept, and why and where in a sentence.
+    /// Ends the run and gives back the store that holds the run: the history, or the file beside, with a sentence that says
+    /// why and where.
     ///
     /// # Errors
     /// The first error of writing.
     pub fn finish(self, end: RunEnd) -> Result<(Store, Option<Trouble>), Failure> {
-        self.send(Entry::Finish(end));
+        self.record(Entry::Finish(end));
         drop(self.entries);
         let ended = self.thread.join();
         ended.unwrap_or_else(|_| Err(Failure::bench(RunTrouble::WriterEnded)))
@@ -210,64 +149,7 @@ fn write(
     })
 }
 
-/// Identifiers of recorded rows that later entries refer to.
-#[derive(Default)]
-struct RecordedIds {
-    occurrences: Vec<Id>,
-    /// Number of ids recorded in another file.
-    before: usize,
-    traces: Vec<Id>,
-    /// Lines to print on the run.
-    lines: Lines,
-    /// All that was recorded, in order.
-    records: Vec<Entry>,
-    steps: usize,
-    trace_values: usize,
-    /// Traces that are too much to be held.
-    left_out: usize,
-}
-
-impl RecordedIds {
-    /// Holds what was recorded until the end of the run, to write it again if the file is lost.
-    fn hold(&mut self, entry: Entry) {
-        match &entry {
-            Entry::Say(_) => return,
-            Entry::Step(_) => self.steps += 1,
-            Entry::Trace(_, trace) => {
-                self.trace_values += trace.rows() * trace.columns.len();
-                if self.trace_values > MOST_TRACE_VALUES {
-                    self.left_out += 1;
-                    return;
-                }
-            }
-            // This recording belongs to traces that were left out.
-            Entry::Recording(_) if self.left_out > 0 => return,
-            _ => {}
-        }
-        if self.is_too_long() {
-            self.records = Vec::new();
-        } else {
-            self.records.push(entry);
-        }
-    }
-
-    /// Whether more was recorded than is held.
-    fn is_too_long(&self) -> bool {
-        self.steps > MOST_STEPS
-    }
-
-    /// Holds all that comes still, to the end.
-    fn hold_all(&mut self, entries: impl Iterator<Item = Entry>) {
-        for entry in entries {
-            match entry {
-                Entry::Say(line) => self.lines.waiting.push(line),
-                entry => self.hold(entry),
-            }
-        }
-    }
-}
-
-/// Records all that comes. An entry that was not taken comes back with the error.
+/// Records all entries that come. An entry that the database did not take comes back with the error.
 fn write_entries(
     writer: &mut RunWriter<'_>,
     kept: &mut RecordedIds,
@@ -328,40 +210,5 @@ fn retry_while_locked(
             }
             done => return done,
         }
-    }
-}
-
-/// Records one entry, perhaps for another time: a step that was not written waits with the writer.
-fn keep(
-    writer: &mut RunWriter<'_>,
-    kept: &mut RecordedIds,
-    entry: &Entry,
-    again: bool,
-) -> Result<(), StoreError> {
-    match entry {
-        Entry::Step(_) if again => writer.flush(),
-        Entry::Step(step) => writer.step(step.clone()),
-        Entry::Fault(fault) => {
-            kept.occurrences.push(writer.fault(fault)?.occurrence);
-            Ok(())
-        }
-        Entry::Trace(faults, trace) => {
-            let here = faults.iter().filter(|i| **i >= kept.before);
-            let shown: Vec<_> = here
-                .filter_map(|i| kept.occurrences.get(*i).copied())
-                .collect();
-            kept.traces.push(writer.trace(&shown, trace)?);
-            Ok(())
-        }
-        Entry::Recording(recording) => {
-            writer.recording(recording, &kept.traces)?;
-            kept.traces.clear();
-            Ok(())
-        }
-        Entry::Say(line) => {
-            kept.lines.waiting.push(line.clone());
-            Ok(())
-        }
-        Entry::Finish(end) => writer.finish(end),
     }
 }

@@ -28,7 +28,7 @@ pub struct Suite {
     pub bench_sha256: [String; 3],
     /// Text of each script by its path.
     pub texts: BTreeMap<String, String>,
-    /// SHA-256 over all of them.
+    /// SHA-256 over the texts of all scripts.
     pub sha256: String,
 }
 

@@ -1,7 +1,7 @@
 //! Runs on a bad line or with an untrustworthy unit: the embedded unit behind a link that
 //! harms what passes.
 
-use btu_rig::procedure::{Procedure, RunEvent, Verdict};
+use btu_rig::procedure::{Procedure, Verdict};
 use btu_rig::rig::{LinkTrouble, UnitLink};
 use protocol::frame::{self, Decoder};
 use protocol::message::{Channel, Message, SelfTest};
@@ -11,9 +11,9 @@ use std::sync::Arc;
 use super::bench_setup::SWITCHED_OFF;
 use super::settle::{READY_WITHIN, settled};
 use super::workers::run_task;
-use super::{BenchSetup, SessionEvent, Task};
+use super::{BenchSetup, Task};
 use crate::stop::Stop;
-use crate::test_support::{procedures, setup};
+use crate::test_support::{Heard, procedures, setup};
 
 /// When what is wrong begins: the first procedure is under way.
 const FROM: Duration = Duration::from_ms(SWITCHED_OFF.as_ms() + 3_500);
@@ -110,13 +110,6 @@ impl<L: UnitLink> UnitLink for FaultyLink<L> {
     }
 }
 
-struct ProcedureEnd {
-    verdict: Verdict,
-    message: String,
-    steps: Vec<(Verdict, String)>,
-    faults: Vec<String>,
-}
-
 struct FaultyBench {
     setup: BenchSetup,
     procedures: Vec<Arc<Procedure>>,
@@ -129,7 +122,7 @@ impl FaultyBench {
         Self { setup, procedures }
     }
 
-    fn run(&self, id: &str, wrong: LinkFault, seed: u64) -> ProcedureEnd {
+    fn run(&self, id: &str, wrong: LinkFault, seed: u64) -> Heard {
         let procedure = self.procedures.iter().find(|p| p.id == id).expect("there");
         let task = Task::from(procedure.clone());
         let mut session = self
@@ -143,29 +136,8 @@ impl FaultyBench {
             });
         let (ready, found) = session.judge_bring_up(SWITCHED_OFF + READY_WITHIN, settled());
         assert!(ready, "the unit is good so far");
-        let mut came_to = ProcedureEnd {
-            verdict: Verdict::Skipped,
-            message: String::new(),
-            steps: Vec::new(),
-            faults: Vec::new(),
-        };
-        let mut sink = |event| match event {
-            SessionEvent::Run(RunEvent::StepFinished(result)) => {
-                came_to
-                    .steps
-                    .push((result.verdict, result.findings.to_string()));
-            }
-            SessionEvent::Run(RunEvent::ProcedureFinished {
-                verdict, findings, ..
-            }) => {
-                (came_to.verdict, came_to.message) = (verdict, findings.to_string());
-            }
-            SessionEvent::Fault(fault) => {
-                let told = format!("{} {:?}: {}", fault.name, fault.lru, fault.finding);
-                came_to.faults.push(told);
-            }
-            _ => {}
-        };
+        let mut heard = Heard::default();
+        let mut sink = |event| heard.take(event);
         run_task(
             &mut session,
             &task,
@@ -174,7 +146,7 @@ impl FaultyBench {
             &mut sink,
             &|| true,
         );
-        came_to
+        heard
     }
 }
 
@@ -185,12 +157,12 @@ const JUDGE: [&str; 4] = ["twc/exchange", "tcms/link", "atp/limit_speed", "ptu/t
 fn on_a_good_line_a_good_unit_passes() {
     let bed = FaultyBench::new();
     for id in JUDGE {
-        let came_to = bed.run(id, LinkFault::Nothing, 1);
+        let heard = bed.run(id, LinkFault::Nothing, 1);
         assert_eq!(
-            came_to.verdict,
-            Verdict::Passed,
+            heard.verdict,
+            Some(Verdict::Passed),
             "{id}: {}",
-            came_to.message
+            heard.message
         );
     }
 }
@@ -199,20 +171,25 @@ fn on_a_good_line_a_good_unit_passes() {
 fn a_log_that_stops_answering_is_an_error_and_no_fault() {
     let bed = FaultyBench::new();
     for id in JUDGE {
-        let came_to = bed.run(id, LinkFault::NoLog, 1);
-        assert_eq!(came_to.faults, [""; 0], "{id}");
+        let heard = bed.run(id, LinkFault::NoLog, 1);
+        assert_eq!(heard.faults, [""; 0], "{id}");
         // A procedure in which nothing is logged has nothing to read.
-        if came_to.verdict != Verdict::Passed {
-            assert_eq!(came_to.verdict, Verdict::Error, "{id}: {}", came_to.message);
-            let told = came_to
+        if heard.verdict != Some(Verdict::Passed) {
+            assert_eq!(
+                heard.verdict,
+                Some(Verdict::Error),
+                "{id}: {}",
+                heard.message
+            );
+            let told = heard
                 .message
                 .contains("the unit's log could not be read: asked ");
-            assert!(told, "{id}: {}", came_to.message);
+            assert!(told, "{id}: {}", heard.message);
         }
     }
     assert_eq!(
         bed.run("twc/exchange", LinkFault::NoLog, 1).verdict,
-        Verdict::Error
+        Some(Verdict::Error)
     );
 }
 
@@ -224,15 +201,15 @@ fn a_bad_line_blames_no_part() {
     for share in [1e-2, 1e-3, 1e-4, 1e-5] {
         for seed in 1..=3 {
             for id in JUDGE {
-                let came_to = bed.run(id, LinkFault::Flips(share), seed);
-                let what = format!("{id}, {share}, seed {seed}: {}", came_to.message);
-                assert_eq!(came_to.faults, [""; 0], "{what} {:?}", came_to.steps);
-                assert_ne!(came_to.verdict, Verdict::Failed, "{what}");
+                let heard = bed.run(id, LinkFault::Flips(share), seed);
+                let what = format!("{id}, {share}, seed {seed}: {}", heard.message);
+                assert_eq!(heard.faults, [""; 0], "{what} {:?}", heard.steps);
+                assert_ne!(heard.verdict, Some(Verdict::Failed), "{what}");
                 if share >= 1e-3 {
-                    assert_eq!(came_to.verdict, Verdict::Error, "{what}");
+                    assert_eq!(heard.verdict, Some(Verdict::Error), "{what}");
                     let told = "the line between tester and unit is bad";
-                    assert!(came_to.message.contains(told), "{what}");
-                    assert_eq!(came_to.message.matches(told).count(), 1, "{what}");
+                    assert!(heard.message.contains(told), "{what}");
+                    assert_eq!(heard.message.matches(told).count(), 1, "{what}");
                 }
             }
         }
@@ -252,18 +229,18 @@ fn another_unit_in_the_middle_of_a_procedure_is_an_error() {
             "its track database's checksum was ",
         ),
     ] {
-        let came_to = bed.run("twc/exchange", wrong, 1);
-        assert_eq!(came_to.verdict, Verdict::Error, "{}", came_to.message);
-        assert!(came_to.message.contains(words), "{}", came_to.message);
-        assert_eq!(came_to.faults, [""; 0]);
+        let heard = bed.run("twc/exchange", wrong, 1);
+        assert_eq!(heard.verdict, Some(Verdict::Error), "{}", heard.message);
+        assert!(heard.message.contains(words), "{}", heard.message);
+        assert_eq!(heard.faults, [""; 0]);
     }
 }
 
 #[test]
 fn a_unit_that_says_its_self_test_failed_does_not_pass() {
     let bed = FaultyBench::new();
-    let came_to = bed.run("tcms/link", LinkFault::SelfTest, 1);
-    assert_eq!(came_to.verdict, Verdict::Failed);
+    let heard = bed.run("tcms/link", LinkFault::SelfTest, 1);
+    assert_eq!(heard.verdict, Some(Verdict::Failed));
     let items = [
         "Memory pattern test",
         "TRA did not answer",
@@ -271,10 +248,6 @@ fn a_unit_that_says_its_self_test_failed_does_not_pass() {
         "bit 15",
     ];
     for item in items {
-        assert!(
-            came_to.message.contains(item),
-            "{item}: {}",
-            came_to.message
-        );
+        assert!(heard.message.contains(item), "{item}: {}", heard.message);
     }
 }

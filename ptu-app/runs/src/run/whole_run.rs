@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use btu_rig::procedure::Finding;
 use btu_rig::procedure::plan::Connection;
-use fault_db::{Instrument, RunRecord, Store, UnitRecord, Verdict};
+use fault_db::{Instrument, RunRecord, Store, Verdict};
 
 use super::adaptive;
 use super::bench_contents::BenchContents;
@@ -19,9 +19,8 @@ use super::run_start::RunStart;
 use super::store_thread::RunStore;
 use super::workers;
 use crate::failure::{Exit, Failure, RunTrouble};
-use crate::platform;
 use crate::stop::Stop;
-use crate::stored::stored;
+use crate::stored::{new_run, stored};
 
 /// Runs the plan and records it, also where the unit cannot be reached; the store comes back for the report.
 ///
@@ -34,17 +33,7 @@ pub fn run(
     stop: &Stop,
     listener: &mut dyn Listener,
 ) -> Result<(Store, Outcome), Failure> {
-    let began = RunStart::now();
-    let (reached, store) = reach(plan, &setup, store, stop, &began, listener)?;
-    let mut connected = match reached {
-        Ok(connected) => connected,
-        Err(over) => return Ok((store, *over)),
-    };
-    trace_repaired(&mut plan.tasks, &store, &connected.serial())?;
-    if plan.measuring.guard_band {
-        instruments::guard_band(&mut plan.tasks, &store)?;
-    }
-    run_on(&mut connected, &began, plan, &setup, store, stop, listener)
+    run_as_prepared(plan, setup, store, stop, listener, |_, _, _| Ok(()))
 }
 
 /// Runs an adaptive run. `adaptive` makes its settings for the unit that was reached.
@@ -59,25 +48,41 @@ pub fn search(
     listener: &mut dyn Listener,
     adaptive: impl FnOnce(&Store, &str, Connection) -> Result<Adaptive, Failure>,
 ) -> Result<(Store, Outcome), Failure> {
+    let prepare = |plan: &mut RunPlan, store: &Store, connected: &mut Connected| {
+        let connection = connected.connection();
+        plan.adaptive = Some(adaptive(store, &connected.serial(), connection)?);
+        Ok(())
+    };
+    run_as_prepared(plan, setup, store, stop, listener, prepare)
+}
+
+/// Reaches the unit, lets `prepare` complete the plan for the unit that was reached, and runs the plan.
+fn run_as_prepared(
+    plan: &mut RunPlan,
+    setup: BenchSetup,
+    store: Store,
+    stop: &Stop,
+    listener: &mut dyn Listener,
+    prepare: impl FnOnce(&mut RunPlan, &Store, &mut Connected) -> Result<(), Failure>,
+) -> Result<(Store, Outcome), Failure> {
     let began = RunStart::now();
     let (reached, store) = reach(plan, &setup, store, stop, &began, listener)?;
     let mut connected = match reached {
         Ok(connected) => connected,
         Err(over) => return Ok((store, *over)),
     };
-    let connection = connected.connection();
     trace_repaired(&mut plan.tasks, &store, &connected.serial())?;
     if plan.measuring.guard_band {
         instruments::guard_band(&mut plan.tasks, &store)?;
     }
-    plan.adaptive = Some(adaptive(&store, &connected.serial(), connection)?);
+    prepare(plan, &store, &mut connected)?;
     run_on(&mut connected, &began, plan, &setup, store, stop, listener)
 }
 
-/// The unit, or what the run came to that could not reach it.
+/// The unit that was reached, or the outcome of the run that could not reach it.
 type Reached = Result<Connected, Box<Outcome>>;
 
-/// Reaches the unit; a run that cannot is recorded, too, and over.
+/// Reaches the unit; a run that cannot reach it is recorded and ended.
 fn reach(
     plan: &RunPlan,
     setup: &BenchSetup,
@@ -149,27 +154,19 @@ pub fn run_on(
     let mut collector = Collector::new(run_store, *began, listener, made, due);
     let first_failure = FirstFailure::new(plan.stop_on_fail && plan.adaptive.is_none());
     let worked = catch_unwind(AssertUnwindSafe(|| {
-        std::thread::scope(|scope| match &plan.adaptive {
-            Some(adaptive) => {
-                let procedures = adaptive::start(scope, plan, adaptive, connected, stop);
-                collect(
-                    procedures,
-                    &mut collector,
-                    &first_failure,
-                    &plan.tasks[..0],
-                    stop,
-                );
-            }
-            None => {
-                let procedures = workers::start(scope, plan, connected, &first_failure, stop);
-                collect(
-                    procedures,
-                    &mut collector,
-                    &first_failure,
-                    &plan.tasks,
-                    stop,
-                );
-            }
+        std::thread::scope(|scope| {
+            // No procedure of a search is due before the search has chosen it.
+            let (procedures, due) = match &plan.adaptive {
+                Some(adaptive) => {
+                    let chosen = adaptive::start(scope, plan, adaptive, connected, stop);
+                    (chosen, &plan.tasks[..0])
+                }
+                None => {
+                    let all = workers::start(scope, plan, connected, &first_failure, stop);
+                    (all, &plan.tasks[..])
+                }
+            };
+            collect(procedures, &mut collector, &first_failure, due, stop);
         });
     }));
     if worked.is_err() {
@@ -191,9 +188,8 @@ pub fn run_on(
     Ok((store, outcome))
 }
 
-/// Takes the procedures' streams one after the other. It steers no bench: what it knows comes later than
-/// what a bench does next. What was `due` and is in none of the streams, because the run was stopped, is recorded as
-/// not begun.
+/// Takes the procedures' streams one after the other, and steers no bench, because a bench has gone on when its events are
+/// taken here. Procedures that were `due` and are in no stream, because the run was stopped, are recorded as not begun.
 fn collect(
     procedures: impl IntoIterator<Item = ProcedureStream>,
     collector: &mut Collector<'_>,
@@ -228,28 +224,17 @@ fn collect(
 }
 
 fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us: i64) -> RunRecord {
+    let config_name = setup.config.content.name.clone();
     RunRecord {
-        unit: UnitRecord {
-            serial,
-            kind: "atc".into(),
-            config_name: setup.config.content.name.clone(),
-            sw_versions: std::collections::BTreeMap::new(),
-        },
         line: setup.line.content.name.clone(),
         train: plan.train.clone(),
         seed: setup.seed,
         operator: plan.operator.clone(),
-        source: setup.endpoint.to_string(),
-        started_at_us,
-        app_version: env!("CARGO_PKG_VERSION").into(),
         scripts_sha256: plan.scripts_sha256.clone(),
         unit_config_sha256: setup.config.sha256.clone(),
         injected: setup.injected(),
-        owner: platform::this_process(),
         continues: plan.continues,
-        connection: None,
         symptom: plan.symptom.clone(),
-        evidence: None,
         scripts: plan
             .tasks
             .iter()
@@ -258,5 +243,11 @@ fn run_record(plan: &RunPlan, setup: &BenchSetup, serial: String, started_at_us:
                 sha256: task.procedure.sha256.clone(),
             })
             .collect(),
+        ..new_run(
+            serial,
+            config_name,
+            setup.endpoint.to_string(),
+            started_at_us,
+        )
     }
 }

@@ -34,34 +34,23 @@ pub(super) fn start<'scope>(
         tasks: plan.tasks.iter().enumerate(),
         procedures,
     }));
-    let may_begin = |place: usize| stop.may_begin() && first_failure.admits(place);
-    match connected {
-        connected @ Connected::Port(..) => {
-            scope.spawn(move || {
-                let mut worker = Worker::new(connected, stop);
-                // What is due and not begun ends with no event.
-                while let Some((place, task, sender)) = take(&work).filter(|due| may_begin(due.0)) {
-                    first_failure.run_noting_failure(place, sender, |sink, go_on| {
-                        worker.run(task, sink, go_on)
-                    });
-                }
+    let work_off = move |connected: &mut Connected| {
+        let may_begin = |place: usize| stop.may_begin() && first_failure.admits(place);
+        // What is due and not begun ends with no event.
+        while let Some((place, task, sender)) = take(&work).filter(|due| may_begin(due.0)) {
+            first_failure.run_noting_failure(place, sender, |sink, go_on| {
+                connected.run(task, stop, sink, go_on);
             });
         }
+    };
+    match connected {
         Connected::Sim(setup) => {
             for _ in 0..plan.jobs.clamp(1, plan.tasks.len().max(1)) {
-                let work = work.clone();
-                let setup: &'scope BenchSetup = setup;
-                scope.spawn(move || {
-                    while let Some((place, task, sender)) =
-                        take(&work).filter(|due| may_begin(due.0))
-                    {
-                        first_failure.run_noting_failure(place, sender, |sink, go_on| {
-                            run_on_fresh(setup, task, stop, sink, go_on);
-                        });
-                    }
-                });
+                let (work_off, mut own) = (work_off.clone(), Connected::Sim(setup.clone()));
+                scope.spawn(move || work_off(&mut own));
             }
         }
+        port @ Connected::Port(..) => drop(scope.spawn(move || work_off(port))),
     }
     receiver
 }
@@ -84,28 +73,19 @@ fn take<'a>(work: &Mutex<Work<'a>>) -> Option<(usize, &'a Task, SyncSender<Sessi
     Some((place, task, sender))
 }
 
-/// Procedures one after the other: each on an embedded unit made for it, or all on the one on a port.
-pub struct Worker<'a> {
-    connected: &'a mut Connected,
-    stop: &'a Stop,
-}
-
-impl<'a> Worker<'a> {
-    /// A worker on a unit that has been reached.
-    pub fn new(connected: &'a mut Connected, stop: &'a Stop) -> Self {
-        Self { connected, stop }
-    }
-
-    /// Runs a task as long as `go_on` says so after a step, telling `sink` what happens.
-    pub fn run(
+impl Connected {
+    /// Runs a task as long as `go_on` says so after a step, telling `sink` what happens: on an embedded unit made for the
+    /// task, or on the unit on the port.
+    pub(super) fn run(
         &mut self,
         task: &Task,
+        stop: &Stop,
         sink: &mut dyn FnMut(SessionEvent),
         go_on: &dyn Fn() -> bool,
     ) {
-        match &mut *self.connected {
-            Connected::Sim(setup) => run_on_fresh(setup, task, self.stop, sink, go_on),
-            Connected::Port(session, _, found) => {
+        match self {
+            Self::Sim(setup) => run_on_fresh(setup, task, stop, sink, go_on),
+            Self::Port(session, _, found) => {
                 keep_time();
                 let began = session.now();
                 found.extend(between_procedures(session));

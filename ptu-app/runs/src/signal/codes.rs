@@ -13,7 +13,7 @@ const ENDS_AFTER_S: f64 = 0.3;
 pub(super) struct Codes<'a> {
     pub(super) carriers: Vec<Carrier<'a>>,
     pub(super) done: Vec<Source>,
-    /// Of the last block: whether something was heard at each asking.
+    /// Whether a code was heard at each asking of the last block.
     pub(super) understood: Vec<bool>,
 }
 
@@ -43,7 +43,7 @@ impl Codes<'_> {
 /// The codes of one carrier.
 pub(super) struct Carrier<'a> {
     receiver: CodeReceiver,
-    /// Of a carrier that is keyed.
+    /// Envelope of a carrier that is switched on and off.
     envelope: Option<Envelope>,
     codes: Vec<&'a SpeedCode>,
     rates_hz: Vec<f32>,
@@ -87,7 +87,7 @@ impl<'a> Carrier<'a> {
         }
     }
 
-    /// The code that is heard, up to now; rate and level of all of it.
+    /// The code that is being heard, with its rate and level from its beginning until now.
     pub(super) fn under_way(&self) -> Option<Source> {
         let mut source = self.under_way.clone()?;
         let fit = (self.envelope.as_ref()).filter(|_| source.rate_hz > 0.0);
@@ -156,8 +156,7 @@ impl<'a> Carrier<'a> {
                     rate_hz: f64::from(heard.rate_hz),
                     level_mv: Some(f64::from(heard.level_mv)),
                     snr_db: heard.snr_db.map(f64::from),
-                    bad_bytes: None,
-                    tacho: None,
+                    ..Source::default()
                 };
                 *under_way = Some(source);
             }

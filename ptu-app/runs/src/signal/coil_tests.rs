@@ -7,8 +7,7 @@ use protocol::config::UnitConfig;
 use protocol::message::{COIL_PART, COIL_SAMPLES, COIL_STEP_MV, Coil, CoilSamples, IoInput};
 use protocol::{Duration, Instant, Random, SCAN};
 
-use super::tests::unit;
-use crate::test_support::scripts;
+use super::tests::{unit, unit_of};
 
 const RATE: f64 = 48_000.0;
 pub(super) const SCAN_SAMPLES: usize = COIL_SAMPLES;
@@ -163,7 +162,7 @@ pub(super) fn no_burst_is_heard(
     (cases, late_ms): (usize, u64),
     random: &mut Random,
 ) {
-    let config = scripts().unit_config(name).expect("read").content;
+    let config = unit_of(name);
     let detect_ms = u64::from(config.receiver.detect_ms);
     let most_ms = shares.map(|share| detect_ms * share / 100);
     let first_ms = |parts: &[(Option<f64>, u64)], rate_hz, snr_db, random: &mut Random| {

@@ -34,7 +34,7 @@ pub(super) struct Envelope {
 }
 
 impl Envelope {
-    /// Of a carrier with codes up to this rate, Hz.
+    /// Envelope of a carrier with code rates up to `fastest_hz`.
     pub(super) fn new(carrier_hz: f64, fastest_hz: f64, sample_hz: f64) -> Self {
         let (downmix, pass_hz) = downmix(carrier_hz, fastest_hz, sample_hz);
         Self {

@@ -18,14 +18,14 @@ const MARKER_BAND_HZ: f64 = 440.0;
 pub enum Wave {
     /// A speed code of the unit configuration, by its name, for so long.
     Code {
-        /// Its name, as `55`.
+        /// Name of the code, as `55`.
         name: String,
-        /// How long, s.
+        /// Duration of the code, s.
         seconds: f64,
     },
     /// Bytes as TWC.
     Twc(Vec<u8>),
-    /// A marker as a train passes it; its middle is in the middle.
+    /// A marker as a train passes it; the train is above the marker in the middle of the samples.
     Marker {
         /// 1 to 4 = PSM1 to PSM4.
         number: u8,
@@ -49,7 +49,7 @@ const MOST_BYTES: usize = 2_048;
 /// Bytes from pairs of hex digits, with or without blanks.
 ///
 /// # Errors
-/// They are no bytes, none, or too many.
+/// The text has other characters than hex digits, an odd number of them, none or too many.
 pub fn bytes_of(text: &str) -> Result<Vec<u8>, SoundTrouble> {
     let digits: Vec<u32> = (text.chars().filter(|letter| !letter.is_whitespace()))
         .map(|letter| letter.to_digit(16))
@@ -129,10 +129,13 @@ pub fn samples(wave: &Wave, unit: &UnitConfig, strength: Strength) -> Result<Sam
             (Box::new(samples), MARKER_BAND_HZ)
         }
     };
-    let mut noise = snr_db.map(|snr_db| Noise::new(level_mv, snr_db, band_hz, rate, seed));
-    let noisy =
-        samples.map(move |sample| sample + noise.as_mut().and_then(Iterator::next).unwrap_or(0.0));
-    Ok(Box::new(noisy))
+    Ok(match snr_db {
+        Some(snr_db) => {
+            let noise = Noise::new(level_mv, snr_db, band_hz, rate, seed);
+            Box::new(samples.zip(noise).map(|(sample, noise)| sample + noise))
+        }
+        None => samples,
+    })
 }
 
 /// Writes a waveform to a WAV file.

@@ -10,7 +10,7 @@ pub(super) struct Markers {
     receiver: MarkerReceiver,
     tones_hz: [f64; 4],
     pub(super) done: Vec<Source>,
-    /// Of the last block: whether a marker was being passed at each asking of the codes.
+    /// Whether a marker was being passed at each asking of the codes in the last block.
     pub(super) understood: Vec<bool>,
 }
 
@@ -52,11 +52,8 @@ impl Markers {
             to_s: at_s,
             what: format!("PSM{}", passed.marker),
             carrier_hz: self.tones_hz[usize::from(passed.marker) - 1],
-            rate_hz: 0.0,
             level_mv: Some(f64::from(passed.level_mv)),
-            snr_db: None,
-            bad_bytes: None,
-            tacho: None,
+            ..Source::default()
         });
     }
 }

@@ -6,7 +6,8 @@ use super::picture::Spectrum;
 
 /// Level and strongest line of a channel.
 pub(super) struct Meter {
-    spectrum: Spectrum,
+    /// The strongest line is that of this spectrum.
+    pub(super) spectrum: Spectrum,
     sum: f64,
     count: u64,
     /// Greatest mean square of a part, mV².
@@ -40,16 +41,11 @@ impl Meter {
         let mean = self.sum / self.count.max(1) as f64;
         (mean.sqrt(), self.most.sqrt())
     }
-
-    /// Frequency of the strongest line, Hz, and its level, mV rms; none of silence and of what is too short.
-    pub(super) fn strongest(&self) -> Option<(f64, f64)> {
-        self.spectrum.strongest()
-    }
 }
 
-/// Values of the filter for each sample that it gives.
+/// Length of the filter over the number of samples that are taken together.
 const LENGTH: usize = 16;
-/// Edge of its pass band over the rate of the samples that it gives.
+/// Edge of the filter's pass band over the rate of the samples that the filter gives.
 const EDGE: f64 = 0.375;
 
 /// Takes samples together, without what is too high for so few.

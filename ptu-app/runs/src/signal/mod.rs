@@ -30,9 +30,10 @@ pub use make::{
 };
 pub use picture::{Columns, Picture, Span};
 pub use read::{read, read_and_picture};
-pub use reading::{Level, NotUnderstood, Reading, Source, Tacho, Why};
+pub use reading::{Level, MOST_CHANNELS, NotUnderstood, Reading, Source, Tacho, Why};
 pub use receive::Receivers;
 pub use tacho::read_tacho;
+pub(crate) use wav::sample_of_16_bits;
 pub use wav::{End, Wav};
 
 /// Samples a second of what is made.

@@ -18,7 +18,8 @@ const MOST_SPECTRA: usize = 512;
 const RESOLUTION_HZ: f64 = 12.0;
 /// Spectra that a sample is in.
 const OVERLAP: usize = 4;
-/// Lines that the window makes of one, on either side, and the sum of their powers over its own.
+/// Lines beside a line, on either side, into which the window spreads its power, and the sum of all their powers over the
+/// power of the line.
 const BESIDE: usize = 2;
 const OF_LINES: f64 = 1.5;
 /// Rows of the spectrum over time.
@@ -30,20 +31,20 @@ const BITS: usize = 11;
 /// Curves of the eye at most; half of them go when there are more.
 const MOST_CURVES: usize = 200;
 
-/// Values in columns of equal length, each of which holds all that it covers.
+/// Values in columns of equal length; a column sums up the values that it covers.
 #[derive(Clone, Debug)]
 pub struct Columns<T> {
     /// Values in each column.
     pub each: u64,
-    /// Values in the last one.
+    /// Values in the last column.
     last: u64,
     most: usize,
     values: Vec<T>,
 }
 
-/// What a column becomes with the next one in it.
+/// A column that can be merged with its neighbour when there are too many columns.
 pub trait Merge: Clone {
-    /// Takes another in.
+    /// Adds the values of the next column to this one.
     fn merge(&mut self, other: &Self);
 }
 
@@ -135,7 +136,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Of samples at this rate; the envelope is that of this carrier, with codes up to this rate, the eye of these tones.
+    /// Picture of samples at the rate `sample_hz`: the envelope of the carrier with codes up to `fastest_hz`, and the eye of
+    /// the TWC tones.
     pub fn new(sample_hz: f64, (carrier_hz, fastest_hz): (f64, f64), tones: Tones) -> Self {
         let highest = f64::from(tones.middle_hz + tones.apart_hz);
         Self {
@@ -182,7 +184,7 @@ impl Picture {
         (columns.values(), each_s)
     }
 
-    /// From when to when the spectra are, s: each stands in the middle of what it is made of.
+    /// Beginning and end of the spectra, s: a spectrum stands in the middle of the samples that it is made of.
     pub fn spectra_s(&self) -> (f64, f64) {
         let Spectrum { hop, window, .. } = &self.spectrum;
         let (spectra, each_s) = self.spectra();
@@ -242,7 +244,7 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
-    /// Of samples at this rate, each of which is in so many spectra.
+    /// Spectrum of samples at the rate `sample_hz`; each sample is in `overlap` spectra.
     pub(super) fn new(sample_hz: f64, overlap: usize) -> Self {
         let length = ((sample_hz / RESOLUTION_HZ) as usize)
             .next_power_of_two()
@@ -269,7 +271,8 @@ impl Spectrum {
         }
     }
 
-    /// The strongest line, Hz, and its mean level, mV rms.
+    /// Frequency of the strongest line, Hz, and its mean level, mV rms; none of silence and of less samples than a spectrum
+    /// takes.
     pub(super) fn strongest(&self) -> Option<(f64, f64)> {
         let lines = self.powers.windows(2 * BESIDE + 1).enumerate().skip(1);
         let (first, around) = lines.max_by(|a, b| a.1[BESIDE].total_cmp(&b.1[BESIDE]))?;
@@ -299,7 +302,7 @@ impl Spectrum {
             *level = level.max(power);
         }
         self.count += 1;
-        // Of a long recording nothing is looked at twice.
+        // The spectra of a long recording do not overlap.
         let hops = match self.columns.each {
             1 => 1,
             _ => length / self.hop,
@@ -318,7 +321,7 @@ struct Eye {
     receiver: FskReceiver,
     demodulator: Demodulator,
     per_bit: f32,
-    /// Of the last byte.
+    /// Samples of the last byte.
     line: VecDeque<f32>,
     curves: Vec<Vec<f32>>,
     /// Curves of which one is kept, and those passed since.

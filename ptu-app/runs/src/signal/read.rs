@@ -5,7 +5,7 @@ use std::path::Path;
 use protocol::config::UnitConfig;
 
 use super::picture::Picture;
-use super::reading::Reading;
+use super::reading::{MOST_CHANNELS, Reading};
 use super::receive::Receivers;
 use super::wav::{End, Wav};
 use crate::failure::Failure;
@@ -13,39 +13,38 @@ use crate::failure::Failure;
 /// Reads a WAV file for a unit of this configuration; full scale stands for `full_scale_mv`.
 ///
 /// # Errors
-/// It cannot be read or is no WAV file.
+/// The file cannot be read or is no WAV file.
 pub fn read(path: &Path, unit: &UnitConfig, full_scale_mv: f64) -> Result<Reading, Failure> {
-    let wav = Wav::open(path)?;
-    let receivers = Receivers::new(wav.channels(), wav.sample_hz().into(), unit, false);
-    whole(wav, receivers, full_scale_mv).map(|(reading, _)| reading)
+    Ok(whole(path, unit, full_scale_mv, false)?.0)
 }
 
-/// Reads a file as [`read`] does, and makes what a person looks at.
+/// Reads a file as [`read`] does, and makes the pictures of its channels.
 ///
 /// # Errors
-/// It cannot be read or is no WAV file.
+/// The file cannot be read or is no WAV file.
 pub fn read_and_picture(
     path: &Path,
     unit: &UnitConfig,
     full_scale_mv: f64,
 ) -> Result<(Reading, Vec<Picture>), Failure> {
-    let wav = Wav::open(path)?;
-    let receivers = Receivers::new(wav.channels(), wav.sample_hz().into(), unit, true);
-    whole(wav, receivers, full_scale_mv)
+    whole(path, unit, full_scale_mv, true)
 }
 
-/// The file's next block is read while the receivers take the last one.
+/// Reads the file's next block while the receivers take the last one.
 fn whole(
-    mut wav: Wav,
-    mut receivers: Receivers<'_>,
+    path: &Path,
+    unit: &UnitConfig,
     full_scale_mv: f64,
+    pictures: bool,
 ) -> Result<(Reading, Vec<Picture>), Failure> {
+    let mut wav = Wav::open(path)?;
+    let mut receivers = Receivers::new(wav.channels(), wav.sample_hz().into(), unit, pictures);
     let frames = receivers.block();
-    let mut block = wav.block(frames, Receivers::MOST_CHANNELS, full_scale_mv);
+    let mut block = wav.block(frames, MOST_CHANNELS, full_scale_mv);
     loop {
         let (samples, end) = block;
         let next = receivers.take_while(&samples, || {
-            (end.is_none()).then(|| wav.block(frames, Receivers::MOST_CHANNELS, full_scale_mv))
+            (end.is_none()).then(|| wav.block(frames, MOST_CHANNELS, full_scale_mv))
         });
         match (next, end) {
             (Some(next), _) => block = next,

@@ -11,8 +11,8 @@ use super::wav::Wav;
 pub(super) const ASKED_EVERY_S: f64 = 0.1;
 /// Most entries of each kind in an answer.
 pub(super) const MOST: usize = 100_000;
-/// Channels that are read at most.
-pub(super) const MOST_CHANNELS: usize = 8;
+/// Channels of a recording that are read at most.
+pub const MOST_CHANNELS: usize = 8;
 
 /// When the samples of a block are.
 #[derive(Clone, Copy)]
@@ -35,11 +35,11 @@ impl Clock {
 pub struct Reading {
     /// Length, s.
     pub duration_s: f64,
-    /// How loud each channel is, whatever is in it.
+    /// Level of each channel, whatever signals it holds.
     pub levels: Vec<Level>,
     /// Signals, in order of their beginning.
     pub sources: Vec<Source>,
-    /// What is in it and was not understood.
+    /// Parts of the recording that are loud and that no receiver understood.
     pub not_understood: Vec<NotUnderstood>,
 }
 
@@ -54,14 +54,14 @@ pub struct Level {
     pub most_mv: f64,
     /// The strongest line, Hz; none of silence and of less than a spectrum.
     pub strongest_hz: Option<f64>,
-    /// Its mean level, mV rms.
+    /// Mean level of the strongest line, mV rms.
     pub strongest_mv: Option<f64>,
 }
 
 impl Level {
     pub(super) fn of(meter: &Meter, channel: usize) -> Self {
         let (level_mv, most_mv) = meter.levels_mv();
-        let strongest = meter.strongest();
+        let strongest = meter.spectrum.strongest();
         Self {
             channel,
             level_mv,
@@ -72,8 +72,8 @@ impl Level {
     }
 }
 
-/// A signal.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// A signal that was found, from its beginning to its end.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Source {
     /// `code`, `twc`, `marker` or `tacho`.
     pub kind: &'static str,
@@ -93,10 +93,10 @@ pub struct Source {
     pub level_mv: Option<f64>,
     /// Level over the noise in the receiver's band, dB, if it is known.
     pub snr_db: Option<f64>,
-    /// Of TWC: bytes with a wrong parity or without a stop bit.
+    /// Bytes of TWC with a wrong parity or without a stop bit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bad_bytes: Option<u32>,
-    /// Of a speed sensor: what its lines tell.
+    /// Wheel and sensor, as the lines of a speed sensor tell.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tacho: Option<Tacho>,
 }
@@ -205,13 +205,11 @@ fn in_words<S: Serializer>(why: &Why, to: S) -> Result<S::Ok, S::Error> {
 }
 
 impl Reading {
-    /// Something is not understood at this time.
+    /// Tells why the file is not understood at this time.
     pub(super) fn tell(&mut self, at_s: f64, why: Why) {
-        self.not_understood.push(NotUnderstood {
-            from_s: at_s,
-            to_s: at_s,
-            why,
-        });
+        let (from_s, to_s) = (at_s, at_s);
+        self.not_understood
+            .push(NotUnderstood { from_s, to_s, why });
     }
 
     /// Tells which channels of a file that was read are clipped.

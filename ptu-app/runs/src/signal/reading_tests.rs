@@ -5,9 +5,8 @@ use btu_rig::waveform::{CodeWave, FskWave, Noise};
 use fuzzing::draw;
 use protocol::config::UnitConfig;
 
-use super::tests::unit;
+use super::tests::{unit, unit_of};
 use super::*;
-use crate::test_support::scripts;
 
 /// A recording of these samples, mV.
 fn read_of(sample_hz: u32, samples: impl Iterator<Item = f64>) -> Reading {
@@ -55,7 +54,7 @@ fn a_weak_code_is_on_the_meter_and_a_fast_recording_is_read() {
 /// Goal: the image of a low carrier is no part of the level. Method: the slowest and the fastest code on 100 Hz.
 #[test]
 fn the_level_of_a_code_on_a_low_carrier_is_found() {
-    let unit = scripts().unit_config("us_cab").expect("a type").content;
+    let unit = unit_of("us_cab");
     for code in [&unit.codes[0], &unit.codes[unit.codes.len() - 1]] {
         let wave = CodeWave::new(code.carrier_hz, code.rate_hz, 500.0, 48e3);
         let reading = read_by(&unit, 48_000, wave.take(480_000));

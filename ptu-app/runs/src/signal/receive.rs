@@ -15,56 +15,47 @@ use super::twc::Twc;
 
 /// Askings in a block.
 const ASKED_IN_BLOCK: usize = 10;
-/// What is louder than the weakest level that is decoded, and understood by no receiver, is told from this length on, s.
+/// Shortest part, s, that is told as not understood: louder than the weakest level that is decoded, and understood by no
+/// receiver.
 const LEAST_UNKNOWN_S: f64 = 1.0;
-/// Of two such parts with less between them one is told, s; of more than so many those that are nearest are joined.
+/// Two such parts with less than this between them, s, are told as one; of more than `MOST_UNKNOWN` parts the nearest are
+/// joined.
 const JOINED_S: f64 = 1.0;
 const MOST_UNKNOWN: usize = 32;
 /// Highest rate at which the receivers work, Hz: of faster samples some are taken together.
 const MOST_HZ: f64 = 96_000.0;
 /// Least sample rate, times the highest frequency of a signal.
 const LEAST_RATE: f64 = 2.2;
+
 /// The receivers of all channels of a recording.
 pub struct Receivers<'a> {
     channels: Vec<Channel<'a>>,
-    /// Of each channel, if somebody looks at it.
+    /// Picture of each channel; none if nobody looks at them.
     pictures: Vec<Picture>,
     sample_hz: f64,
-    /// Of each channel with faster samples.
+    /// Filter of each channel whose samples are faster than the receivers work.
     slower: Vec<Decimator>,
     /// Samples between askings.
     asked_every: usize,
     /// Samples taken.
     samples: u64,
-    not_understood: Vec<NotUnderstood>,
+    /// What is told of the recording before its first sample is taken.
+    begun: Reading,
 }
 
 impl<'a> Receivers<'a> {
-    /// Channels that are read at most.
-    pub const MOST_CHANNELS: usize = MOST_CHANNELS;
-
-    /// For so many channels with samples of this rate; with pictures of them, if somebody looks.
+    /// Receivers for so many channels with samples of this rate; with pictures of them, if somebody looks.
     pub fn new(channels: usize, sample_hz: f64, unit: &'a UnitConfig, pictures: bool) -> Self {
         let by = (sample_hz / MOST_HZ).ceil().max(1.0) as usize;
         let sample_hz = sample_hz / by as f64;
-        let mut not_understood = Vec::new();
-        let mut said = |why| {
-            not_understood.push(NotUnderstood {
-                from_s: 0.0,
-                to_s: 0.0,
-                why,
-            });
-        };
-        if channels > Self::MOST_CHANNELS {
-            said(Why::Channels(channels));
+        let mut begun = Reading::default();
+        if channels > MOST_CHANNELS {
+            begun.tell(0.0, Why::Channels(channels));
         }
-        let read = channels.min(Self::MOST_CHANNELS);
-        let (first, too_high) = Channel::new(1, unit, sample_hz);
-        if !too_high.is_empty() {
-            said(Why::Slow {
-                sample_hz,
-                for_hz: too_high,
-            });
+        let read = channels.min(MOST_CHANNELS);
+        let (first, for_hz) = Channel::new(1, unit, sample_hz);
+        if !for_hz.is_empty() {
+            begun.tell(0.0, Why::Slow { sample_hz, for_hz });
         }
         let others = (2..=read).map(|number| Channel::new(number, unit, sample_hz).0);
         let channels: Vec<_> = std::iter::once(first).chain(others).collect();
@@ -87,7 +78,7 @@ impl<'a> Receivers<'a> {
             sample_hz,
             asked_every: ((ASKED_EVERY_S * sample_hz) as usize).max(1),
             samples: 0,
-            not_understood,
+            begun,
         }
     }
 
@@ -154,8 +145,7 @@ impl<'a> Receivers<'a> {
             levels: (self.channels.iter())
                 .map(|channel| Level::of(&channel.meter, channel.number))
                 .collect(),
-            sources: Vec::new(),
-            not_understood: self.not_understood.clone(),
+            ..self.begun.clone()
         };
         for channel in &self.channels {
             channel.tell(&mut reading);
@@ -246,9 +236,7 @@ impl<'a> Channel<'a> {
                 .as_ref()
                 .is_some_and(|of| heard(&of.understood));
             let understood = heard(&self.codes.understood) || heard(in_message) || passed;
-            let square: f64 = (part.iter())
-                .map(|sample| f64::from(*sample) * f64::from(*sample))
-                .sum();
+            let square: f64 = (part.iter()).map(|sample| f64::from(*sample).powi(2)).sum();
             let at_s = clock.at_s((place + 1) * clock.asked_every - 1);
             let square = square / part.len() as f64;
             self.loud.ask(square, understood, at_s, level_min);

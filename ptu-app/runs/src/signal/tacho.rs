@@ -7,8 +7,7 @@ use ato_under_test::receivers::SensorInput;
 use protocol::config::UnitConfig;
 
 use super::meter::Meter;
-use super::reading::{ASKED_EVERY_S, Level, Reading, Source, Tacho, Why};
-use super::receive::Receivers;
+use super::reading::{ASKED_EVERY_S, Level, MOST_CHANNELS, Reading, Source, Tacho, Why};
 use super::wav::{End, Wav};
 use crate::failure::Failure;
 
@@ -44,7 +43,7 @@ struct Sensor {
     fell_backward: bool,
     /// Periods that are much longer or shorter than the one before, and all.
     uneven: (u64, u64),
-    /// Sums over whole periods: their length, what was high of them, and the phase, as a sum of shares and how many.
+    /// Sums over whole periods: length, samples for which each line was high, and phase, as a sum of shares and their count.
     length: f64,
     sum_high: [u64; 2],
     phases: (f64, u32),
@@ -81,7 +80,7 @@ impl Sensor {
             false => self.told.forward += 1,
         }
         let turned = self.backward.replace(backward) == Some(!backward);
-        // It turned behind a tooth, which passes once more.
+        // The wheel turned back behind a tooth, which passes once more.
         if turned && self.fell_backward != backward {
             self.ahead -= way;
         }
@@ -126,13 +125,13 @@ impl Sensor {
         }
     }
 
-    /// Its pulses come as those of no wheel do.
+    /// The periods of the pulses vary as no wheel's do.
     fn is_noise(&self) -> bool {
         let (uneven, all) = self.uneven;
         uneven as f64 > MOST_UNEVEN * all as f64
     }
 
-    /// What it was, if there were two pulses.
+    /// What the sensor told, if there were two pulses.
     fn told(mut self, sample_hz: f64, unit: &UnitConfig) -> Option<(Tacho, [f64; 2])> {
         let (first, last) = (self.first?, self.last.filter(|_| self.length > 0.0)?);
         let kmh = |samples: f64| 3.6 * unit.metres_per_pulse() * sample_hz / samples;
@@ -149,11 +148,11 @@ impl Sensor {
 /// Reads the speed sensors in a WAV file, of which two channels each are lines A and B.
 ///
 /// # Errors
-/// It cannot be read or is no WAV file.
+/// The file cannot be read or is no WAV file.
 pub fn read_tacho(path: &Path, unit: &UnitConfig, full_scale_mv: f64) -> Result<Reading, Failure> {
     let mut wav = Wav::open(path)?;
     let sample_hz = f64::from(wav.sample_hz());
-    let channels = wav.channels().min(Receivers::MOST_CHANNELS);
+    let channels = wav.channels().min(MOST_CHANNELS);
     let part = ((ASKED_EVERY_S * sample_hz) as usize).max(1);
     let mut meters: Vec<_> = (0..channels).map(|_| Meter::new(sample_hz)).collect();
     let mut sensors: Vec<_> = (0..channels / 2).map(|_| Sensor::default()).collect();
@@ -194,13 +193,10 @@ pub fn read_tacho(path: &Path, unit: &UnitConfig, full_scale_mv: f64) -> Result<
                 channel: 2 * place + 1,
                 from_s,
                 to_s,
-                what: String::new(),
-                carrier_hz: 0.0,
                 rate_hz: tacho.mean_kmh / 3.6 / unit.metres_per_pulse(),
                 level_mv: Some(meters[2 * place].levels_mv().0),
-                snr_db: None,
-                bad_bytes: None,
                 tacho: Some(tacho),
+                ..Source::default()
             });
         }
     }

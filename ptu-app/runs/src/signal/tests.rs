@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use ato_under_test::receivers::{
-    CodeReceiver, Demodulator, FskReceiver, Received, Reception, Tones,
-};
+use ato_under_test::receivers::{Demodulator, FskReceiver, Received, Tones};
 use btu_rig::waveform::{CodeWave, FskWave, Noise};
 use protocol::config::UnitConfig;
 
@@ -20,9 +18,14 @@ const TONES: Tones = Tones {
     bit_rate: 300.0,
 };
 
+/// The unit configuration of the defaults.
 pub(super) fn unit() -> UnitConfig {
-    let scripts = scripts();
-    scripts.unit_config("sg100").expect("read").content
+    unit_of("sg100")
+}
+
+/// The unit configuration of this name.
+pub(super) fn unit_of(name: &str) -> UnitConfig {
+    scripts().unit_config(name).expect("read").content
 }
 
 fn made(wave: &Wave, path: &Path) -> Reading {
@@ -301,11 +304,10 @@ fn what_is_no_such_signal_is_said() {
     }
 }
 
-/// The figures of `docs/dev/figures.md`: bit errors over Eb/N0 with known bit timing, codes decided at 10 dB, and more
-/// permissive codes at any noise, crosstalk and splice.
+/// The figures of `docs/dev/figures.md` on TWC: bit errors over Eb/N0 with known bit timing.
 #[test]
-#[ignore = "measures for minutes: cargo test --release -p ptu-runs figures_of_the_receivers -- --ignored --nocapture"]
-fn figures_of_the_receivers() {
+#[ignore = "measures for minutes: cargo test --release -p ptu-runs figures_of_twc -- --ignored --nocapture"]
+fn figures_of_twc() {
     let tones = TONES;
     let per_bit = RATE / f64::from(tones.bit_rate);
     for db in [4.0, 6.0, 8.0, 10.0, 12.0] {
@@ -339,65 +341,6 @@ fn figures_of_the_receivers() {
             "TWC {db} dB: {measured:.6} of the bits wrong, theory {theory:.6}; as theory at {needs_db:.2} dB"
         );
     }
-    let rates: Vec<f32> = unit()
-        .codes
-        .iter()
-        .map(|code| code.rate_hz as f32)
-        .collect();
-    // Seeds that no constant of the receiver was chosen by.
-    let mut noises = protocol::Random::new(2_026);
-    let mut decide = |wave: &mut dyn Iterator<Item = f64>, snr_db: f64| {
-        let noise = Noise::new(500.0, snr_db, 320.0, RATE, noises.bits());
-        let mut receiver = CodeReceiver::new(Reception::of(&unit(), 3_000.0), RATE as f32);
-        for (signal, noise) in wave.zip(noise).take(28_800) {
-            receiver.take((signal + noise) as f32);
-        }
-        let heard = receiver.heard(&rates).map(|heard| heard.rate_hz);
-        heard.and_then(|heard| {
-            rates
-                .iter()
-                .copied()
-                .find(|rate| (heard - rate).abs() < 0.5)
-        })
-    };
-    let mut random = protocol::Random::new(1_126);
-    let wave = |rate: f32, level: f64, skipped: usize| {
-        CodeWave::new(3_000.0, f64::from(rate), level, RATE).skip(skipped)
-    };
-    let (mut right, mut wrong) = (0, 0);
-    let trials = 10_000;
-    for trial in 0..trials {
-        let rate = rates[trial % rates.len()];
-        let decided = decide(&mut wave(rate, 500.0, random.below(5_000)), 10.0);
-        right += usize::from(decided == Some(rate));
-        wrong += usize::from(decided.is_some_and(|decided| decided != rate));
-    }
-    println!("code at 10 dB, in one window of 0.6 s: right {right}, another {wrong} of {trials}");
-    let trials = 60_000;
-    let (mut permissive, mut decided) = (0, 0);
-    for trial in 0..trials {
-        let (one, other) = (random.below(rates.len()), random.below(rates.len()));
-        let snr_db = -10.0 + 40.0 * random.unit();
-        let first = wave(rates[one], 500.0, random.below(5_000));
-        let later = random.below(5_000);
-        let heard = match trial % 2 {
-            0 => {
-                let crosstalk = wave(rates[other], 250.0, later);
-                decide(&mut first.zip(crosstalk).map(|(a, b)| a + b), snr_db)
-            }
-            _ => {
-                let second = wave(rates[other], 500.0, later);
-                decide(&mut first.take(random.below(28_800)).chain(second), snr_db)
-            }
-        };
-        decided += usize::from(heard.is_some());
-        // Codes stand in the order of their limits: a later one permits more. Crosstalk is not what was sent.
-        let most = if trial % 2 == 0 { one } else { one.max(other) };
-        permissive += usize::from(heard.is_some_and(|rate| rate < rates[most]));
-    }
-    println!(
-        "any noise, crosstalk of -6 dB, splices: {decided} of {trials} decided, {permissive} more permissive"
-    );
 }
 
 /// Bits as two tones of one phase, mV.

@@ -16,7 +16,7 @@ pub(super) struct Twc {
     tones: Tones,
     pub(super) under_way: Option<Source>,
     pub(super) done: Vec<Source>,
-    /// Of the last block: whether it was within a message at each asking of the codes.
+    /// Whether a message was being received at each asking of the codes in the last block.
     pub(super) understood: Vec<bool>,
 }
 
@@ -61,14 +61,10 @@ impl Twc {
             kind: "twc",
             channel,
             from_s: at_s - byte_s,
-            to_s: at_s,
-            what: String::new(),
             carrier_hz: f64::from(tones.middle_hz),
             rate_hz: f64::from(tones.bit_rate),
-            level_mv: None,
-            snr_db: None,
             bad_bytes: Some(0),
-            tacho: None,
+            ..Source::default()
         });
         source.to_s = at_s;
         match received {

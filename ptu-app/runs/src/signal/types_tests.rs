@@ -3,28 +3,23 @@
 use ato_under_test::receivers::{CodeReceiver, Reception};
 use btu_rig::waveform::{CodeWave, Noise};
 use protocol::Random;
-use protocol::config::UnitConfig;
 
 use super::coil_tests::{SCAN_SAMPLES, by_turns, decided, no_burst_is_heard};
-use super::tests::unit;
+use super::tests::{unit, unit_of};
 use super::*;
 use crate::test_support::scripts;
 use crate::words::Unheard;
 
 const RATE: f64 = 48_000.0;
 
-fn of_type(name: &str) -> UnitConfig {
-    scripts().unit_config(name).expect("read").content
-}
-
 /// Goal: a table whose codes the receiver cannot hear is refused with the code and the reason, and each shipped one is heard.
 #[test]
 fn a_table_that_the_receiver_cannot_hear_is_refused() {
     for name in scripts().unit_config_names() {
-        let config = of_type(&name);
+        let config = unit_of(&name);
         assert_eq!(unheard(&config).map(|of| of.0.name.clone()), None, "{name}");
     }
-    let mut hasty = of_type("us_cab");
+    let mut hasty = unit_of("us_cab");
     hasty.receiver.detect_ms = 400;
     let (code, carrier_hz, why) = unheard(&hasty).expect("too short");
     assert_eq!((code.name.as_str(), carrier_hz), ("75ppm", 100.0));
@@ -62,7 +57,7 @@ fn bursts_of_slow_codes_and_of_those_that_shift_are_not_heard() {
 /// it is heard first; and it is over with its first pause that is too long.
 #[test]
 fn a_slow_code_is_there_from_its_beginning_to_its_end() {
-    let config = of_type("us_cab");
+    let config = unit_of("us_cab");
     let detect = config.receiver.detect_ms as usize / 10;
     for code in &config.codes {
         let half_period = (50.0 / code.rate_hz) as usize;
@@ -89,7 +84,7 @@ fn a_rate_of_no_code_is_heard_as_what_it_is() {
         ("zpw2000", 2.0),
         ("zpw2000", 32.0),
     ] {
-        let config = of_type(name);
+        let config = unit_of(name);
         let carrier_hz = config.codes[0].carrier_hz;
         let wave = CodeWave::new(carrier_hz, rate_hz, 500.0, RATE);
         let wave = wave.shifted(config.receiver.shift_hz, RATE);
@@ -110,7 +105,7 @@ fn a_rate_of_no_code_is_heard_as_what_it_is() {
 
 fn are_told_apart(name: &str, pairs: usize) {
     let mut random = Random::new(7_603);
-    let config = of_type(name);
+    let config = unit_of(name);
     let carriers = config.carriers_hz();
     let rates: Vec<f64> = config.codes.iter().map(|code| code.rate_hz).collect();
     let samples = (f64::from(config.receiver.detect_ms) / 1_000.0 * 1.9 * RATE) as usize;

@@ -7,8 +7,8 @@ use std::path::Path;
 use hound::{SampleFormat, WavSpec, WavWriter};
 
 use super::wav_head::{self, Head};
-use crate::failure::{Failure, FileTrouble, Why};
-use crate::new_file::{NewFile, kind};
+use crate::failure::{Failure, FileTrouble};
+use crate::new_file::{NewFile, cannot_write, kind};
 
 /// Highest sample rate that is read, Hz.
 const MOST_HZ: u32 = 768_000;
@@ -27,7 +27,7 @@ pub struct Wav {
     /// Bytes that are still to come, as far as the file says.
     left: Option<u64>,
     shown: String,
-    /// Of each channel: samples in a row that are as great as the file holds, and all of such rows.
+    /// Samples at full scale of each channel: of the present row, and of all rows.
     clipped: Vec<[u64; 2]>,
 }
 
@@ -35,7 +35,7 @@ pub struct Wav {
 pub enum End {
     /// The file is read.
     Whole,
-    /// It is cut off, or damaged from here on.
+    /// The file is cut off, or damaged from here on.
     Broken(String),
 }
 
@@ -43,7 +43,7 @@ impl Wav {
     /// Opens a file.
     ///
     /// # Errors
-    /// It cannot be read, or is no WAV file that can be understood.
+    /// The file cannot be read, or is no WAV file that can be understood.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let shown = path.display().to_string();
         let file = fault_db::open_regular_file(path)
@@ -136,6 +136,14 @@ impl Wav {
     }
 }
 
+/// A part of full scale as a sample of 16 bits, and whether the part was beyond full scale and is cut off there.
+pub(crate) fn sample_of_16_bits(part: f64) -> (i16, bool) {
+    let sample = (part * 32_768.0).round();
+    // A conversion to integers ends at the greatest of its sign.
+    let kept = sample as i16;
+    (kept, f64::from(kept) != sample)
+}
+
 /// Writes samples, mV, of so many channels by turns, as 16 bits; how many were beyond full scale and are cut off there.
 ///
 /// # Errors
@@ -146,12 +154,7 @@ pub fn write(
     full_scale_mv: f64,
     samples: impl Iterator<Item = f64>,
 ) -> Result<u64, Failure> {
-    let failed = |error: hound::Error| {
-        Failure::bench(FileTrouble::Unwritten(
-            path.display().to_string(),
-            Why::of(error),
-        ))
-    };
+    let failed = |error: hound::Error| cannot_write(path, &error);
     let spec = WavSpec {
         channels,
         sample_rate: sample_hz,
@@ -162,10 +165,9 @@ pub fn write(
     let mut writer = WavWriter::new(file.writer()?, spec).map_err(failed)?;
     let mut clipped = 0;
     for sample in samples {
-        let sample = (sample / full_scale_mv * 32_768.0).round();
-        let kept = sample.clamp(-32_768.0, 32_767.0);
-        clipped += u64::from(sample != kept);
-        writer.write_sample(kept as i16).map_err(failed)?;
+        let (kept, is_clipped) = sample_of_16_bits(sample / full_scale_mv);
+        clipped += u64::from(is_clipped);
+        writer.write_sample(kept).map_err(failed)?;
     }
     writer.finalize().map_err(failed)?;
     file.finish()?;

@@ -22,7 +22,7 @@ pub(super) struct Head {
     pub channels: u16,
     /// Hz.
     pub sample_hz: u32,
-    /// Of one sample of one channel.
+    /// Bytes of one sample of one channel.
     pub bytes: usize,
     pub is_float: bool,
     /// Bytes of all samples; `None` up to the end of the file, as a recorder that was killed leaves it.
@@ -33,7 +33,7 @@ impl Head {
     /// A sample of as many bytes as one has, as a part of full scale.
     pub fn sample(&self, bytes: &[u8]) -> f64 {
         match *bytes {
-            // Of eight bits alone there is no sign.
+            // Samples of eight bits alone have no sign.
             [byte] => (f64::from(byte) - 128.0) / 128.0,
             [a, b, c, d] if self.is_float => f32::from_le_bytes([a, b, c, d]).into(),
             [a, b, c, d, e, f, g, h] => f64::from_le_bytes([a, b, c, d, e, f, g, h]),

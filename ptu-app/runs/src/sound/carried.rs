@@ -12,7 +12,7 @@ use crate::stop::Stop;
 
 /// How often a request to stop is looked for.
 const LOOK: Duration = Duration::from_millis(5);
-/// Longest line of what it says that is kept, bytes.
+/// Bytes that are kept of a line that the process says.
 const LONGEST: usize = 300;
 
 /// A running process that carries samples.
@@ -20,7 +20,7 @@ pub(super) struct Carried {
     child: Arc<Mutex<Child>>,
     pub(super) input: Option<ChildStdin>,
     pub(super) output: Option<ChildStdout>,
-    /// Times that it had too few samples, or we took them too late.
+    /// How often the process had too few samples to play, or we took recorded ones too late.
     pub(super) gaps: Arc<AtomicU64>,
     last_words: Arc<Mutex<String>>,
     over: Arc<AtomicBool>,
@@ -91,16 +91,16 @@ impl Carried {
         }
     }
 
-    /// What it said last, once it has ended.
+    /// Last words of the process, once it has ended.
     pub(super) fn last_words(&mut self) -> Option<String> {
         self.wait();
-        // It may still be on its way.
+        // The last line may still be on its way.
         std::thread::sleep(4 * LOOK);
         let words = self.last_words.lock().ok()?;
         Some(words.clone()).filter(|words| !words.is_empty())
     }
 
-    /// Why it ended, in its own words.
+    /// Why the process ended, in its own words.
     pub(super) fn failed(&mut self, what: &'static str, device: &str) -> Failure {
         let why = self.last_words().map_or(Why::ProgramEnded, Why::Said);
         Failure::bench(SoundTrouble::Device(what, device.to_owned(), why))
@@ -116,13 +116,13 @@ impl Drop for Carried {
 
 fn end(child: &Mutex<Child>) {
     if let Ok(mut child) = child.lock() {
-        // It may have ended by itself.
+        // The process may have ended by itself.
         let _ = child.kill();
         let _ = child.wait();
     }
 }
 
-/// Counts what it says about gaps, and keeps the last of its other words.
+/// Counts the gaps that the process tells, and keeps the last of its other lines.
 fn listen(mut words: ChildStderr, gaps: &AtomicU64, last: &Mutex<String>) {
     let mut buffer = [0; 512];
     let mut line = Vec::new();

@@ -8,7 +8,7 @@ use super::{CHANNELS, Direction, SAMPLE_HZ, Side, programs};
 use protocol::config::UnitConfig;
 
 use crate::failure::Failure;
-use crate::signal::rest_hz;
+use crate::signal::{rest_hz, sample_of_16_bits};
 use crate::stop::Stop;
 
 /// Level at the beginning, dB below what is asked for, and the time until it is reached, s.
@@ -34,7 +34,7 @@ pub struct Played {
 pub enum Lead {
     /// The waveform from its beginning.
     Within,
-    /// Tones of these frequencies, Hz, and levels, mV rms, before it, so that none of it is weak.
+    /// Tones of these frequencies, Hz, and levels, mV rms, before the waveform, so that its beginning is not weak.
     Before([(u32, u32); CHANNELS]),
 }
 
@@ -86,10 +86,9 @@ pub fn play(
             let below = (1.0 - count as f64 / rise as f64).max(0.0) * BEGINS_DB;
             let gain = 10f64.powf(below / 20.0);
             for (mv, full) in together.iter().zip(full_scale_mv) {
-                let sample = (gain * mv / full * 32_768.0).round();
-                let kept = sample.clamp(-32_768.0, 32_767.0);
-                played.clipped += u64::from(sample != kept);
-                bytes.extend((kept as i16).to_le_bytes());
+                let (kept, is_clipped) = sample_of_16_bits(gain * mv / full);
+                played.clipped += u64::from(is_clipped);
+                bytes.extend(kept.to_le_bytes());
             }
             count += 1;
         }

@@ -14,7 +14,7 @@ pub(super) const LATENCY_MS: u32 = 60;
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct DeviceFound {
-    /// Its name, as the sound server has it.
+    /// Name of the device in the sound server.
     pub name: String,
     /// Whether it plays or records.
     pub direction: Direction,

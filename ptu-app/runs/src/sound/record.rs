@@ -8,8 +8,8 @@ use hound::{SampleFormat, WavSpec, WavWriter};
 
 use super::carried::Carried;
 use super::{CHANNELS, Direction, SAMPLE_HZ, programs};
-use crate::failure::{Failure, FileTrouble, Why};
-use crate::new_file::{NewFile, kind};
+use crate::failure::Failure;
+use crate::new_file::{NewFile, cannot_write, kind};
 use crate::signal::FULL_SCALE_MV;
 use crate::stop::Stop;
 
@@ -91,12 +91,7 @@ pub fn record_to_file(
     stop: &Stop,
     heard: &mut dyn FnMut(&[Vec<f32>]),
 ) -> Result<Recorded, Failure> {
-    let failed = |error: hound::Error| {
-        Failure::bench(FileTrouble::Unwritten(
-            path.display().to_string(),
-            Why::of(error),
-        ))
-    };
+    let failed = |error: hound::Error| cannot_write(path, &error);
     // Floating point: cards of any sensitivity fit, and nothing is rounded twice.
     let spec = WavSpec {
         channels: CHANNELS as u16,

@@ -10,6 +10,7 @@ use btu_rig::rig::InstrumentFault;
 use super::carried::Carried;
 use super::{CHANNELS, SAMPLE_HZ, programs};
 use crate::pool::held;
+use crate::signal::sample_of_16_bits;
 use crate::stop::Stop;
 
 /// Samples that are written together, and those that wait besides: 10 and 20 ms.
@@ -33,7 +34,18 @@ struct State {
     ended: Option<InstrumentFault>,
 }
 
-/// Plays what it is fed, until it is dropped; what is not fed is silence.
+impl State {
+    fn new() -> Self {
+        Self {
+            steady: Steady::new(WAITING),
+            ends: false,
+            clipped: 0,
+            ended: None,
+        }
+    }
+}
+
+/// Plays the samples that it is fed until it is dropped, and silence where it is fed none.
 pub struct Stream {
     shared: Arc<(Mutex<State>, Condvar)>,
     stop: Stop,
@@ -57,13 +69,7 @@ impl Stream {
             at: device.to_owned(),
             why: error.to_string(),
         })?;
-        let state = State {
-            steady: Steady::new(WAITING),
-            ends: false,
-            clipped: 0,
-            ended: None,
-        };
-        let shared = Arc::new((Mutex::new(state), Condvar::new()));
+        let shared = Arc::new((Mutex::new(State::new()), Condvar::new()));
         let played = shared.clone();
         let thread = std::thread::spawn(move || {
             while let Some(samples) = next(&played) {
@@ -71,10 +77,9 @@ impl Stream {
                 let mut clipped = 0;
                 for pair in samples {
                     for (mv, full) in pair.iter().zip(full_scale_mv) {
-                        let sample = (f64::from(*mv) / full * 32_768.0).round();
-                        let kept = sample.clamp(-32_768.0, 32_767.0);
-                        clipped += u64::from(sample != kept);
-                        bytes.extend((kept as i16).to_le_bytes());
+                        let (kept, is_clipped) = sample_of_16_bits(f64::from(*mv) / full);
+                        clipped += u64::from(is_clipped);
+                        bytes.extend(kept.to_le_bytes());
                     }
                 }
                 held(&played.0).clipped += clipped;
@@ -154,14 +159,8 @@ mod tests {
 
     #[test]
     fn a_device_that_takes_nothing_is_told_and_no_more_is_kept_for_it() {
-        let state = State {
-            steady: Steady::new(WAITING),
-            ends: false,
-            clipped: 0,
-            ended: None,
-        };
         let stream = Stream {
-            shared: Arc::new((Mutex::new(state), Condvar::new())),
+            shared: Arc::new((Mutex::new(State::new()), Condvar::new())),
             stop: Stop::default(),
             thread: None,
         };

@@ -1,47 +1,19 @@
 //! One way through the structure: from a sensor over a part to what a step judges.
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 
 use btu_rig::procedure::Procedure;
 use btu_rig::procedure::plan::{Connection, Expectation, Step};
 use protocol::LruId;
-use protocol::event::Event;
-use protocol::signal::Signal;
 
-use super::{Structure, WayStep};
-
-/// Result of a link of a chain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LinkOutput {
-    Signal(Signal),
-    /// An event that the unit logs.
-    Event(Event),
-}
-
-/// Parts, and what they make of the link before.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Link {
-    pub made: LinkOutput,
-    pub parts: Vec<LruId>,
-}
-
-/// A way from a sensor to what a step judges.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Chain {
-    /// A part that all links need, as the supply; none where the part is in a link.
-    pub before: Option<LruId>,
-    /// From the sensor to what is judged.
-    pub links: Vec<Link>,
-    /// The first link that the part fails; those after it fail by it.
-    pub failing: usize,
-}
+use super::Structure;
+use super::link::{Chain, Link, LinkOutput};
 
 impl Structure {
     /// The shortest way by which a part fails what a step judges, with a way on to a sensor; none if the part is on no way
     /// of the step.
     pub fn chain(&self, procedure: &Procedure, step: &Step, part: &LruId) -> Option<Chain> {
         let judged = self.judged(step);
-        let signals: BTreeSet<_> = judged.iter().filter_map(|made| signal_of(*made)).collect();
         let ways = judged.iter().filter_map(|made| self.down_from(*made, part));
         let way = ways.min_by_key(Vec::len);
         let needed = self.everywhere.contains(part)
@@ -52,14 +24,14 @@ impl Structure {
             None => return None,
         };
         let failing = way.len();
-        self.on_to_a_sensor(&mut way, &signals);
+        self.on_to_a_sensor(&mut way, &judged);
         let failing = match before {
             Some(_) => 0,
             None => way.len() - failing,
         };
         way.reverse();
         let links = way.into_iter().filter_map(|made| {
-            let parts = self.step_of(made)?.parts.clone();
+            let parts = self.steps.get(&made)?.parts.clone();
             Some(Link { made, parts })
         });
         Some(Chain {
@@ -74,7 +46,7 @@ impl Structure {
     fn judged(&self, step: &Step) -> Vec<LinkOutput> {
         let mut judged = Vec::new();
         let mut add = |made: LinkOutput| {
-            if self.step_of(made).is_some() && !judged.contains(&made) {
+            if self.steps.contains_key(&made) && !judged.contains(&made) {
                 judged.push(made);
             }
         };
@@ -93,31 +65,23 @@ impl Structure {
         judged
     }
 
-    fn step_of(&self, made: LinkOutput) -> Option<&WayStep> {
-        match made {
-            LinkOutput::Signal(signal) => self.steps.get(&signal),
-            LinkOutput::Event(event) => self.event_steps.get(&event),
-        }
-    }
-
     /// From what is judged to the nearest link that the part makes, both included.
     fn down_from(&self, judged: LinkOutput, part: &LruId) -> Option<Vec<LinkOutput>> {
-        let mut came_from: BTreeMap<Signal, LinkOutput> = BTreeMap::new();
+        let mut came_from = BTreeMap::new();
         let mut ahead = VecDeque::from([judged]);
         while let Some(made) = ahead.pop_front() {
-            let step = self.step_of(made)?;
+            let step = self.steps.get(&made)?;
             if step.parts.contains(part) {
-                let before = |made: &LinkOutput| came_from.get(&signal_of(*made)?).copied();
+                let before = |made: &LinkOutput| came_from.get(made).copied();
                 let mut way: Vec<_> = std::iter::successors(Some(made), before).collect();
                 way.reverse();
                 return Some(way);
             }
-            for signal in &step.from {
-                let is_new =
-                    LinkOutput::Signal(*signal) != judged && !came_from.contains_key(signal);
-                if is_new && self.steps.contains_key(signal) {
-                    came_from.insert(*signal, made);
-                    ahead.push_back(LinkOutput::Signal(*signal));
+            for from in &step.from {
+                let is_new = *from != judged && !came_from.contains_key(from);
+                if is_new && self.steps.contains_key(from) {
+                    came_from.insert(*from, made);
+                    ahead.push_back(*from);
                 }
             }
         }
@@ -126,25 +90,16 @@ impl Structure {
 
     /// From the last link of a way on to one that is made of nothing else, over signals that the step looks at where there
     /// are any, and otherwise over those that the file names first.
-    fn on_to_a_sensor(&self, way: &mut Vec<LinkOutput>, looked_at: &BTreeSet<Signal>) {
-        while let Some(step) = way.last().and_then(|made| self.step_of(*made)) {
-            let is_new = |signal: &&Signal| {
-                self.steps.contains_key(signal) && !way.contains(&LinkOutput::Signal(**signal))
-            };
+    fn on_to_a_sensor(&self, way: &mut Vec<LinkOutput>, looked_at: &[LinkOutput]) {
+        while let Some(step) = way.last().and_then(|made| self.steps.get(made)) {
+            let is_new = |from: &&LinkOutput| self.steps.contains_key(from) && !way.contains(from);
             let mut from = step.from.iter().filter(is_new);
             let first = from.clone().next();
-            let Some(next) = from.find(|signal| looked_at.contains(signal)).or(first) else {
+            let Some(next) = from.find(|from| looked_at.contains(from)).or(first) else {
                 return;
             };
-            way.push(LinkOutput::Signal(*next));
+            way.push(*next);
         }
-    }
-}
-
-fn signal_of(made: LinkOutput) -> Option<Signal> {
-    match made {
-        LinkOutput::Signal(signal) => Some(signal),
-        LinkOutput::Event(_) => None,
     }
 }
 

@@ -32,7 +32,9 @@ pub struct StoredClocks {
     ours: Option<StoredClock>,
     /// Power-ups whose times contradict others: which is right is unknown.
     doubtful: BTreeSet<u32>,
-    contradictions: Vec<String>,
+    /// Contradictions, as sentences: times of one power-up further apart than their uncertainties; a power-up that
+    /// begins before the previous one.
+    pub contradictions: Vec<String>,
 }
 
 /// The date of a stored entry.
@@ -93,12 +95,6 @@ impl StoredClocks {
             ours.is_none_or(|ours| date.at_us - allowed_us <= began_us(&ours))
         };
         best.map(|(_, date)| date).filter(is_past)
-    }
-
-    /// Contradictions, as sentences: times of one power-up further apart than their uncertainties; a power-up that
-    /// begins before the previous one.
-    pub fn contradictions(&self) -> Vec<String> {
-        self.contradictions.clone()
     }
 }
 
@@ -201,7 +197,6 @@ pub fn dates(entries: &[UnitEvent], clock: Option<ClockPair>) -> Vec<Option<i64>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use btu_rig::procedure::UnitEvent;
 
     const NOW_US: i64 = 1_000_000_000_000;
 
@@ -263,18 +258,18 @@ mod tests {
             (at_s(2, 0), at_s(3, 7_000), at_s(4, 0)),
             (None, Some(9_007), Some(19_999))
         );
-        assert!(clocks.contradictions().is_empty());
+        assert!(clocks.contradictions.is_empty());
     }
 
     #[test]
     fn times_that_do_not_go_together_are_told() {
         let back = StoredClocks::new(&[told(1, 0, 9_000, 50), told(2, 0, 8_000, 50)], None);
-        let [why] = &back.contradictions()[..] else {
+        let [why] = &back.contradictions[..] else {
             panic!("one");
         };
         assert!(why.contains("1000.0 s before that of power-up 1"), "{why}");
         let apart = StoredClocks::new(&[told(1, 0, 9_000, 50), told(1, 10_000, 9_020, 50)], None);
-        let [why] = &apart.contradictions()[..] else {
+        let [why] = &apart.contradictions[..] else {
             panic!("one");
         };
         assert!(why.contains("10.0 s apart"), "{why}");
@@ -292,7 +287,7 @@ mod tests {
             let date = clocks.date(1, 4_000).expect("a date");
             assert_eq!(date.at_us / 1_000_000, (2 * YEAR_S - 56) as i64);
             assert!(date.uncertainty_us.is_some());
-            assert_eq!(clocks.contradictions().len(), 1);
+            assert_eq!(clocks.contradictions.len(), 1);
             // Nobody knows which of two is right.
             let clocks = StoredClocks::new(&[wrong], Some(right(NOT_KNOWN_MS)));
             let date = clocks.date(1, 4_000).expect("a date");

@@ -182,17 +182,24 @@ fn alone(events: &[UnitEvent]) -> Vec<Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use btu_rig::procedure::UnitEvent;
+
+    /// An entry that is surely dated, if at all.
+    fn entry(event: UnitEvent, at_us: Option<i64>) -> Entry {
+        Entry {
+            event,
+            at_us,
+            is_sure: true,
+            stored: None,
+        }
+    }
 
     /// Entries half a second apart from the first on, dated by their own time; names of the faults.
     fn faults(events: &[Event], tested: &[(i64, i64)]) -> (Vec<u32>, ExcludedEntries) {
         let entries: Vec<_> = (0..)
             .zip(events)
-            .map(|(index, code)| Entry {
-                event: UnitEvent::at_stand(index, *code, index * 500),
-                at_us: Some(i64::from(index) * 500_000),
-                is_sure: true,
-                stored: None,
+            .map(|(index, code)| {
+                let event = UnitEvent::at_stand(index, *code, index * 500);
+                entry(event, Some(i64::from(index) * 500_000))
             })
             .collect();
         let judged = judge(&entries, tested, None);
@@ -207,13 +214,8 @@ mod tests {
                 mode,
                 ..UnitEvent::at_stand(0, Event::TwcLost, 5_000)
             };
-            let entry = Entry {
-                event,
-                at_us: None,
-                is_sure: true,
-                stored: None,
-            };
-            assert_eq!(judge(&[entry], &[], None).faults.len(), faults, "{mode:?}");
+            let judged = judge(&[entry(event, None)], &[], None);
+            assert_eq!(judged.faults.len(), faults, "{mode:?}");
         }
     }
 
@@ -285,21 +287,14 @@ mod tests {
     /// frames refused on two channels at once, and on one.
     #[test]
     fn frames_of_several_partners_rejected_at_once_are_blamed_on_the_line() {
-        let refused = |channel: Channel, at_ms: u32| Entry {
-            event: UnitEvent {
+        let refused = |channel: Channel, at_ms: u32| {
+            let event = UnitEvent {
                 parameter: i32::from(channel.code()),
                 ..UnitEvent::at_stand(0, Event::FramesRejected, at_ms)
-            },
-            at_us: None,
-            is_sure: true,
-            stored: None,
+            };
+            entry(event, None)
         };
-        let lost = |at_ms| Entry {
-            event: UnitEvent::at_stand(0, Event::TwcLost, at_ms),
-            at_us: None,
-            is_sure: true,
-            stored: None,
-        };
+        let lost = |at_ms| entry(UnitEvent::at_stand(0, Event::TwcLost, at_ms), None);
         let bad_line = [
             refused(Channel::Twc, 1_000),
             lost(3_000),
@@ -324,10 +319,8 @@ mod tests {
     #[test]
     fn only_entries_that_are_surely_dated_can_be_too_old() {
         let entry = |at_us, is_sure| Entry {
-            event: UnitEvent::at_stand(0, Event::TachoDead1, 0),
-            at_us,
             is_sure,
-            stored: None,
+            ..entry(UnitEvent::at_stand(0, Event::TachoDead1, 0), at_us)
         };
         let entries = [
             entry(Some(1), true),

@@ -11,27 +11,27 @@ use crate::failure::BrokenOff;
 use crate::link::Pace;
 use crate::stop::Stop;
 
-/// Time a log may take, beside that for stored entries: a full one takes a tenth of it.
+/// Time that a log may take, beside the time for stored entries: a full log takes a tenth of this.
 const READ_WITHIN: Duration = Duration::from_ms(60_000);
-/// Time a stored entry may take: twice what it does.
+/// Time that a stored entry may take, µs: twice the time that it takes.
 const PER_STORED_US: u64 = 34_000;
 
 /// An entry with its date.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
     pub event: UnitEvent,
-    /// When it was made, µs UTC; none where the unit's clock does not tell.
+    /// When the unit made the entry, µs UTC; none where the unit's clock does not tell.
     pub at_us: Option<i64>,
     /// The date is right within a known uncertainty: what is dated so may be left out by its date.
     pub is_sure: bool,
-    /// Where it is stored in the unit; none of a unit without stored memory.
+    /// Where the entry is stored; none in a unit without stored memory.
     pub stored: Option<StoredPlace>,
 }
 
 /// The place of an entry in the unit's stored memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StoredPlace {
-    /// Power-up that it was made in.
+    /// Power-up in which the entry was made.
     pub power_up: u32,
     /// Sequence number of the entry in the store, over all power-ups.
     pub sequence: u32,
@@ -218,7 +218,7 @@ fn from_store(
     });
     let mut entries: Vec<_> = backwards.collect();
     entries.reverse();
-    let mut notes = clocks.contradictions();
+    let mut notes = clocks.contradictions.clone();
     let falls = events
         .entries
         .windows(2)

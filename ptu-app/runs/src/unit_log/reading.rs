@@ -17,13 +17,13 @@ use crate::stop::Stop;
 #[derive(Clone, Debug)]
 pub struct AskedUnit {
     pub endpoint: Endpoint,
-    /// Serial number expected of it.
+    /// Serial number that the unit should have.
     pub serial: Option<String>,
-    /// Unit configuration it has, `units/NAME.toml`.
+    /// Unit configuration of the unit, `units/NAME.toml`.
     pub unit_config: String,
-    /// Line it has, `lines/NAME.toml`.
+    /// Line of the unit, `lines/NAME.toml`.
     pub line: String,
-    /// Train it is in, as the depot names it.
+    /// Train that carries the unit, as the depot names it.
     pub train: String,
     /// Name of the person who reads.
     pub operator: String,

@@ -1,25 +1,22 @@
 //! Stores faults of a unit's log that are new to the history, as a run without steps.
 
-use std::collections::BTreeMap;
-
 use btu_rig::procedure::UnitEvent;
 use fault_db::{
     FaultRecord, FreezeSample, Id, LOG_SOURCE, RunEnd, RunRecord, RunWriter, Store, StoreError,
-    UnitRecord, Verdict,
+    Verdict,
 };
 use protocol::Instant;
 use protocol::signal::{Sample, Signal};
 
 use super::read::{Entry, StoredPlace, StoredRead};
-use crate::platform;
 use crate::run::of_event;
-use crate::stored::fault_record;
+use crate::stored::{fault_record, new_run};
 
 /// Name of the freeze-frame sample with the power-up of an entry.
 const POWER_UP: &str = "power_up";
 
 /// Data of a reading that are stored beside its entries.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Source {
     /// Where the unit is: `serial:…`, `tcp:…`.
     pub endpoint: String,
@@ -39,6 +36,21 @@ pub struct Source {
     pub until_us: i64,
     /// The link failed before the whole log was read.
     pub broken_off: bool,
+}
+
+impl Source {
+    /// End of the run that a reading is stored as: the verdict of a whole reading is this one, and of a broken one an error.
+    pub(crate) fn end(&self, of_whole: Verdict) -> RunEnd {
+        RunEnd {
+            verdict: match self.broken_off {
+                true => Verdict::Error,
+                false => of_whole,
+            },
+            finished_at_us: self.until_us,
+            bench_time_us: 0,
+            wall_time_us: self.until_us - self.from_us,
+        }
+    }
 }
 
 /// Result of storing the faults of a log.
@@ -88,17 +100,7 @@ pub fn import(store: &Store, source: &Source, faults: &[Entry]) -> Result<Import
             None => writer.fault(record)?,
         };
     }
-    let verdict = if source.broken_off {
-        Verdict::Error
-    } else {
-        Verdict::Failed
-    };
-    writer.finish(&RunEnd {
-        verdict,
-        finished_at_us: source.until_us,
-        bench_time_us: 0,
-        wall_time_us: source.until_us - source.from_us,
-    })?;
+    writer.finish(&source.end(Verdict::Failed))?;
     imported.run = Some(writer.id());
     Ok(imported)
 }
@@ -143,23 +145,14 @@ pub fn against_history(
 
 /// The run that a reading is stored as.
 pub(crate) fn run_record(source: &Source) -> RunRecord {
+    let (serial, config_name) = (source.serial.clone(), source.config_name.clone());
+    let place = format!("{LOG_SOURCE}{}", source.endpoint);
     RunRecord {
-        unit: UnitRecord {
-            serial: source.serial.clone(),
-            kind: "atc".into(),
-            config_name: source.config_name.clone(),
-            sw_versions: BTreeMap::new(),
-        },
         line: source.line.clone(),
         train: source.train.clone(),
-        seed: 0,
         operator: source.operator.clone(),
-        source: format!("{LOG_SOURCE}{}", source.endpoint),
-        started_at_us: source.from_us,
-        app_version: env!("CARGO_PKG_VERSION").into(),
         unit_config_sha256: source.unit_config_sha256.clone(),
-        owner: platform::this_process(),
-        ..RunRecord::default()
+        ..new_run(serial, config_name, place, source.from_us)
     }
 }
 

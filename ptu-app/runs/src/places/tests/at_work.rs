@@ -1,6 +1,5 @@
 //! Placed signals, faults of instruments and the safe state.
 
-use std::sync::Arc;
 use std::time::{Duration, Instant as Clock};
 
 use btu_rig::rig::{InstrumentFault, LinkTrouble};
@@ -8,7 +7,7 @@ use protocol::link::{End, Link};
 use protocol::message::{IoInput, IoOutput, Message, ModeSwitch, Outputs, TrainLines};
 use protocol::{Instant, SCAN};
 
-use super::{BENCH, Log, METER, PULSES, RELAYS, bench, generator, module, opened};
+use super::{BENCH, METER, PULSES, RELAYS, opened, with_peers};
 use crate::places::Placed;
 
 /// Scans until `done` with these inputs; the unit's side of each.
@@ -187,10 +186,7 @@ fn outputs_are_off_in_their_order_on_every_end() {
 /// Goal: instruments that one program works with are left alone by a second, which says so.
 #[test]
 fn a_bench_that_is_in_use_is_not_touched() {
-    let log = Log::default();
-    let text = BENCH.replace("MODULE", &module("", log.clone()).to_string());
-    let text = text.replace("GENERATOR", &generator("", log.clone()).to_string());
-    let places = Arc::new(bench(&text).expect("a bench"));
+    let (places, log) = with_peers(BENCH, "", "");
     let placed = Placed::open(&places).expect("nobody has it");
     log.take();
     let checked = Placed::check(&places, 2);
@@ -213,9 +209,8 @@ fn only_numbers_are_read() {
         ("nan", false),
         ("inf", false),
     ] {
-        let port = generator(answer, Log::default());
-        let text = METER.replace("GENERATOR", &port.to_string());
-        let placed = Placed::open(&Arc::new(bench(&text).expect("a bench")));
+        let (places, _) = with_peers(METER, "", answer);
+        let placed = Placed::open(&places);
         let said = placed.err().map(|fault| fault.to_string());
         let refused = |said: &String| said.contains(&format!("{answer} is no answer to MEAS"));
         assert_eq!(
@@ -229,10 +224,8 @@ fn only_numbers_are_read() {
 /// Goal: a relay that is stuck leaves no other closed where a bench is tried. Method: its contact stays open.
 #[test]
 fn a_check_that_fails_switches_outputs_off() {
-    let log = Log::default();
-    let text = BENCH.replace("MODULE", &module("stuck", log.clone()).to_string());
-    let text = text.replace("GENERATOR", &generator("", log.clone()).to_string());
-    let checked = Placed::check(&bench(&text).expect("a bench"), 2);
+    let (places, log) = with_peers(BENCH, "stuck", "");
+    let checked = Placed::check(&places, 2);
     let said: Vec<_> = checked
         .iter()
         .map(|(name, how)| (&name[..], how.is_ok()))
@@ -250,9 +243,8 @@ fn a_check_that_fails_switches_outputs_off() {
 /// Goal: an instrument that does not answer has all its outputs off. Method: a pulse generator of two channels is mute.
 #[test]
 fn a_mute_instrument_is_told_every_command_that_switches_off() {
-    let log = Log::default();
-    let text = PULSES.replace("GENERATOR", &generator("pulses", log.clone()).to_string());
-    let placed = Placed::open(&Arc::new(bench(&text).expect("a bench"))).expect("it answers");
+    let (places, log) = with_peers(PULSES, "", "pulses");
+    let placed = Placed::open(&places).expect("it answers");
     log.take();
     drop(placed);
     assert_eq!(log.take(), ["PULS1:FREQ 0", "PULS2:FREQ 0"]);
@@ -261,9 +253,8 @@ fn a_mute_instrument_is_told_every_command_that_switches_off() {
 /// Goal: a module that nothing is read of keeps its relays, and is seen to be there.
 #[test]
 fn relays_without_inputs_are_ordered_again() {
-    let log = Log::default();
-    let text = RELAYS.replace("MODULE", &module("", log.clone()).to_string());
-    let placed = Placed::open(&Arc::new(bench(&text).expect("a bench"))).expect("it answers");
+    let (places, log) = with_peers(RELAYS, "", "");
+    let placed = Placed::open(&places).expect("it answers");
     std::thread::sleep(Duration::from_millis(200));
     let told = log.take();
     assert!(told.len() > 4, "{told:?}");

@@ -6,13 +6,13 @@ use btu_rig::procedure::plan::{Action, Condition, Operand, What};
 use btu_rig::procedure::{Procedure, Step};
 use btu_rig::stimulus::{CodeSignal, DoorLine, Stimulus};
 
-use super::{BENCH, ENGLISH, bench};
+use super::{BENCH, ENGLISH, at_ports, bench};
 use crate::test_support::{procedures, setup};
 
 /// Goal: a code that a generator cannot make skips its step, and one of no level is none.
 #[test]
 fn a_code_beyond_the_generator_is_skipped() {
-    let places = bench(&BENCH.replace("MODULE", "1").replace("GENERATOR", "2")).expect("a bench");
+    let places = bench(&at_ports(BENCH, 1, 2)).expect("a bench");
     let (id, name) = ("atp/overspeed", "FSB without effect");
     for (carrier_hz, level_mv, lacks) in [
         (3000.0, 2100.0, Some("2.1 is out of range for level_v")),
@@ -43,7 +43,7 @@ fn a_code_beyond_the_generator_is_skipped() {
 #[test]
 fn doors_and_waits_are_fitted() {
     let places = |none: &str| {
-        let text = BENCH.replace("MODULE", "1").replace("GENERATOR", "2");
+        let text = at_ports(BENCH, 1, 2);
         let none = none
             .split(' ')
             .map(|line| format!("{line} = {{ at = \"none\" }}\n"));
@@ -93,7 +93,7 @@ fn doors_and_waits_are_fitted() {
 /// takes; a time of it is too quick for a person.
 #[test]
 fn a_person_reads_a_contact_where_the_time_allows_it() {
-    let text = BENCH.replace("MODULE", "1").replace("GENERATOR", "2");
+    let text = at_ports(BENCH, 1, 2);
     let by_person = "eb = { at = \"operator\", within_s = 30 }";
     let places = bench(&text.replace(
         "eb = { at = \"io\", input = 16, inverted = true }",
@@ -139,7 +139,6 @@ fn a_person_reads_a_contact_where_the_time_allows_it() {
 /// and the same again without its motion.
 #[test]
 fn motion_of_a_step_that_is_continued_counts() {
-    let text = BENCH.replace("MODULE", "1").replace("GENERATOR", "2");
     let moves = |action: &Action| {
         matches!(
             action,
@@ -151,7 +150,7 @@ fn motion_of_a_step_that_is_continued_counts() {
         matches!(what, Some(What::At { signal, .. }) if signal.definition().unit == "m"
             || signal.definition().unit == "km/h")
     };
-    let places = bench(&text).expect("a bench");
+    let places = bench(&at_ports(BENCH, 1, 2)).expect("a bench");
     let fit = |plain| places.fit(plain, &ENGLISH);
     let all = procedures(&setup(&[]));
     let steps = |all: &[Arc<Procedure>]| {
@@ -209,7 +208,7 @@ fn wider(before: &Step, after: &Step) -> [f64; 2] {
 /// instruments are uncertain, which their source says.
 #[test]
 fn procedures_are_fitted_to_the_bench() {
-    let places = bench(&BENCH.replace("MODULE", "1").replace("GENERATOR", "2")).expect("a bench");
+    let places = bench(&at_ports(BENCH, 1, 2)).expect("a bench");
     let plain = procedures(&setup(&[]));
     let fitted = places.fit(plain.clone(), &ENGLISH);
     let two_codes = step(&fitted, "atp/limit_speed", "two codes that come near");

@@ -211,20 +211,29 @@ fn bench(text: &str) -> Result<Places, String> {
     })
 }
 
-fn opened(of_module: Wrong, of_generator: Wrong) -> (Result<Placed, LinkTrouble>, Log) {
+/// Text of a bench file with the ports of its module and its generator.
+fn at_ports(text: &str, module: u16, generator: u16) -> String {
+    let text = text.replace("MODULE", &module.to_string());
+    text.replace("GENERATOR", &generator.to_string())
+}
+
+/// The bench of this file with a module and a generator that misbehave so, and what both were told.
+fn with_peers(text: &str, of_module: Wrong, of_generator: Wrong) -> (Arc<Places>, Log) {
     let log = Log::default();
-    let text = BENCH.replace("MODULE", &module(of_module, log.clone()).to_string());
-    let text = text.replace(
-        "GENERATOR",
-        &generator(of_generator, log.clone()).to_string(),
-    );
-    (Placed::open(&Arc::new(bench(&text).expect("a bench"))), log)
+    let module = module(of_module, log.clone());
+    let text = at_ports(text, module, generator(of_generator, log.clone()));
+    (Arc::new(bench(&text).expect("a bench")), log)
+}
+
+fn opened(of_module: Wrong, of_generator: Wrong) -> (Result<Placed, LinkTrouble>, Log) {
+    let (places, log) = with_peers(BENCH, of_module, of_generator);
+    (Placed::open(&places), log)
 }
 
 /// Goal: a wrong bench file is refused with its line and in words. Method: the file of these tests, one thing in it changed.
 #[test]
 fn a_wrong_bench_file_is_refused_with_line_and_words() {
-    let right_file = BENCH.replace("MODULE", "1").replace("GENERATOR", "2");
+    let right_file = at_ports(BENCH, 1, 2);
     bench(&right_file).expect("a bench");
     let table = r#"
 [stimuli]|[stimuly]|17|stimuly

@@ -1,10 +1,7 @@
 //! A computer that stands still with unit and tester on it gives neither of them time. Each finds out for itself, and not
 //! to the millisecond: the tester then follows the unit's clock, so that what is left over does not add up.
 
-use btu_rig::rig::UnitLink;
 use protocol::{Duration, Instant, SCAN};
-
-use super::Session;
 
 /// Frames that come later than this after a pause are of the time after it.
 const AFTER: Duration = Duration::from_us(3 * SCAN.as_us());
@@ -33,7 +30,7 @@ impl InStep {
     /// How much later the bench's next scans are due, µs, so that the unit's clock is where it was beside the bench's.
     /// The unit's `stamp` came with a frame heard at that time of the bench. A unit that went on, and whose frames were lost
     /// meanwhile, is as far ahead as the pause was long: the bench then has all of it to make up.
-    fn correction_us(&mut self, stamp: Option<(Instant, u32)>) -> i64 {
+    pub fn correction_us(&mut self, stamp: Option<(Instant, u32)>) -> i64 {
         let Some((at, stamp_ms)) = stamp else {
             return 0;
         };
@@ -55,38 +52,13 @@ impl InStep {
         }
     }
 
-    fn begin(&mut self, now: Instant, took: Duration) {
+    /// Unit and bench stood still for so long.
+    pub fn begin(&mut self, now: Instant, took: Duration) {
         self.pause = self.offset_ms.map(|before_ms| Pause {
             since: now,
             before_ms,
             took_ms: took.as_ms() as i64,
         });
-    }
-}
-
-impl<L: UnitLink> Session<L> {
-    /// Time in which the unit stood still as well is none, for both: nothing of what it does is spoiled.
-    pub(super) fn keep_in_step(&mut self) {
-        let pause = self.bench.link.take_pause();
-        let now = self.bench.now();
-        if pause > Duration::ZERO {
-            self.bench.rig.note_pause(now, pause);
-            self.in_step.begin(now, pause);
-            self.paused = self.paused.max(Some(pause));
-            self.shift(pause.as_us() as i64);
-        }
-        if self.max_lag.is_some() {
-            let stamp = self.bench.rig.unit_stamp_ms();
-            let correction_us = self.in_step.correction_us(stamp);
-            self.shift(correction_us);
-        }
-    }
-
-    fn shift(&mut self, later_us: i64) {
-        if later_us != 0 {
-            self.pace.shift(later_us);
-            self.bench.link.shift_clock(later_us);
-        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use btu_rig::procedure::finding::Before;
 use btu_rig::procedure::{
-    Finding, Outside, Poll, Procedure, RunEvent, RunOptions, Runner, StepResult, Verdict,
+    Finding, Outside, Poll, Procedure, RunEvent, RunOptions, Runner, Verdict,
 };
 use btu_rig::recorded::{RecordingDriver, StimulusRecord};
 use btu_rig::rig::UnitLink;
@@ -30,20 +30,6 @@ struct Progress<'a> {
     faults: usize,
     /// Steps of which a trace is kept though they pass.
     traced: &'a [usize],
-}
-
-impl<'a> Progress<'a> {
-    fn new(procedure: &'a Procedure, traced: &'a [usize], now: Instant) -> Self {
-        Self {
-            traced,
-            procedure,
-            step: None,
-            turn: 0,
-            step_began: now,
-            explained: false,
-            faults: 0,
-        }
-    }
 }
 
 impl<L: UnitLink> Session<L> {
@@ -72,7 +58,15 @@ impl<L: UnitLink> Session<L> {
         if let Some(why) = self.bench.rig.cannot_run(procedure) {
             runner.pass_over_all(why);
         }
-        let mut progress = Progress::new(procedure, &options.traced, self.bench.now());
+        let mut progress = Progress {
+            procedure,
+            step: None,
+            turn: 0,
+            step_began: self.bench.now(),
+            explained: false,
+            faults: 0,
+            traced: &options.traced,
+        };
         for fault in found {
             runner.found_before(&fault.name, fault.at);
             self.report(fault, &mut progress, sink);
@@ -243,11 +237,16 @@ impl<L: UnitLink> Session<L> {
                 (!progress.explained).then(|| fault_watch::of_brake(*at, &self.sample))
             }
             RunEvent::StepFinished(result) => {
-                let fault = self.fault_of_step(result, progress);
+                let fault = fault_watch::of_step(
+                    progress.procedure,
+                    result,
+                    progress.explained,
+                    &self.sample,
+                );
                 if let Some(fault) = fault {
                     self.report(fault, progress, sink);
                 } else if progress.traced.contains(&result.index) {
-                    self.keep_trace(now, progress, sink);
+                    self.keep_trace(now, None, progress, sink);
                 }
                 progress.turn += 1;
                 return;
@@ -260,21 +259,18 @@ impl<L: UnitLink> Session<L> {
         }
     }
 
-    /// Keeps a trace of a step that passed, to be seen beside the trace of its failure.
+    /// Keeps a trace around a moment of the step: of the fault of this number, or, without one, of a step that passed,
+    /// to be seen beside the trace of its failure.
     fn keep_trace(
         &mut self,
-        now: Instant,
+        at: Instant,
+        fault: Option<usize>,
         progress: &Progress<'_>,
         sink: &mut dyn FnMut(SessionEvent),
     ) {
-        let done = self.recorder.trigger(now, progress.step_began, None);
-        if let Some(cut) = done {
+        if let Some(cut) = self.recorder.trigger(at, progress.step_began, fault) {
             sink(SessionEvent::Trace(Box::new(cut)));
         }
-    }
-
-    fn fault_of_step(&self, result: &StepResult, progress: &Progress<'_>) -> Option<FaultSeen> {
-        fault_watch::of_step(progress.procedure, result, progress.explained, &self.sample)
     }
 
     fn report(
@@ -284,13 +280,9 @@ impl<L: UnitLink> Session<L> {
         sink: &mut dyn FnMut(SessionEvent),
     ) {
         fault.step = progress.step.map(|_| progress.turn);
-        let done = self
-            .recorder
-            .trigger(fault.at, progress.step_began, progress.faults);
+        let (at, number) = (fault.at, progress.faults);
         progress.faults += 1;
         sink(SessionEvent::Fault(fault));
-        if let Some(cut) = done {
-            sink(SessionEvent::Trace(Box::new(cut)));
-        }
+        self.keep_trace(at, Some(number), progress, sink);
     }
 }

@@ -6,7 +6,7 @@ use std::sync::mpsc::Receiver;
 
 use fault_db::{Id, RunRecord, RunWriter, Store, StoreError};
 
-use super::{Entry, RecordedIds, keep};
+use super::records::{Entry, RecordedIds, keep};
 use crate::clock;
 use crate::failure::{Failure, Trouble};
 

@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use fault_db::{Channel, ChannelKind, OpenOptions, UnitRecord, Verdict};
+use fault_db::{
+    Channel, ChannelKind, FaultRecord, OpenOptions, StepRecord, TraceData, UnitRecord, Verdict,
+};
 use rusqlite::Connection;
 
+use super::records::MOST_STEPS;
 use super::*;
 use crate::clock;
 
@@ -113,8 +116,8 @@ fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
     };
     let (run, stop, other) = held(folder.path(), busy_timeout);
     let id = run.id;
-    run.step(step(0));
-    run.fault(fault());
+    run.record(Entry::Step(step(0)));
+    run.record(Entry::Fault(fault()));
     while stop.presses() == 0 {
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -123,8 +126,8 @@ fn a_database_busy_for_long_ends_a_run_and_takes_all_of_it_in_the_end() {
         reason.starts_with("database busy: ") && reason.contains("history.db is locked"),
         "{reason}"
     );
-    run.trace(vec![0], trace());
-    run.step(step(1));
+    run.record(Entry::Trace(vec![0], trace()));
+    run.record(Entry::Step(step(1)));
     other.execute_batch("ROLLBACK").expect("released");
     let (store, lost) = run.finish(end(Verdict::Error)).expect("recorded");
     assert!(lost.is_none(), "{lost:?}");
@@ -141,10 +144,10 @@ fn records_that_a_busy_database_refuses_can_be_imported_later() {
     };
     let (run, stop, other) = held(folder.path(), busy_timeout);
     let id = run.id;
-    run.step(step(0));
-    run.fault(fault());
-    run.trace(vec![0], trace());
-    run.step(step(1));
+    run.record(Entry::Step(step(0)));
+    run.record(Entry::Fault(fault()));
+    run.record(Entry::Trace(vec![0], trace()));
+    run.record(Entry::Step(step(1)));
     let failure = run.finish(end(Verdict::Error)).expect_err("busy");
     assert_eq!(stop.presses(), 1);
     let rest = folder
@@ -173,7 +176,7 @@ fn a_finished_step_is_in_the_file_while_its_procedure_goes_on() {
     let file = folder.path().join("history.db");
     let store = Store::open(&file, clock::open_options()).expect("a database");
     let run = RunStore::begin(store, record(), None, &Stop::default()).expect("begun");
-    run.step(step(0));
+    run.record(Entry::Step(step(0)));
     // As long as it may take, and what a busy machine adds.
     std::thread::sleep(2 * FLUSH);
     let other = Connection::open(&file).expect("the database");

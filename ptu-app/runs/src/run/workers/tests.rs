@@ -1,23 +1,19 @@
 //! Good units pass all procedures in any order, and workers keep their limits.
 
-use std::path::Path;
-
-use btu_rig::procedure::loader::load;
-use btu_rig::procedure::{Procedure, RunEvent, RunOptions, Verdict};
+use btu_rig::procedure::{Procedure, RunOptions, Verdict};
 use protocol::Duration;
 use protocol::Random;
-use protocol::injection::FaultMode;
 
 use super::*;
-use crate::data::ScriptsDirectory;
-use crate::run::{BenchChoice, select};
+use crate::run::select;
+use crate::test_support::{Heard, procedures, scripts, setup};
 
 /// Goal: procedures do not lean on a fresh unit, so that a unit on a port passes them all in a
 /// row. Method: all of them, forward and backward, on one embedded unit in virtual time.
 #[test]
 fn procedures_pass_in_any_order_on_a_unit_that_is_never_powered_off() {
-    let (directory, setup) = line6_bench();
-    let procedures = loaded(&directory, &setup);
+    let setup = setup(&[]);
+    let procedures = procedures(&setup);
     let backward = procedures.iter().rev();
     let row = procedures.iter().chain(backward);
     all_pass(&setup, row.map(|procedure| (procedure.clone(), 1)));
@@ -37,12 +33,12 @@ fn a_good_unit_passes_procedures_a_hundred_times_in_random_order() {
 }
 
 fn random_order(seeds: &[u64], times: usize) {
-    let (directory, mut setup) = line6_bench();
-    let scatter = directory.bench_scatter(None).expect("scatter");
+    let mut setup = setup(&[]);
+    let scatter = scripts().bench_scatter(None).expect("scatter");
     setup.scatter = Some(Arc::new(scatter));
     for seed in seeds {
         setup.seed = *seed;
-        let mut procedures = loaded(&directory, &setup);
+        let mut procedures = procedures(&setup);
         procedures.retain(|procedure| !procedure.on_request);
         let mut random = Random::new(*seed);
         let order = (0..times).flat_map(|_| {
@@ -52,12 +48,6 @@ fn random_order(seeds: &[u64], times: usize) {
         });
         all_pass(&setup, order);
     }
-}
-
-fn loaded(directory: &ScriptsDirectory, setup: &BenchSetup) -> Vec<Arc<Procedure>> {
-    let texts = directory.procedures().expect("procedures");
-    let (config, line) = (&setup.config.content, &setup.line.content);
-    load(&texts, config, line, &setup.train).procedures
 }
 
 /// Each procedure so many times, on one unit.
@@ -73,33 +63,16 @@ fn all_pass(setup: &BenchSetup, row: impl Iterator<Item = (Arc<Procedure>, usize
             .into_iter()
             .map(|fault| fault.finding.to_string())
             .collect();
-        let mut verdict = None;
-        let mut sink = |event| match event {
-            // What line, unit type or train lack is the same whatever ran before.
-            SessionEvent::Run(RunEvent::StepFinished(result))
-                if result.verdict != Verdict::Passed
-                    && procedure.steps[result.index].lacks.is_none() =>
-            {
-                said.push(format!("{}: {}", result.name, result.findings));
-            }
-            SessionEvent::Run(RunEvent::ProcedureFinished {
-                verdict: v,
-                findings,
-                ..
-            }) => {
-                verdict = Some(v);
-                let told = Some(findings).filter(|findings| !findings.is_empty());
-                said.extend(told.map(|findings| findings.to_string()));
-            }
-            SessionEvent::Fault(fault) => said.push(format!("fault: {}", fault.finding)),
-            _ => {}
-        };
+        let mut heard = Heard::default();
+        let mut sink = |event| heard.take(event);
         let options = RunOptions {
             repeat: repeat as u32,
             ..RunOptions::default()
         };
         session.run(&procedure, options, Vec::new(), &mut sink, &TO_THE_END);
-        if verdict != Some(Verdict::Passed) || !said.is_empty() {
+        // What line, unit type or train lack is the same whatever ran before.
+        said.extend(heard.amiss(|step| procedure.steps[step.index].lacks.is_some()));
+        if heard.verdict != Some(Verdict::Passed) || !said.is_empty() {
             not_passed.push(format!(
                 "{place}: {} × {repeat} after {before}: {said:#?}",
                 procedure.id
@@ -118,8 +91,8 @@ fn all_pass(setup: &BenchSetup, row: impl Iterator<Item = (Arc<Procedure>, usize
 #[test]
 fn workers_start_only_a_limited_number_of_procedures_ahead() {
     const JOBS: usize = 3;
-    let (directory, setup) = line6_bench();
-    let procedures = loaded(&directory, &setup);
+    let setup = setup(&[]);
+    let procedures = procedures(&setup);
     let mut named = procedures.iter();
     let link = named.find(|p| p.id == "tcms/link").expect("it");
     let plan = RunPlan {
@@ -142,13 +115,8 @@ fn workers_start_only_a_limited_number_of_procedures_ahead() {
 /// A controller that breaks while no procedure runs is found all the same.
 #[test]
 fn a_fault_between_two_procedures_is_recorded() {
-    let (directory, mut setup) = line6_bench();
-    let faults = directory.faults().expect("faults");
-    let controller = faults.fault("master_controller.pot_low").expect("mode");
-    setup.faults = vec![FaultMode {
-        onset_s: 20.0,
-        ..controller.clone()
-    }];
+    let mut setup = setup(&["master_controller.pot_low"]);
+    setup.faults[0].onset_s = 20.0;
     let stop = Stop::default();
     let mut session = setup.sim_session("between", &stop);
     session.judge_bring_up(SWITCHED_OFF + READY_WITHIN, settled());
@@ -161,11 +129,4 @@ fn a_fault_between_two_procedures_is_recorded() {
     let found = between_procedures(&mut session);
     let names: Vec<_> = found.iter().map(|fault| fault.name.as_str()).collect();
     assert_eq!(names, ["controller_failed"]);
-}
-
-fn line6_bench() -> (ScriptsDirectory, BenchSetup) {
-    let scripts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts");
-    let directory = ScriptsDirectory::find(Some(&scripts)).expect("scripts");
-    let setup = BenchChoice::default().setup(&directory).expect("a bench");
-    (directory, setup)
 }

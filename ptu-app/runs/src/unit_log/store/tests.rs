@@ -18,13 +18,11 @@ fn source(endpoint: &str, until_us: i64) -> Source {
         endpoint: endpoint.into(),
         serial: "SG-0042".into(),
         config_name: "sg100".into(),
-        unit_config_sha256: String::new(),
         line: "line8".into(),
         operator: endpoint.into(),
-        train: String::new(),
         from_us: until_us - 1_000_000,
         until_us,
-        broken_off: false,
+        ..Source::default()
     }
 }
 
