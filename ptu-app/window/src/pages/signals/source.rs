@@ -124,7 +124,7 @@ impl Source {
                 return Ok(Done::all(String::new(), Vec::new()));
             }
             let file = free_beside(&file);
-            let known = Calibrations::load(&sound_file::usual()?)?;
+            let known = Calibrations::load(&sound_file()?)?;
             let full_scale_mv = known.full_scale_mv(&device, Direction::Input);
             let mut receivers = Receivers::new(CHANNELS, f64::from(SAMPLE_HZ), &unit, true);
             let mut waiting = vec![Vec::new(); CHANNELS];
@@ -197,7 +197,7 @@ impl Source {
                     clipped.into_iter().collect(),
                 ));
             }
-            let known = Calibrations::load(&sound_file::usual()?)?;
+            let known = Calibrations::load(&sound_file()?)?;
             let full_scale_mv = known.full_scale_mv(&device, Direction::Output);
             let samples = signal::samples(&wave, &unit, strength)?;
             let side = match wave {
