@@ -1,4 +1,4 @@
-//! One function for each subject.
+//! The checks of `ptu doctor`, a function for each subject.
 
 use std::path::Path;
 
