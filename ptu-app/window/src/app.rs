@@ -122,7 +122,8 @@ impl App {
         self.frame.keys(ui, &mut page_context);
         self.pages.poll(&mut page_context);
         self.frame.around(ui, &mut page_context);
-        if page_context.units.chosen().waiting_run().is_some() && !page_context.settings.locked {
+        if page_context.units.chosen().waiting_run().is_some() && !page_context.settings.locked
+        {
             let goes_on = self.pages.procedures.goes_on(&page_context);
             Panel::top("lost").show(ui, |ui| self.frame.lost(ui, goes_on, &mut page_context));
         }
@@ -156,9 +157,7 @@ impl App {
             self.noted_not_safe |= self.frame.closing(ui, words, not_safe);
         }
         for to in std::mem::take(page_context.go_to) {
-            if to == Destination::Setup {
-                self.frame.setup.open();
-            }
+            self.frame.go_to(&to);
             page_context.settings.page = self.pages.go_to(to, &mut page_context);
             ui.ctx().request_repaint();
         }

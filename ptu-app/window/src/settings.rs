@@ -68,9 +68,16 @@ pub struct Settings {
 pub struct StatisticsQuestion {
     /// Days to look back; none = all there is.
     pub days: Option<i64>,
-    /// Measurement of the control chart.
+    #[serde(flatten)]
+    pub measured: Measured,
+}
+
+/// The measurement of the control chart, of one step or of all.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Measured {
     pub measurement: Option<String>,
-    /// Procedure and step that measure it.
+    /// Procedure and step.
     pub step: Option<(String, String)>,
 }
 

@@ -4,17 +4,17 @@ use eframe::egui::{Grid, Ui};
 
 use egui_material_icons::icons::ICON_DATABASE;
 
-use super::Frame;
 use crate::parts::{ActionPlace, Face, Look, field, name_edit, segments};
 use crate::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
-use crate::{Density, PageContext};
+use crate::{Density, Destination, PageContext};
 use ptu_report::words::Language;
 
 const STEP: f32 = 0.1;
 /// Width of a field, points.
 const FIELD: f32 = 200.0;
 
-pub fn menu(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
+/// `with_history`: the rail has no room for the history.
+pub fn menu(with_history: bool, ui: &mut Ui, context: &mut PageContext<'_>) {
     let words = &context.words.frame;
     let settings = &mut *context.settings;
     Grid::new("menu").num_columns(2).show(ui, |ui| {
@@ -60,15 +60,15 @@ pub fn menu(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
         field(ui, context.words.report.depot, depot);
     });
     ui.horizontal(|ui| {
-        if frame.is_low {
+        if with_history {
             let history = Face::new(Look::Quiet, context.words.care.title).icon(ICON_DATABASE);
             if history.show(ui).clicked() {
-                frame.care.toggle();
+                context.go_to.push(Destination::History);
                 ui.close();
             }
         }
         if Face::new(Look::Quiet, words.about).show(ui).clicked() {
-            frame.about.open();
+            context.go_to.push(Destination::About);
             ui.close();
         }
         let lock = Face::new(Look::Quiet, words.lock).hint(words.lock_hint);

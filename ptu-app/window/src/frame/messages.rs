@@ -107,7 +107,7 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
                     let left = format!("{left_s:.0} s");
                     let button = Face::new(Look::Secondary, words.frame.undo).icon(ICON_UNDO);
                     let button = button.small(left).show(ui);
-                    // In a field the key undoes what is typed.
+                    // In a text field the key undoes typing.
                     let typing = ui.ctx().egui_wants_keyboard_input();
                     let by_key = !typing
                         && ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Z));

@@ -6,9 +6,8 @@ use std::sync::Arc;
 use eframe::egui::{RichText, Ui};
 use protocol::config::UnitConfig;
 
-use super::Slot;
 use super::generator::{GeneratedSignal, Order};
-use super::seen::Seen;
+use super::seen::{Seen, Slot};
 use crate::parts::{Done, Face, Job, Look, caption, file_place, pick, usual_folder};
 use crate::{PageContext, Palette};
 use ptu_options::sound_file;
