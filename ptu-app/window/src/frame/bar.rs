@@ -110,7 +110,7 @@ fn wide(ui: &Ui, (what, face): &Item) -> f32 {
 
 fn shown(find: &mut Find, ui: &mut Ui, (what, face): &Item, context: &mut PageContext<'_>) {
     ui.scope(|ui| {
-        if context.settings.locked && !matches!(what, What::StopAll | What::Bell) {
+        if context.settings.is_locked() && !matches!(what, What::StopAll | What::Bell) {
             only_look(ui);
         }
         match what {

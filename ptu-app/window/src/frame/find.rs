@@ -62,7 +62,7 @@ enum What {
 
 impl Find {
     pub fn toggle(&mut self, context: &PageContext<'_>) {
-        let open = !self.open && !context.settings.locked;
+        let open = !self.open && !context.settings.is_locked();
         *self = Self {
             open,
             ..Self::default()

@@ -5,7 +5,6 @@ use eframe::egui::{Grid, Ui};
 use egui_material_icons::icons::ICON_DATABASE;
 
 use crate::parts::{ActionPlace, Face, Look, field, name_edit, segments};
-use crate::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
 use crate::{Density, Destination, PageContext};
 use ptu_report::words::Language;
 
@@ -40,9 +39,10 @@ pub fn menu(with_history: bool, ui: &mut Ui, context: &mut PageContext<'_>) {
         ui.label(words.scale);
         ui.horizontal(|ui| {
             // The size moves every button under the pointer.
-            let place = ActionPlace::new(ui, "size", settings.zoom.to_bits());
+            let zoom = f32::from(settings.zoom);
+            let place = ActionPlace::new(ui, "size", zoom.to_bits());
             let smaller = Face::new(Look::Secondary, "−").show(ui);
-            let shown = format!("{:.0} %", 100.0 * settings.zoom);
+            let shown = format!("{:.0} %", 100.0 * zoom);
             Face::new(Look::State, shown).show(ui);
             let larger = Face::new(Look::Secondary, "+").show(ui);
             let by = match (place.clicked(&smaller), place.clicked(&larger)) {
@@ -50,7 +50,7 @@ pub fn menu(with_history: bool, ui: &mut Ui, context: &mut PageContext<'_>) {
                 (_, true) => STEP,
                 _ => 0.0,
             };
-            settings.zoom = (settings.zoom + by).clamp(SMALLEST_ZOOM, LARGEST_ZOOM);
+            settings.zoom = (zoom + by).into();
         });
         ui.end_row();
         let name = name_edit(&mut settings.operator, FIELD);

@@ -62,7 +62,7 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
     let undoable = context.messages.undoable(now_s, ended);
     // The person who takes a message back is written down with it.
     let named = !context.settings.operator.trim().is_empty();
-    let undoable = undoable.filter(|_| named && !context.settings.locked);
+    let undoable = undoable.filter(|_| named && !context.settings.is_locked());
     let place = undoable.map(|(place, ..)| place);
     let words = context.words;
     let (mut noted, mut seen, mut taken_back) = (false, false, None);

@@ -43,7 +43,7 @@ const FIELD: f32 = 300.0;
 
 impl RepairProof {
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
-        let locked = context.settings.locked;
+        let locked = context.settings.is_locked();
         if locked || context.settings.page != Page::Case {
             // A PIN that was typed is its owner's alone.
             self.sign = None;

@@ -178,7 +178,7 @@ impl ProceduresPage {
 
     /// Takes what has come, whatever page is in front.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
-        if self.stops != context.units.stops() || context.settings.locked {
+        if self.stops != context.units.stops() || context.settings.is_locked() {
             // Nothing begins by itself after everything was stopped, nor while no name has been given.
             self.stops = context.units.stops();
             self.orders.clear();

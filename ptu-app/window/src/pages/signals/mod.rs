@@ -84,7 +84,7 @@ impl SignalsPage {
             return;
         };
         let unit = offered.unit.clone();
-        let why_not = match (self.job.is_under_way(), context.settings.locked) {
+        let why_not = match (self.job.is_under_way(), context.settings.is_locked()) {
             (true, _) => Some(words.signals.under_way),
             (_, true) => Some(words.frame.locked),
             (false, false) => None,
