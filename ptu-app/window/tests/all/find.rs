@@ -104,7 +104,7 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
 
         look_for(&mut window, page);
         window.key(Key::Enter);
-        window.until("the page", |window| window.app().page() == Page::Signals);
+        window.wait_for_page(Page::Signals);
 
         look_for(&mut window, words.frame.light);
         window.key(Key::ArrowDown);

@@ -69,15 +69,11 @@ fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
     window.wait_for_part("the EB relay (eb_relay, ");
     // A step that failed is a click from the trace that shows it.
     window.click("Trace");
-    window.until("the traces page", |window| {
-        window.app().page() == Page::Traces
-    });
+    window.wait_for_page(Page::Traces);
     window.wait_for("0.00 s trigger");
     window.page(Page::Procedures);
     window.click("Diagnosis");
-    window.until("the diagnosis page", |window| {
-        window.app().page() == Page::Diagnosis
-    });
+    window.wait_for_page(Page::Diagnosis);
     window.wait_for_part("eb_relay");
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "failed");

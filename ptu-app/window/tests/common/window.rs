@@ -17,16 +17,16 @@ use ptu_window::{App, Options, Settings};
 use super::picture::{Picture, Textures};
 use super::{Place, scripts};
 
-/// Patience with what other threads do; a busy machine may hold them up. It costs time only in vain.
+/// Longest wait for other threads, which a busy machine may hold up. Only a wait in vain lasts so long.
 const PATIENCE: Duration = Duration::from_secs(300);
 /// A person takes longer between two things that are meant, s.
 const MOMENT_S: f64 = 0.7;
-/// What was told is shown as long as on a display.
+/// Time of a frame as on a display, so that messages stay as long.
 const FRAME_S: f32 = 1.0 / 60.0;
 const STEP: Duration = Duration::from_millis(15);
 /// Longest pause between two frames of one that waits.
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
-/// No page has more to press.
+/// Most stops of the keyboard on a page.
 const MOST_STOPS: usize = 200;
 /// Width around a widget within which the mark of the keyboard lies, points.
 const AROUND: f32 = 4.0;
@@ -126,7 +126,7 @@ impl Window {
         self.harness.step();
     }
 
-    /// Frames until this holds, fewer the longer it takes: what is shown for a moment comes soon.
+    /// Draws frames until this holds, ever fewer of them: anything shown only for a moment comes early.
     pub fn until(&mut self, what: &str, mut holds: impl FnMut(&Self) -> bool) {
         let began = Instant::now();
         while !holds(self) {
@@ -140,14 +140,18 @@ impl Window {
         }
     }
 
-    /// Frames until something of this name is shown.
+    /// Draws frames until something of this name is shown.
     pub fn wait_for(&mut self, label: &str) {
         self.until(label, |window| window.shows(label));
     }
 
-    /// Frames until something whose name contains this is shown.
+    /// Draws frames until something whose name contains this is shown.
     pub fn wait_for_part(&mut self, part: &str) {
         self.until(part, |window| window.shows_part(part));
+    }
+
+    pub fn wait_for_page(&mut self, page: Page) {
+        self.until(page.key(), |window| window.app().page() == page);
     }
 
     /// Turns the pages of a sheet until something of this name is in view.
@@ -423,7 +427,7 @@ impl Window {
         panic!("no key leads to {label}: {:#?}", self.shown());
     }
 
-    /// What has the keyboard, and where it is seen.
+    /// Name of the widget that has the keyboard, and where it is seen.
     fn focused(&self) -> Option<(String, Rect)> {
         let mut nodes = self.harness.query_all_by(|_| true);
         let node = nodes.find(|node| node.is_focused())?;
@@ -531,7 +535,7 @@ pub fn settings(page: Page) -> Settings {
 
 /// What the database holds of the latest run.
 pub fn latest(window: &Window) -> serde_json::Value {
-    window.place.json(&["runs", "show", "latest", "--json"])
+    window.place.json("runs show latest --json")
 }
 
 /// A scripts directory with the shipped units, lines and trains and one procedure of its own.
