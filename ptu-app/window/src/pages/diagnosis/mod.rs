@@ -187,13 +187,9 @@ fn next_check(ui: &mut Ui, context: &mut PageContext<'_>, answer: &Answer) {
     ui.horizontal_wrapped(|ui| {
         ui.label(words.next_check);
         ui.label(RichText::new(context.words.check(&next.check)).strong());
-        let gains = fill(
-            words.gains,
-            &[
-                ("bits", &format!("{:.2}", next.gain_bits)),
-                ("time", &format!("{:.0} s", next.cost_s)),
-            ],
-        );
+        let bits = format!("{:.2}", next.gain_bits);
+        let time = format!("{:.0} s", next.cost_s);
+        let gains = fill(words.gains, &[("bits", &bits), ("time", &time)]);
         ui.label(RichText::new(gains).color(Palette::of(ui).quiet));
         if ui.button(RichText::new(words.run_it).strong()).clicked() {
             context.go_to.push(Destination::Run(Wanted::Step {
