@@ -176,10 +176,7 @@ fn a_calibration_ends_on_the_day_of_the_bench() {
     };
     let day = |at_us| ptu_runs::clock::utc_day(at_us);
     assert_ne!(day(now), day(here));
-    let ptu = |arguments: &str| {
-        let output = place.command(arguments).env("TZ", zone).output();
-        crate::common::Said::from(output.expect("starts"))
-    };
+    let ptu = |arguments: &str| place.ptu_where(("TZ", zone), arguments);
     ptu("instrument add B-0031 --kind bench").exits(0);
     let calibrate = "instrument calibrate B-0031 --calibrated-by 'lab 7'";
     let calibrated = |on: i64, due: i64| {

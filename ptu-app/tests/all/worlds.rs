@@ -185,19 +185,9 @@ fn world(place: &Place, seed: usize) -> PathBuf {
 
 /// Runs all procedures in a world.
 fn run(place: &Place, world: &Path, more: &[&str]) -> Said {
-    let mut words = ["run", "-q", "--report", "report.json"].to_vec();
-    words.extend([
-        "--line",
-        "drawn",
-        "--unit-config",
-        "drawn",
-        "--train",
-        "drawn",
-    ]);
-    words.extend(more);
-    let mut command = place.command(&words);
-    let output = command.env("PTU_SCRIPTS", world).output();
-    Said::from(output.expect("ptu starts"))
+    let all = "run -q --report report.json --line drawn --unit-config drawn --train drawn";
+    let words: Vec<_> = all.split(' ').chain(more.iter().copied()).collect();
+    place.ptu_where(("PTU_SCRIPTS", world), &words)
 }
 
 /// Goal: no line, unit type or train makes a sound unit fail: what a step needs of them is derived, or the step is skipped

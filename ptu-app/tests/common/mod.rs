@@ -10,6 +10,7 @@ pub mod served;
 pub mod terminal;
 pub mod told;
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
@@ -160,6 +161,23 @@ impl Place {
     pub fn ptu(&self, arguments: &(impl Typed + ?Sized)) -> Said {
         let output = self.command(arguments).output().expect("ptu starts");
         Said::from(output)
+    }
+
+    /// Answer of `ptu` where a variable of the environment is set.
+    pub fn ptu_where(
+        &self,
+        (name, value): (&str, &(impl AsRef<OsStr> + ?Sized)),
+        arguments: &(impl Typed + ?Sized),
+    ) -> Said {
+        let output = self.command(arguments).env(name, value).output();
+        output.expect("ptu starts").into()
+    }
+
+    /// Steps of the latest run that are recorded so far; none while there is no run.
+    pub fn steps_so_far(&self) -> Vec<Value> {
+        let shown = self.ptu("runs show latest --json");
+        let run: Value = serde_json::from_str(&shown.out).unwrap_or_default();
+        run["steps"].as_array().cloned().unwrap_or_default()
     }
 
     /// Answer of the place's shell to this line, in which `ptu` is the program.

@@ -338,9 +338,7 @@ fn what_cannot_be_told_names_the_check_that_would_and_runs_it() {
     let mut window = on(place, Page::Diagnosis, Language::English);
     window.wait_for(&next);
     window.key(Key::F9);
-    window.until("the unit", |window| {
-        window.app().units.chosen().phase() == Phase::Idle
-    });
+    window.wait_for_phase(Phase::Idle);
     window.click("Run it");
     window.wait_for_page(Page::Procedures);
     window.wait_for_part("Run over: ");

@@ -170,10 +170,7 @@ fn laid_out(
     look(&mut window, "live signals");
     window.click(words.procedures.run);
     // The rail has a page of the name of the button that leads to the sheet.
-    window.until("the end of the run", |window| {
-        let run = window.app().units.chosen().run.as_ref();
-        run.is_some_and(|run| run.id().is_some())
-    });
+    window.until("the end of the run", |window| window.run_id().is_some());
     window.wait_for_part("(eb_relay, ");
     look(&mut window, "results");
 }

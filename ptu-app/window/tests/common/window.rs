@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use ptu_options::Page;
 use ptu_report::words::Language;
-use ptu_runs::bench_worker::Phase;
+use ptu_runs::bench_worker::{Phase, Progress};
 use ptu_runs::data::ScriptsDirectory;
 use ptu_window::DataPaths;
 use ptu_window::{App, Options, Settings};
@@ -148,6 +148,11 @@ impl Window {
     /// Draws frames until something whose name contains this is shown.
     pub fn wait_for_part(&mut self, part: &str) {
         self.until(part, |window| window.shows_part(part));
+    }
+
+    /// Draws frames until the chosen unit is connected, runs or is let go.
+    pub fn wait_for_phase(&mut self, phase: Phase) {
+        self.until(&format!("{phase:?}"), |window| window.phase() == phase);
     }
 
     pub fn wait_for_page(&mut self, page: Page) {
@@ -291,9 +296,7 @@ impl Window {
 
     /// Presses the key that connects the unit, once it is not.
     pub fn connect(&mut self) {
-        self.until("a unit that is not connected", |window| {
-            window.app().units.chosen().phase() == Phase::Offline
-        });
+        self.wait_for_phase(Phase::Offline);
         self.key(Key::F9);
     }
 
@@ -481,6 +484,26 @@ impl Window {
         let ground = eframe::App::clear_color(self.app(), &context.global_style().visuals);
         self.textures
             .picture(context, self.harness.output(), ground)
+    }
+
+    /// Phase of the chosen unit.
+    pub fn phase(&self) -> Phase {
+        self.app().units.chosen().phase()
+    }
+
+    /// The present or last run on the chosen unit.
+    pub fn run(&self) -> Option<&Progress> {
+        self.app().units.chosen().run.as_ref()
+    }
+
+    /// Number of that run, once it is over and recorded.
+    pub fn run_id(&self) -> Option<fault_db::Id> {
+        self.run().and_then(Progress::id)
+    }
+
+    /// Steps of that run that were run.
+    pub fn steps_run(&self) -> u32 {
+        self.run().map_or(0, |run| run.counts().run())
     }
 
     pub fn app(&self) -> &App {
