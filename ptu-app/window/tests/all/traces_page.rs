@@ -218,13 +218,18 @@ fn a_trace_that_cannot_be_opened_is_told_in_one_sentence() {
     let begins = Language::English.words().traces.cannot_open;
     window.wait_for_part(begins);
     window.step();
-    let shown = window.shown().into_iter();
-    let told: Vec<_> = shown.filter(|text| text.contains(begins)).collect();
+    let mut told = window.shown();
+    told.retain(|text| text.contains(begins));
+    // The sign stands before a message alone.
+    let told: Vec<_> = told
+        .iter()
+        .map(|text| text.trim_start_matches("⚠ "))
+        .collect();
     assert!(
         told.len() > 1 && told[0].len() > begins.len() + 2,
         "{told:?}"
     );
-    assert!(told.iter().all(|text| *text == told[0]), "{told:?}");
+    assert!(told.iter().all(|text| text == &told[0]), "{told:?}");
 }
 
 /// Goal: two speeds can be read off one axis, and a stretch is looked at and left again. Method: the limit is put into the
