@@ -84,7 +84,7 @@ impl Console {
     /// The run is over; returns when all is shown.
     pub fn finish(self) {
         drop(self.shown);
-        // What it showed is no reason for a run to fail.
+        // A console that broke off is no reason for a run to fail.
         let _ = self.thread.join();
         let left_out = self.left_out.load(Ordering::Relaxed);
         if left_out > 0 {
@@ -153,7 +153,7 @@ impl Listener for Console {
             }
             _ => return,
         };
-        // Beside a terminal that takes nothing this is missed.
+        // A terminal that takes nothing misses this, and the run goes on.
         let _ = self.shown.try_send(shown);
     }
 

@@ -12,10 +12,10 @@ use btu_rig::procedure::Procedure;
 use ptu_report::event_lines::EventLines;
 use ptu_runs::failure::{Asked, Failure, FileTrouble, Why};
 use ptu_runs::new_file::{NewFile, kind};
-use ptu_runs::run::{LinePrinter, Listener, Outcome, SessionEvent};
+use ptu_runs::run::{Outcome, SessionEvent};
 use ptu_runs::stdio;
 
-/// Lines that may wait for whoever reads: the stream ends where it takes no more, and the run goes on.
+/// Lines that may wait for a reader. One that falls further behind ends the stream, not the run.
 const WAITING: usize = 65_536;
 
 #[derive(Clone, Debug)]
@@ -34,13 +34,7 @@ impl fmt::Display for StreamTarget {
     }
 }
 
-/// A listener that writes the stream and passes every event on.
-pub struct EventStream<L> {
-    pub listener: L,
-    stream: Option<Stream>,
-}
-
-struct Stream {
+pub struct EventStream {
     lines: EventLines,
     to: Option<SyncSender<String>>,
     thread: JoinHandle<std::io::Result<()>>,
@@ -48,28 +42,10 @@ struct Stream {
     is_cut: bool,
 }
 
-impl<L: Listener> EventStream<L> {
-    /// Begins the stream, if one is asked for.
-    ///
+impl EventStream {
     /// # Errors
     /// The file cannot be written.
-    pub fn begin(listener: L, place: Option<StreamTarget>) -> Result<Self, Failure> {
-        let stream = place.map(Stream::begin).transpose()?;
-        Ok(Self { listener, stream })
-    }
-
-    /// Ends the stream: with the run's last line, if it ended.
-    ///
-    /// # Errors
-    /// Some of it could not be written.
-    pub fn finish(self, outcome: Option<&Outcome>) -> (L, Result<(), Failure>) {
-        let ended = self.stream.map_or(Ok(()), |stream| stream.finish(outcome));
-        (self.listener, ended)
-    }
-}
-
-impl Stream {
-    fn begin(place: StreamTarget) -> Result<Self, Failure> {
+    pub fn begin(place: StreamTarget) -> Result<Self, Failure> {
         let cannot = |error: &dyn fmt::Display| {
             Failure::usage(FileTrouble::Unwritten(place.to_string(), Why::of(error)))
         };
@@ -115,6 +91,14 @@ impl Stream {
         Ok(stream)
     }
 
+    pub fn event(&mut self, procedure: &Procedure, event: &SessionEvent) {
+        if self.to.is_some()
+            && let Some(line) = self.lines.event(procedure, event)
+        {
+            self.put(line);
+        }
+    }
+
     fn put(&mut self, line: String) {
         let sent = self.to.as_ref().map(|to| to.try_send(line));
         if let Some(Err(error)) = sent {
@@ -125,7 +109,11 @@ impl Stream {
         }
     }
 
-    fn finish(mut self, outcome: Option<&Outcome>) -> Result<(), Failure> {
+    /// Ends the stream: with the run's last line, if it ended.
+    ///
+    /// # Errors
+    /// Some of it could not be written.
+    pub fn finish(mut self, outcome: Option<&Outcome>) -> Result<(), Failure> {
         if let Some(outcome) = outcome {
             let last = self.lines.finished(outcome);
             self.put(last);
@@ -153,24 +141,4 @@ fn write(lines: &Receiver<String>, out: impl Write) -> std::io::Result<()> {
         out.flush()?;
     }
     Ok(())
-}
-
-impl<L: Listener> Listener for EventStream<L> {
-    fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
-        if let Some(stream) = &mut self.stream
-            && stream.to.is_some()
-            && let Some(line) = stream.lines.event(procedure, event)
-        {
-            stream.put(line);
-        }
-        self.listener.on_event(procedure, event);
-    }
-
-    fn line(&self, procedure: &Procedure, event: &SessionEvent) -> Option<String> {
-        self.listener.line(procedure, event)
-    }
-
-    fn line_printer(&self) -> Option<LinePrinter> {
-        self.listener.line_printer()
-    }
 }

@@ -33,7 +33,7 @@ impl RunControl for Operator {
         let Ok(typed) = self.typed.try_lock() else {
             return;
         };
-        // What was typed before the question answers another one.
+        // A line typed before the question is no answer to it.
         let asks = runner.awaits_operator();
         for line in typed.lines().iter().filter(|_| asks) {
             match answer(line) {

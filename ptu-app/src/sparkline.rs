@@ -1,6 +1,7 @@
 //! A series of values as one line of text.
 
-const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+/// Heights of a line.
+pub const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 /// Counts as bars from nothing (a dot) to the greatest.
 pub fn sparkline(counts: &[u64]) -> String {

@@ -173,13 +173,8 @@ fn summary(run: &RunDetail, words: &Words) -> String {
             ("verdict", &verdict(words.run_verdict(&run.run))),
         ],
     );
-    let took = fill(
-        terminal.times,
-        &[
-            ("bench", &format!("{bench_s:.1}")),
-            ("wall", &format!("{wall_s:.2}")),
-        ],
-    );
+    let (bench, wall) = (format!("{bench_s:.1}"), format!("{wall_s:.2}"));
+    let took = fill(terminal.times, &[("bench", &bench), ("wall", &wall)]);
     format!("{came}\n{took}{continued}")
 }
 

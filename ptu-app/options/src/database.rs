@@ -10,9 +10,9 @@ use ptu_runs::clock;
 use ptu_runs::failure::{Asked, Failure, FileTrouble};
 use ptu_runs::{owner_only, stdio};
 
-/// Names a history for all commands that are given none.
+/// Variable with the history of commands that are given none.
 const VARIABLE: &str = "PTU_DB";
-/// Among the options: after all others but `--help`.
+/// Place among the options: after all but `--help`.
 const LAST: usize = 998;
 
 /// Which history.
@@ -39,28 +39,18 @@ pub fn only_file(path: &Path) -> Result<&Path, Failure> {
     }
 }
 
-/// Where it is.
-enum DatabasePlace {
-    File(PathBuf),
-    Server(Address),
-}
-
 impl Database {
-    fn place(&self) -> Result<DatabasePlace, Failure> {
+    /// What the user named, or the user's own file.
+    fn path(&self) -> Result<PathBuf, Failure> {
         let Some(path) = self.named() else {
             let file = directories::ProjectDirs::from("", "", "ptu")
                 .map(|directories| directories.data_dir().join("history.db"));
-            return file
-                .map(DatabasePlace::File)
-                .ok_or_else(|| Failure::usage(FileTrouble::NoUserFolder("--db")));
+            return file.ok_or_else(|| Failure::usage(FileTrouble::NoUserFolder("--db")));
         };
-        if path.as_os_str().is_empty() {
-            return Err(Failure::usage(Asked::VariableEmpty(VARIABLE.to_string())));
+        match path.as_os_str().is_empty() {
+            true => Err(Failure::usage(Asked::VariableEmpty(VARIABLE.to_string()))),
+            false => Ok(path),
         }
-        Ok(match as_address(&path) {
-            Some(address) => DatabasePlace::Server(address?),
-            None => DatabasePlace::File(path),
-        })
     }
 
     /// What the user named, if anything.
@@ -71,45 +61,44 @@ impl Database {
 
     /// Path of a database in a file; for what a server does not do.
     pub fn file(&self) -> Result<PathBuf, Failure> {
-        match self.place()? {
-            DatabasePlace::File(path) => Ok(path),
-            DatabasePlace::Server(address) => {
-                Err(StoreError::NotAFile(address.to_string().into()).into())
-            }
-        }
+        let path = self.path()?;
+        only_file(&path)?;
+        Ok(path)
     }
 
     /// The server, if it is one; for what tells a server from a file by itself.
     pub fn server(&self) -> Result<Option<Address>, Failure> {
-        Ok(match self.place()? {
-            DatabasePlace::File(_) => None,
-            DatabasePlace::Server(address) => Some(address),
-        })
+        Ok(as_address(&self.path()?).transpose()?)
+    }
+
+    /// The server, if it is one; a file has to be there.
+    fn server_or_there(&self) -> Result<Option<Address>, Failure> {
+        let (server, path) = (self.server()?, self.path()?);
+        match server.is_none() && !path.exists() {
+            true => Err(StoreError::Missing(path).into()),
+            false => Ok(server),
+        }
     }
 
     /// Opens one that is there for writing: a name that is mistyped makes none.
     pub fn open(&self) -> Result<Store, Failure> {
-        match self.place()? {
-            DatabasePlace::File(path) if !path.exists() => Err(StoreError::Missing(path).into()),
-            _ => self.open_or_make(),
-        }
+        self.server_or_there()?;
+        self.open_or_make()
     }
 
     /// A file that was named has to be there, as the name may be mistyped; the user's own may be made.
     pub fn check_named(&self) -> Result<(), Failure> {
-        match self.place()? {
-            DatabasePlace::File(path) if self.named().is_some() && !path.exists() => {
-                Err(StoreError::Missing(path).into())
-            }
-            _ => Ok(()),
+        match self.named() {
+            Some(_) => self.server_or_there().map(drop),
+            None => self.path().map(drop),
         }
     }
 
     /// Opens it for writing, and makes a file if need be: for what brings runs in.
     pub fn open_or_make(&self) -> Result<Store, Failure> {
-        match self.place()? {
-            DatabasePlace::File(_) => self.open_file(),
-            DatabasePlace::Server(address) => Ok(Store::connect(&address, clock::ids())?),
+        match self.server()? {
+            None => self.open_file(),
+            Some(address) => Ok(Store::connect(&address, clock::ids())?),
         }
     }
 
@@ -127,18 +116,17 @@ impl Database {
 
     /// Opens it for reading.
     pub fn open_read_only(&self) -> Result<Store, Failure> {
-        Ok(match self.place()? {
-            DatabasePlace::File(path) => {
-                let store = Store::open_read_only(&path)?;
-                for stranger in store.foreign_objects()? {
-                    stdio::note(&format!(
-                        "{} was altered by hand, and what it says may be: {stranger}; `ptu db check` says more",
-                        path.display()
-                    ));
-                }
-                store
-            }
-            DatabasePlace::Server(address) => Store::connect_read_only(&address)?,
-        })
+        if let Some(address) = self.server()? {
+            return Ok(Store::connect_read_only(&address)?);
+        }
+        let path = self.path()?;
+        let store = Store::open_read_only(&path)?;
+        for stranger in store.foreign_objects()? {
+            stdio::note(&format!(
+                "{} was altered by hand, and what it says may be: {stranger}; `ptu db check` says more",
+                path.display()
+            ));
+        }
+        Ok(store)
     }
 }

@@ -9,15 +9,34 @@ mod database;
 mod page;
 pub mod presets;
 mod scripts;
-pub mod sound_file;
 mod window;
+
+use std::path::PathBuf;
 
 pub use database::{Database, only_file};
 use fault_db::Address;
 pub use page::Page;
-use ptu_runs::failure::{Asked, Failure};
+use ptu_runs::failure::{Asked, Failure, FileTrouble};
 pub use scripts::ScriptsOption;
 pub use window::WindowOptions;
+
+/// A file of what this user has set.
+///
+/// # Errors
+/// The user has no folder for it.
+pub fn settings_file(name: &str) -> Result<PathBuf, Failure> {
+    directories::ProjectDirs::from("", "", "ptu")
+        .map(|directories| directories.config_dir().join(name))
+        .ok_or_else(|| Failure::usage(FileTrouble::NoSettingsFolder))
+}
+
+/// The file of this user's calibrations of sound devices.
+///
+/// # Errors
+/// The user has no folder for it.
+pub fn sound_file() -> Result<PathBuf, Failure> {
+    settings_file("sound.json")
+}
 
 /// Refuses a command line that holds a server's password.
 ///

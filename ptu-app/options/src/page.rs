@@ -43,20 +43,24 @@ impl Page {
         Self::Signals,
     ];
 
-    /// Name of the page on the command line.
-    fn word(self) -> &'static str {
+    /// Name of the page on the command line, and of the key that shows it.
+    fn word_and_key(self) -> (&'static str, &'static str) {
         match self {
-            Self::Case => "case",
-            Self::Bench => "bench",
-            Self::Procedures => "procedures",
-            Self::Drive => "drive",
-            Self::Traces => "traces",
-            Self::Faults => "faults",
-            Self::Diagnosis => "diagnosis",
-            Self::Report => "report",
-            Self::Statistics => "statistics",
-            Self::Signals => "signals",
+            Self::Case => ("case", "F7"),
+            Self::Bench => ("bench", "F1"),
+            Self::Procedures => ("procedures", "F2"),
+            Self::Traces => ("traces", "F3"),
+            Self::Faults => ("faults", "F4"),
+            Self::Diagnosis => ("diagnosis", "F5"),
+            Self::Report => ("report", "F6"),
+            Self::Statistics => ("statistics", "F8"),
+            Self::Drive => ("drive", "F10"),
+            Self::Signals => ("signals", "F11"),
         }
+    }
+
+    fn word(self) -> &'static str {
+        self.word_and_key().0
     }
 
     /// The names of all on the command line, for who chooses one.
@@ -82,18 +86,7 @@ impl Page {
 
     /// The name of the key that shows the page.
     pub fn key(self) -> &'static str {
-        match self {
-            Self::Case => "F7",
-            Self::Bench => "F1",
-            Self::Procedures => "F2",
-            Self::Traces => "F3",
-            Self::Faults => "F4",
-            Self::Diagnosis => "F5",
-            Self::Report => "F6",
-            Self::Statistics => "F8",
-            Self::Drive => "F10",
-            Self::Signals => "F11",
-        }
+        self.word_and_key().1
     }
 }
 

@@ -46,11 +46,10 @@ pub struct Preset {
 
 /// The files, whether they are there or not; the last counts most.
 pub fn files() -> Vec<PathBuf> {
-    let user = directories::ProjectDirs::from("", "", "ptu");
-    let user = user.map(|directories| directories.config_dir().join("config.toml"));
-    [Some(PathBuf::from("/etc/ptu/config.toml")), user]
+    let depot = PathBuf::from("/etc/ptu/config.toml");
+    [depot]
         .into_iter()
-        .flatten()
+        .chain(crate::settings_file("config.toml"))
         .collect()
 }
 

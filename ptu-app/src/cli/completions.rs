@@ -43,7 +43,7 @@ impl CompletionsArguments {
     }
 }
 
-/// What a shell is to read at its start.
+/// Script that a shell reads at its start.
 pub(super) fn script(shell: &str) -> String {
     let mut script = Vec::new();
     if let Some(shell) = Shells::builtins().completer(shell) {

@@ -19,6 +19,7 @@ mod matrix;
 mod new;
 mod output;
 mod ports;
+mod questions;
 mod record;
 mod report;
 mod reports;
@@ -38,16 +39,13 @@ mod verify;
 mod words;
 
 use std::ffi::OsString;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::builder::RangedI64ValueParser;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use fault_db::Store;
-use output::Json;
-use serde::Serialize;
+use output::{Json, answered, print_json, print_out};
 
 use ptu_options::{Database, ScriptsOption, WindowOptions, presets, refuse_password};
-use ptu_report::json_text;
 use ptu_report::words::{Language, tell};
 use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure, FileTrouble, Unknown, did_you_mean_number};
@@ -114,9 +112,6 @@ enum Verb {
     LoadScripts,
 }
 
-/// Answers may be paged.
-static PAGES: AtomicBool = AtomicBool::new(false);
-
 impl Verb {
     /// Whether the verb only answers; what works for long with nobody watching must not wait in a
     /// pager.
@@ -168,7 +163,7 @@ impl Cli {
         loading::load_apart(running_program());
         self.terminal.set();
         if self.terminal.pages() && self.verb.as_ref().is_some_and(Verb::is_question) {
-            PAGES.store(true, Ordering::Relaxed);
+            terminal::page_answers();
         }
         let Some(verb) = self.verb else {
             return Err(gui::start(std::iter::empty()));
@@ -248,12 +243,6 @@ fn check_unit(store: &Store, serial: &str) -> Result<(), Failure> {
     Err(Failure::usage(Unknown::Unit(serial.to_owned(), hint)))
 }
 
-/// Prints one JSON document.
-fn print_json(value: &impl Serialize) -> Result<Exit, Failure> {
-    stdio::document(&json_text(value)?)?;
-    Ok(Exit::Passed)
-}
-
 /// When a report was made, and by which command.
 fn made_by() -> String {
     let words: Vec<_> = std::env::args().skip(1).map(|word| quoted(&word)).collect();
@@ -268,27 +257,6 @@ fn quoted(argument: &str) -> String {
         return argument.to_owned();
     }
     format!("'{}'", argument.replace('\'', "'\\''"))
-}
-
-/// Prints text for people.
-fn print_out(text: &str) -> Result<Exit, Failure> {
-    if !(PAGES.load(Ordering::Relaxed) && terminal::paged(text)) {
-        stdio::answer(text)?;
-    }
-    Ok(Exit::Passed)
-}
-
-/// The exit code of what was done when its answer went out, or did not: an answer that is missing spoils what
-/// passed, and hides nothing that did not.
-fn answered(told: Result<Exit, Failure>, exit: Exit) -> Result<Exit, Failure> {
-    match told {
-        Ok(_) => Ok(exit),
-        Err(failure) if exit == Exit::Passed => Err(failure),
-        Err(failure) => {
-            tell(&failure);
-            Ok(exit)
-        }
-    }
 }
 
 /// Range of a number of entries: none is no answer.

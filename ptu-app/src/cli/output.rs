@@ -4,9 +4,10 @@ use clap::Args;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::{print_json, print_out};
+use super::{questions, terminal};
 use ptu_report::csv::{Cell, MARK};
-use ptu_report::words::{Language, Words};
+use ptu_report::json_text;
+use ptu_report::words::{Language, Words, tell};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::stdio;
 
@@ -69,13 +70,12 @@ impl Form {
 
     /// Prints rows whose columns are the keys of the first, or the table of them.
     pub fn print(self, rows: &[Value], table: impl FnOnce() -> String) -> Result<Exit, Failure> {
-        let first = rows.first().and_then(Value::as_object);
-        let columns: Vec<_> = first.into_iter().flat_map(|row| row.keys()).collect();
-        let columns: Vec<_> = columns.into_iter().map(String::as_str).collect();
+        let columns = rows.first().map(keys).unwrap_or_default();
         self.print_columns(&columns, rows, table)
     }
 
-    fn print_columns(
+    /// Prints rows, or the table of them. The columns are the keys of each row, in their order.
+    pub fn print_columns(
         self,
         columns: &[&str],
         rows: &[Value],
@@ -105,19 +105,36 @@ impl Output {
     /// Saves the question, if it was given a name.
     pub fn save(&self) -> Result<(), Failure> {
         match &self.save {
-            Some(name) => super::saved::save(name, std::env::args_os()),
+            Some(name) => questions::save(name, std::env::args_os()),
             None => Ok(()),
         }
     }
+}
 
-    /// Prints rows, or the table of them. The columns are the keys of each row, in their order.
-    pub fn print(
-        &self,
-        columns: &[&str],
-        rows: &[Value],
-        table: impl FnOnce() -> String,
-    ) -> Result<Exit, Failure> {
-        self.form.print_columns(columns, rows, table)
+/// Prints one JSON document.
+pub fn print_json(value: &impl Serialize) -> Result<Exit, Failure> {
+    stdio::document(&json_text(value)?)?;
+    Ok(Exit::Passed)
+}
+
+/// Prints text for people.
+pub fn print_out(text: &str) -> Result<Exit, Failure> {
+    if !terminal::paged(text) {
+        stdio::answer(text)?;
+    }
+    Ok(Exit::Passed)
+}
+
+/// The exit code of what was done when its answer went out, or did not: an answer that is missing spoils what
+/// passed, and hides nothing that did not.
+pub fn answered(told: Result<Exit, Failure>, exit: Exit) -> Result<Exit, Failure> {
+    match told {
+        Ok(_) => Ok(exit),
+        Err(failure) if exit == Exit::Passed => Err(failure),
+        Err(failure) => {
+            tell(&failure);
+            Ok(exit)
+        }
     }
 }
 
@@ -131,7 +148,7 @@ pub fn print_csv(columns: &[&str], rows: &[Value]) -> Result<Exit, Failure> {
 /// Rows under their columns as CSV (RFC 4180), without the end of the last line; what is no single value
 /// stands as JSON.
 fn csv(columns: &[&str], rows: &[Value]) -> String {
-    debug_assert!(rows.iter().all(|row| has_columns(row, columns)));
+    debug_assert!(rows.iter().all(|row| keys(row) == columns));
     let heading = columns.iter().map(|column| Cell::Text((*column).into()));
     let mut lines = vec![line(heading)];
     lines.extend(rows.iter().map(|row| {
@@ -143,10 +160,12 @@ fn csv(columns: &[&str], rows: &[Value]) -> String {
     lines.join("\n")
 }
 
-/// Whether these are the keys of a row.
-fn has_columns(row: &Value, columns: &[&str]) -> bool {
-    row.as_object()
-        .is_some_and(|row| row.keys().eq(columns.iter()))
+/// The keys of a row, in their order.
+pub fn keys(row: &Value) -> Vec<&str> {
+    let row = row.as_object();
+    row.into_iter()
+        .flat_map(|row| row.keys().map(String::as_str))
+        .collect()
 }
 
 fn line(cells: impl Iterator<Item = Cell>) -> String {

@@ -17,10 +17,7 @@ use fault_db::Store;
 use super::reports::ReportOption;
 use super::signing::SigningOption;
 use super::{Database, ScriptsOption, answered, print_out, run_list};
-use crate::console::Console;
-use crate::event_stream::EventStream;
 use crate::operator::Operator;
-use crate::run_recording::RunRecording;
 use ptu_report::words::tell;
 use ptu_report::words::{Words, fill};
 use ptu_runs::data::ScriptsDirectory;
@@ -35,7 +32,7 @@ use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
 use ptu_runs::symptoms;
 
-/// What is taken where nothing is named.
+/// Line, unit configuration and seed of a run that names none.
 const LINE: &str = "line8";
 const UNIT_CONFIG: &str = "sg100";
 const SEED: u64 = 1;
@@ -270,18 +267,16 @@ impl RunArguments {
         let signer = self.signing.signer()?;
         let store = self.database.open_file()?;
         store.sign_with(signer);
-        // After the history is made: no report replaces that.
+        // Only once the history is there, so that no report takes its place.
         self.reports.check()?;
         if self.adaptive && (self.repeat > 1 || self.jobs > 1) {
             return Err(Failure::usage(Asked::AdaptiveOnce));
         }
         let stop = Stop::default();
         stop.listen();
-        let console = Console::new(plan, self.show.detail())?;
-        let console = EventStream::begin(console, self.show.events())?;
-        let mut console = RunRecording::begin(console, self.show.mcap.as_deref())?;
+        let mut shown = self.show.begin(plan)?;
         let result = match self.adaptive {
-            false => run::run(plan, setup, store, &stop, &mut console),
+            false => run::run(plan, setup, store, &stop, &mut shown),
             true => {
                 let config = setup.config.sha256.clone();
                 let practice = setup.is_practice();
@@ -299,13 +294,11 @@ impl RunArguments {
                     warnings.for_each(|warning| stdio::note(&words.told(warning)));
                     Ok(made)
                 };
-                run::search(plan, setup, store, &stop, &mut console, prepare)
+                run::search(plan, setup, store, &stop, &mut shown, prepare)
             }
         };
         let outcome = result.as_ref().ok().map(|(_, outcome)| outcome);
-        let (console, recorded) = console.finish(outcome);
-        let (console, streamed) = console.finish(outcome);
-        console.finish();
+        let [streamed, recorded] = shown.finish(outcome);
         let (store, outcome) = result?;
         if let Some(why) = &outcome.prevented {
             tell(&Failure::bench(why.clone()));

@@ -218,19 +218,15 @@ fn signed(run: &RunDetail) -> String {
 fn certificate(store: &Store, id: &str, out: &Path) -> Result<Exit, Failure> {
     let run = store.resolve_run(id)?;
     let signed = store.signatures(run)?.into_iter().find(|text| {
-        let signed = Signed::read(text).ok();
-        signed
-            .and_then(|signed| Statement::of(&signed))
-            .is_some_and(|statement| statement.what == "run")
+        let statement = (Signed::read(text).ok()).and_then(|signed| Statement::of(&signed));
+        statement.is_some_and(|statement| statement.what == "run")
     });
     let Some(signed) = signed else {
         return Err(Failure::usage(Asked::Unsigned(run)));
     };
     whole_file::write_text(out, format!("{signed}\n"))?;
-    print_out(&fill(
-        Words::shown().terminal.files_written,
-        &[("files", &out.display())],
-    ))
+    let said = Words::shown().terminal.files_written;
+    print_out(&fill(said, &[("files", &out.display())]))
 }
 
 fn table(runs: &[fault_db::RunSummary]) -> String {

@@ -1,18 +1,12 @@
 //! `ptu saved`: queries saved under a name.
 
-use std::collections::BTreeMap;
-use std::ffi::OsString;
-use std::path::{Path, PathBuf};
-
 use clap::{Args, CommandFactory, FromArgMatches};
-use fault_db::{limits, read_regular_file};
 
+use super::questions::{Questions, load, question, store, usual_file, without};
 use super::{Cli, print_out, quoted};
 use ptu_report::words::{Words, fill};
-use ptu_runs::failure::{Exit, Failure, FileTrouble, KeepTrouble, Unknown, Why, did_you_mean};
+use ptu_runs::failure::{Exit, Failure, KeepTrouble};
 use ptu_runs::table::Table;
-use ptu_runs::whole_file;
-use ptu_runs::whole_file::LONGEST_FILE;
 
 /// Ask a saved question again, or list them all
 ///
@@ -40,9 +34,6 @@ pub struct SavedArguments {
     )]
     more: Vec<String>,
 }
-
-/// Questions by name: the words after `ptu`.
-type Questions = BTreeMap<String, Vec<String>>;
 
 impl SavedArguments {
     /// Asks, lists or forgets.
@@ -100,34 +91,6 @@ fn asked_for(questions: &Questions, name: &str, more: Vec<String>) -> Result<Cli
         .map_err(|error| Failure::usage(KeepTrouble::NotAsked(name.to_owned(), error.to_string())))
 }
 
-/// Keeps the question of this command line under a name.
-///
-/// # Errors
-/// The file of questions cannot be read or written.
-pub fn save(name: &str, words: impl Iterator<Item = OsString>) -> Result<(), Failure> {
-    if name.trim().is_empty() || name.starts_with('-') {
-        return Err(Failure::usage(KeepTrouble::NoName(name.to_owned())));
-    }
-    limits::name("the question's name", name)?;
-    let readable = words
-        .map(OsString::into_string)
-        .collect::<Result<Vec<_>, _>>();
-    let words =
-        readable.map_err(|word| Failure::usage(KeepTrouble::NoText(word.display().to_string())))?;
-    let words = asked(words.into_iter());
-    limits::list("the question", &words.join(" "))?;
-    let file = usual_file()?;
-    let mut questions = load(&file)?;
-    questions.insert(name.to_owned(), words);
-    store(&file, &questions)
-}
-
-/// The words without those that say under which name to save it, of which database it is asked, and in which language it
-/// is answered.
-fn asked(words: impl Iterator<Item = String>) -> Vec<String> {
-    without(words.skip(1), &["--save", "--db", "--lang"], &[])
-}
-
 /// The words without the options that cannot stand beside one of these: that one replaces them.
 fn without_rivals(words: &[String], more: &[String]) -> Vec<String> {
     let is_given = |options: &[&str]| {
@@ -146,38 +109,6 @@ fn without_rivals(words: &[String], more: &[String]) -> Vec<String> {
     without(words.iter().cloned(), &with_value, forms)
 }
 
-/// The words without these options, those with a value, which goes with them, and those without.
-fn without(
-    mut words: impl Iterator<Item = String>,
-    with_value: &[&str],
-    plain: &[&str],
-) -> Vec<String> {
-    let mut kept = Vec::new();
-    while let Some(word) = words.next() {
-        let name = word.split('=').next().unwrap_or_default();
-        match with_value.contains(&name) {
-            true if name == word => drop(words.next()),
-            true => {}
-            false if plain.contains(&name) => {}
-            false => kept.push(word),
-        }
-    }
-    kept
-}
-
-fn question<'a>(
-    questions: &'a Questions,
-    name: &str,
-) -> Result<(&'a str, &'a Vec<String>), Failure> {
-    let known = questions
-        .get_key_value(name)
-        .map(|(name, words)| (name.as_str(), words));
-    known.ok_or_else(|| {
-        let near = did_you_mean(name, questions.keys().map(String::as_str));
-        Failure::usage(Unknown::Question(name.to_owned(), near))
-    })
-}
-
 fn list(questions: &Questions) -> String {
     let terminal = &Words::shown().terminal;
     if questions.is_empty() {
@@ -191,40 +122,9 @@ fn list(questions: &Questions) -> String {
     table.render()
 }
 
-fn usual_file() -> Result<PathBuf, Failure> {
-    directories::ProjectDirs::from("", "", "ptu")
-        .map(|directories| directories.config_dir().join("questions.json"))
-        .ok_or_else(|| Failure::usage(FileTrouble::NoSettingsFolder))
-}
-
-fn load(file: &Path) -> Result<Questions, Failure> {
-    let text = match read_regular_file(file, LONGEST_FILE) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Questions::new()),
-        other => other.map_err(|error| Failure::bench(FileTrouble::unread(file, error)))?,
-    };
-    serde_json::from_slice(&text).map_err(|error| {
-        Failure::bench(FileTrouble::Damaged(
-            file.display().to_string(),
-            Why::of(error),
-        ))
-    })
-}
-
-fn store(file: &Path, questions: &Questions) -> Result<(), Failure> {
-    whole_file::keep(file, questions)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_question_is_kept_without_its_name_and_database() {
-        let words =
-            "ptu faults --db a.db stats --save worst --by part --db=b.db --save=x --when 90d";
-        let kept = asked(words.split(' ').map(str::to_owned));
-        assert_eq!(kept.join(" "), "faults stats --by part --when 90d");
-    }
 
     #[test]
     fn an_option_given_now_replaces_those_it_cannot_stand_beside() {

@@ -96,7 +96,7 @@ impl PinOption {
     /// The PIN, from the file, the environment or the terminal.
     ///
     /// # Errors
-    /// There is none of them, or the file cannot be read.
+    /// There is no file, variable or terminal to take a PIN from, or the file cannot be read.
     pub fn ask(&self, prompt: &str) -> Result<String, Failure> {
         if let Some(path) = &self.pin_file {
             let bytes = fault_db::read_regular_file(path, LONGEST_PIN)

@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{Args, ColorChoice};
 
@@ -58,9 +59,20 @@ impl TerminalOption {
     }
 }
 
-/// Shows what is longer than the screen in a pager; says whether one did.
+/// Answers may be paged.
+static PAGES: AtomicBool = AtomicBool::new(false);
+
+/// From now on an answer that is longer than the screen is paged.
+pub fn page_answers() {
+    PAGES.store(true, Ordering::Relaxed);
+}
+
+/// Shows what is longer than the screen in a pager, if answers are paged; says whether one did.
 pub fn paged(text: &str) -> bool {
-    let Some([_, rows]) = Terminal::get().size else {
+    let Some([_, rows]) = Terminal::get()
+        .size
+        .filter(|_| PAGES.load(Ordering::Relaxed))
+    else {
         return false;
     };
     let pager = std::env::var("PAGER").unwrap_or_else(|_| PAGER.to_owned());

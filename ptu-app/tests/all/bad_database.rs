@@ -17,7 +17,7 @@ fn locked_by_another_writer() {
     let earlier = place.recorded_run();
     let other = Connection::open(place.path("history.db")).expect("the database");
     other.execute_batch("BEGIN EXCLUSIVE").expect("a lock");
-    place.ptu(&["run", "tcms/link"]).exits(3).explains(&[
+    place.ptu("run tcms/link").exits(3).explains(&[
         "history.db is locked by another program",
         "close it",
         "--db",
@@ -28,7 +28,7 @@ fn locked_by_another_writer() {
         "reading goes on"
     );
     other.execute_batch("ROLLBACK").expect("an end");
-    place.ptu(&["run", "tcms/link"]).exits(0);
+    place.ptu("run tcms/link").exits(0);
     assert_eq!(place.run_ids()[1], earlier);
 }
 
@@ -46,13 +46,13 @@ fn two_runs_at_once_are_both_recorded() {
     for run in runs {
         Said::from(run.wait_with_output().expect("its output")).exits(1);
     }
-    let runs = place.json(&["runs", "list", "--json"]);
+    let runs = place.json("runs list --json");
     assert_eq!(crate::common::list(&runs).len(), 3);
     assert_eq!(runs[0]["state"], "finished");
     for key in ["verdict", "step_count", "steps_not_passed", "fault_count"] {
         assert_eq!(runs[0][key], runs[1][key], "{key}");
     }
-    place.ptu(&["db", "check"]).exits(0);
+    place.ptu("db check").exits(0);
 }
 
 /// A file system of its own, gone with the value.
@@ -209,7 +209,7 @@ fn a_line_on_the_console_is_in_the_database_before_it_is_told() {
     const TOLD: usize = 20;
     let place = Place::new();
     all_fail(&place, 10 * TOLD);
-    let mut command = place.command(&["run", "fails.star"]);
+    let mut command = place.command("run fails.star");
     let mut run = command.stderr(Stdio::piped()).spawn().expect("ptu starts");
     let lines = BufReader::new(run.stderr.take().expect("its notes")).lines();
     let told = lines.map_while(Result::ok);
@@ -230,7 +230,7 @@ fn a_line_on_the_console_is_in_the_database_before_it_is_told() {
 fn a_run_goes_on_while_nobody_reads_its_notes() {
     let place = Place::new();
     all_fail(&place, 100);
-    let mut command = place.command(&["run", "fails.star"]);
+    let mut command = place.command("run fails.star");
     let run = command
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -239,7 +239,7 @@ fn a_run_goes_on_while_nobody_reads_its_notes() {
     let began = Instant::now();
     loop {
         assert!(began.elapsed() < Duration::from_secs(120), "it waits");
-        let runs = place.ptu(&["runs", "list", "--json"]);
+        let runs = place.ptu("runs list --json");
         if runs.code == Some(0) && runs.out.contains("\"finished\"") {
             break;
         }
@@ -278,7 +278,7 @@ fn a_run_ends_as_it_is_whatever_becomes_of_what_it_tells() {
             let status = command.status().expect("ptu starts");
             assert_eq!(status.code(), Some(exit), "{full} {verdict}");
             assert_eq!(place.read_json("report.json")["run"]["verdict"], verdict);
-            let stored = place.json(&["runs", "show", "latest", "--json"]);
+            let stored = place.json("runs show latest --json");
             assert_eq!(stored["run"]["verdict"], verdict);
         }
     }

@@ -88,8 +88,7 @@ pub fn store(place: &Place) -> Store {
 
 /// The answer where local time is so (POSIX: `EST5` is five hours behind UTC).
 fn in_zone(place: &Place, zone: &str, arguments: &[&str]) -> Said {
-    let output = place.command(arguments).env("TZ", zone).output();
-    Said::from(output.expect("ptu starts")).exits(0)
+    place.ptu_where(("TZ", zone), arguments).exits(0)
 }
 
 /// Goal: what is done to a fault counts in the month it is done, after the last occurrence, too. Method: a unit

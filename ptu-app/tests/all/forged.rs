@@ -15,7 +15,7 @@ pub fn with_key() -> Place {
         .ptu("key new --who Kim --out kim.key --pin-file pin.txt")
         .exits(0)
         .prints(&["of Kim (technician)", "kim.pub", "ptu run --key"]);
-    (place.ptu(&["key", "trust", "kim.pub", "--keys", "depot.keys"]))
+    (place.ptu("key trust kim.pub --keys depot.keys"))
         .exits(0)
         .prints(&["trusted: Kim"]);
     place
@@ -42,11 +42,11 @@ fn a_sheet_takes_no_other_content() {
     let report = "report latest --out sheet.html";
     signed(&place, report).exits(0);
     place
-        .ptu(&["runs", "certificate", "latest", "--out", "a.ptucert"])
+        .ptu("runs certificate latest --out a.ptucert")
         .exits(0);
     signed(&place, "run tcms/link").exits(0);
     place
-        .ptu(&["runs", "certificate", "latest", "--out", "b.ptucert"])
+        .ptu("runs certificate latest --out b.ptucert")
         .exits(0);
     let page = place.read("sheet.html");
     verify(&place, "sheet.html").exits(0).prints(&["unchanged"]);
@@ -157,7 +157,7 @@ fn an_unsigned_note_on_a_trace_is_marked() {
     (store.add_trace_note(of_note, "Kim", "late here", ptu_runs::clock::now_us())).expect("noted");
     store.close().expect("closed");
     place
-        .ptu(&["trace", "show", "latest"])
+        .ptu("trace show latest")
         .exits(0)
         .prints(&["Kim (unsigned)", "late here"]);
 }
@@ -176,27 +176,14 @@ fn a_calibration_ends_on_the_day_of_the_bench() {
     };
     let day = |at_us| ptu_runs::clock::utc_day(at_us);
     assert_ne!(day(now), day(here));
-    let ptu = |arguments: &[&str]| {
-        let output = place.command(arguments).env("TZ", zone).output();
-        crate::common::Said::from(output.expect("starts"))
-    };
-    ptu(&["instrument", "add", "B-0031", "--kind", "bench"]).exits(0);
+    let ptu = |arguments: &str| place.ptu_where(("TZ", zone), arguments);
+    ptu("instrument add B-0031 --kind bench").exits(0);
+    let calibrate = "instrument calibrate B-0031 --calibrated-by 'lab 7'";
     let calibrated = |on: i64, due: i64| {
-        let days = ["--on", &day(on), "--due", &day(due)];
-        ptu(&[
-            &[
-                "instrument",
-                "calibrate",
-                "B-0031",
-                "--calibrated-by",
-                "lab 7",
-            ][..],
-            &days,
-        ]
-        .concat())
-        .exits(0);
-        let shown = ptu(&["instrument", "list"]).exits(0);
-        let run = ptu(&["run", "tcms/link", "--unit", "tcp:127.0.0.1:1"]).exits(3);
+        let days = format!("--on {} --due {}", day(on), day(due));
+        ptu(&format!("{calibrate} {days}")).exits(0);
+        let shown = ptu("instrument list").exits(0);
+        let run = ptu("run tcms/link --unit tcp:127.0.0.1:1").exits(3);
         assert_eq!(
             shown.out.contains("not calibrated"),
             run.err.contains("the calibration of"),
@@ -207,17 +194,8 @@ fn a_calibration_ends_on_the_day_of_the_bench() {
     };
     assert!(calibrated(here, here + 24 * hour), "calibrated today");
     assert!(!calibrated(here - 24 * hour, here), "due today");
-    let made = [
-        "instrument",
-        "calibrate",
-        "B-0031",
-        "--calibrated-by",
-        "lab 7",
-        "--due",
-        "2999-01-01",
-    ];
-    ptu(&made).exits(0);
-    let shown = ptu(&["instrument", "list", "--json"]).exits(0);
+    ptu(&format!("{calibrate} --due 2999-01-01")).exits(0);
+    let shown = ptu("instrument list --json").exits(0);
     let shown: serde_json::Value = serde_json::from_str(&shown.out).expect("JSON");
     assert_eq!(text(&shown[0]["calibrated"]), day(here));
 }

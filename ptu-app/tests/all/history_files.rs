@@ -106,14 +106,12 @@ fn partitions_answer_as_the_file_does_and_grow_with_it() {
         (&json!(0), &json!(0))
     );
 
-    place
-        .ptu(&["run", "atp/overspeed", "--serial-no", "OK-7"])
-        .exits(0);
+    place.ptu("run atp/overspeed --serial-no OK-7").exits(0);
     let fault = relay_fault(&place);
     let id = text(&fault["id"]);
     let repair = format!("faults repair {id} --part eb_relay --new SN-77");
     place.ptu(&repair).exits(0);
-    place.ptu(&["runs", "note", "latest", "바꿈"]).exits(0);
+    place.ptu("runs note latest 바꿈").exits(0);
     let grown = export("files");
     assert!(
         grown["unchanged"].as_u64() > Some(0) && grown["written"].as_u64() > Some(5),
@@ -164,17 +162,15 @@ fn partitions_answer_as_the_file_does_and_grow_with_it() {
 #[ignore = "long suite: readers of other makers"]
 fn partitions_of_a_history_without_runs_have_all_columns() {
     let place = Place::with_database();
-    place.ptu(&["db", "export", "--parquet", "files"]).exits(0);
+    place.ptu("db export --parquet files").exits(0);
     let count = "SELECT count(*) FROM repairs JOIN faults ON fault_id = faults.id".to_owned();
     let answers = asked(&place.path("files"), &[count]);
     assert_eq!(answers["answers"], json!([[[0]]]));
-    place.ptu(&["db", "export"]).exits(2);
-    place
-        .ptu(&["db", "export", "other.db", "--parquet", "files"])
-        .exits(2);
+    place.ptu("db export").exits(2);
+    place.ptu("db export other.db --parquet files").exits(2);
     place.write("in_the_way", "");
     place
-        .ptu(&["db", "export", "--parquet", "in_the_way"])
+        .ptu("db export --parquet in_the_way")
         .exits(2)
         .explains(&["in_the_way"]);
 }

@@ -138,13 +138,7 @@ fn a_korean_computer_is_answered_in_korean() {
     let names = names(&place);
     let mut left = Vec::new();
     for command in COMMANDS {
-        let mut asked = place.command(*command);
-        let said = Said::from(
-            asked
-                .env("LC_ALL", "ko_KR.UTF-8")
-                .output()
-                .expect("it starts"),
-        );
+        let said = place.ptu_where(("LC_ALL", "ko_KR.UTF-8"), *command);
         let text = said.out + &said.err;
         assert!(!text.is_empty(), "{command} says nothing");
         for line in text.lines() {

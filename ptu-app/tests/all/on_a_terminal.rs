@@ -37,12 +37,8 @@ fn a_table_fits_the_terminal_and_has_colours_where_they_are_wanted() {
     assert!(shown(&place, "runs list --color always", &[("NO_COLOR", "1")]).contains(red));
     let piped = place.ptu("runs list").exits(0).out;
     assert!(!piped.contains('\x1b') && piped.lines().any(|line| line.len() > usize::from(WIDTH)));
-    let forced = place
-        .command("runs list")
-        .env("CLICOLOR_FORCE", "1")
-        .output();
-    let forced = forced.expect("ptu starts").stdout;
-    assert!(String::from_utf8_lossy(&forced).contains(red));
+    let forced = place.ptu_where(("CLICOLOR_FORCE", "1"), "runs list");
+    forced.prints(&[red]);
 }
 
 #[test]

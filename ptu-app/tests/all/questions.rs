@@ -4,7 +4,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-use crate::common::{Place, Said, has, list, relay_fault, text};
+use crate::common::{Place, has, list, relay_fault, text};
 use chrono::{Local, Utc};
 
 /// A unit of train 8203 with a slow relay, which is repaired, proven by a run and closed.
@@ -92,9 +92,8 @@ fn a_trend_is_of_one_step_where_one_is_asked_for() {
 fn help_is_broken_where_the_terminal_ends() {
     const COLUMNS: usize = 60;
     let place = Place::new();
-    let mut command = place.command("faults stats --help");
-    let output = command.env("COLUMNS", COLUMNS.to_string()).output();
-    let help = Said::from(output.expect("ptu starts")).exits(0).out;
+    let width = ("COLUMNS", &COLUMNS.to_string());
+    let help = place.ptu_where(width, "faults stats --help").exits(0).out;
     let lines: Vec<_> = help
         .lines()
         .take_while(|line| *line != "Examples:")

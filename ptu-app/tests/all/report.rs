@@ -41,11 +41,11 @@ fn a_korean_sheet_of_a_failed_run_has_no_english_sentence() {
 #[test]
 fn every_step_measurement_symptom_and_reason_of_a_limit_has_korean() {
     let place = Place::new();
-    let said = place.ptu(&["run", "--check"]).exits(0);
+    let said = place.ptu("run --check").exits(0);
     let all = "each text has its Korean";
     assert!(said.out.contains(all), "{}", said.all());
     let words = Language::Korean.words();
-    let symptoms = place.json(&["catalog", "symptoms", "--json"]);
+    let symptoms = place.json("catalog symptoms --json");
     let names = list(&symptoms).iter().map(|symptom| text(&symptom["name"]));
     let missing: Vec<_> = names.filter(|name| words.content(name) == *name).collect();
     assert!(

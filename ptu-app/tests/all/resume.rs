@@ -32,14 +32,9 @@ fn killed_run(place: &Place) -> Value {
             "no step of the second procedure was stored"
         );
         std::thread::sleep(Duration::from_millis(100));
-        let said = place.ptu("runs show latest --json");
-        let shown: Value = serde_json::from_str(&said.out).unwrap_or_default();
-        let of_second = |step: &&Value| step["procedure"] == "tcms/link";
-        let steps = shown["steps"]
-            .as_array()
-            .map_or(0, |s| s.iter().filter(of_second).count());
-        if steps >= 1 {
-            break list(&shown["steps"]).len();
+        let steps = place.steps_so_far();
+        if steps.iter().any(|step| step["procedure"] == "tcms/link") {
+            break steps.len();
         }
     };
     run.kill().expect("killed");

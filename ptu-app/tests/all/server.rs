@@ -61,10 +61,9 @@ fn two_laptops_meet_on_a_server_that_answers_like_their_files() {
         assert_eq!(relay_fault(place)["state"], "repaired");
     }
     // A server in the environment is as good as one on the command line.
-    let mut asked = one.command("faults list --state repaired --json");
-    let said =
-        crate::common::Said::from(asked.env("PTU_DB", &server).output().expect("ptu starts"));
-    assert!(said.exits(0).out.contains(fault));
+    let repaired = "faults list --state repaired --json";
+    let said = one.ptu_where(("PTU_DB", &server), repaired);
+    said.exits(0).prints(&[fault]);
 }
 
 #[test]
@@ -151,9 +150,7 @@ fn a_password_on_the_command_line_is_refused_and_never_shown() {
                 .explains(&["~/.pgpass", "PGPASSWORD", "passfile="]);
         }
         // In the environment it is the user's own, and not shown either.
-        let mut asked = place.command("runs list");
-        let said =
-            crate::common::Said::from(asked.env("PTU_DB", address).output().expect("ptu starts"));
+        let said = place.ptu_where(("PTU_DB", address), "runs list");
         assert!(!said.all().contains("s3cret"), "{address}: {}", said.all());
         assert!(
             matches!(said.code, Some(2 | 3)),

@@ -149,10 +149,8 @@ fn each_formats_own_reader_finds_what_was_recorded() {
     let trace = trace(9_000);
     let id = kept(&place, &trace);
     for file in ["t.csv", "t.parquet", "t.mcap"] {
-        let said = place
-            .ptu(&["trace", "export", "latest", "--out", file])
-            .exits(0);
-        assert!(said.out.contains("9000 rows of 6 signals"), "{}", said.out);
+        let said = place.ptu(&format!("trace export latest --out {file}"));
+        said.exits(0).prints(&["9000 rows of 6 signals"]);
         let found = run_python("read_trace.py", &[&place.text_path(file)]);
         let found: Value = serde_json::from_str(&found).expect("JSON");
         assert_eq!(found["headings"], json!(HEADINGS), "{file}");
@@ -168,7 +166,7 @@ fn each_formats_own_reader_finds_what_was_recorded() {
         let channels: Vec<Channel> =
             serde_json::from_value(about["channels"].clone()).expect("channels");
         assert_eq!(channels, trace.channels, "{file}");
-        let run = place.json(&["runs", "show", "latest", "--json"]);
+        let run = place.json("runs show latest --json");
         assert_eq!(about["run_id"], run["run"]["id"]);
 
         for (row, time_s) in list(&found["times_s"]).iter().enumerate() {
@@ -204,16 +202,14 @@ fn a_part_has_its_signals_and_its_span() {
     let place = Place::new();
     let is_the_same = |file: &str, span: &str| {
         let said = place.ptu(&["trace", "diff", "latest", file]).exits(0);
-        let compared = format!("compared from {span}");
-        assert!(said.out.contains("no signal differs"), "{}", said.out);
-        assert!(said.out.contains(&compared), "{}", said.out);
+        said.prints(&["no signal differs", &format!("compared from {span}")]);
     };
     let trace = trace(600);
     kept(&place, &trace);
     for file in ["t.csv", "t.parquet", "t.mcap"] {
-        let part = ["--signal", "mode,speed", "--window", "-0.5..1"];
-        let all = [&["trace", "export", "latest", "--out", file][..], &part].concat();
-        place.ptu(&all).exits(0);
+        let part = "--signal mode,speed --window -0.5..1";
+        let export = format!("trace export latest --out {file} {part}");
+        place.ptu(&export).exits(0);
         let found = run_python("read_trace.py", &[&place.text_path(file)]);
         let found: Value = serde_json::from_str(&found).expect("JSON");
         let times = list(&found["times_s"]);
@@ -252,16 +248,8 @@ fn a_foreign_table_is_laid_at_the_traces_rows() {
         table += &format!("{:.2};{:.3};1\n", t_s + 0.35, 20.0 + t_s * 2.0 + wrong);
     }
     place.write("scope.csv", &table);
-    let diff = [
-        "trace",
-        "diff",
-        "latest",
-        "scope.csv",
-        "--shift",
-        "-0.35",
-        "--json",
-    ];
-    let said = place.ptu(&diff).exits(1);
+    let diff = "trace diff latest scope.csv --shift -0.35";
+    let said = place.ptu(&format!("{diff} --json")).exits(1);
     let found: Value = serde_json::from_str(&said.out).expect("JSON");
     let deviations = list(&found["deviations"]);
     assert_eq!(deviations.len(), 1, "{found}");
@@ -270,12 +258,8 @@ fn a_foreign_table_is_laid_at_the_traces_rows() {
     assert!((1.9..2.2).contains(&first_s), "{first_s}");
     assert_eq!(found["from_s"], -2.0);
     assert_eq!(found["missing_in_a"][0], "Scope 1");
-    let said = place.ptu(&diff[..6]).exits(1);
-    assert!(
-        said.out.contains("speed") && said.out.contains("not in B: effort"),
-        "{}",
-        said.out
-    );
+    let said = place.ptu(diff).exits(1);
+    said.prints(&["speed", "not in B: effort"]);
 }
 
 #[test]
@@ -291,11 +275,11 @@ fn messages_of_another_program_are_laid_at_their_time_of_day() {
     // From row 100 on, 5 s before the trigger.
     let t0 = (T0_US + 100 * PERIOD_US).to_string();
     run_python("write_mcap.py", &[&place.text_path("m.mcap"), &t0]);
-    let found = place.json(&["trace", "diff", "latest", "m.mcap", "--json"]);
+    let found = place.json("trace diff latest m.mcap --json");
     assert_eq!(found["from_s"], -5.0);
     assert_eq!(list(&found["deviations"]), [] as [Value; 0], "{found}");
     assert_eq!(found["missing_in_a"][0], "door/left.open");
-    let far = place.ptu(&["trace", "diff", "latest", "m.mcap", "--shift", "3600"]);
+    let far = place.ptu("trace diff latest m.mcap --shift 3600");
     far.exits(2).explains(&["no time in common", "--shift"]);
 }
 
@@ -352,12 +336,12 @@ fn a_file_of_very_many_signals_is_refused_at_once() {
     // As many as are allowed are no trouble either.
     write("some.mcap", &wide_mcap(1, 4_000, "f"));
     let began = std::time::Instant::now();
-    let said = place.ptu(&["trace", "diff", "latest", "some.mcap"]);
+    let said = place.ptu("trace diff latest some.mcap");
     said.exits(2).explains(&["none of its signals", "(+3990)"]);
     assert!(began.elapsed() < std::time::Duration::from_secs(10));
 }
 
-/// `ptu` where no file may grow longer than so much, with the shell's words before it.
+/// Runs `ptu` where no file may grow beyond a limit, after these words of the shell.
 fn short_of_disk(place: &Place, before: &str, arguments: &[&str]) -> crate::common::Said {
     // Blocks of 512 bytes; what SQLite keeps beside an open file takes 64 of them.
     let arguments = arguments.join(" ");
@@ -371,9 +355,7 @@ fn short_of_disk(place: &Place, before: &str, arguments: &[&str]) -> crate::comm
 fn a_file_that_breaks_off_leaves_the_one_before_it() {
     let place = Place::new();
     kept(&place, &trace(40_000));
-    place
-        .ptu(&["runs", "show", "latest", "--report", "s.html"])
-        .exits(0);
+    place.ptu("runs show latest --report s.html").exits(0);
     let export = |to: &'static str| ["trace", "export", "latest", "--force", "--out", to];
     let names = |place: &Place| {
         let entries = std::fs::read_dir(place.path("")).expect("read");

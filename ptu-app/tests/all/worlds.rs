@@ -17,12 +17,12 @@ fn between(chance: &mut Chance, low: f64, high: f64) -> f64 {
     low + chance.below(tenths + 1) as f64 / 10.0
 }
 
-/// One that ships, to be changed.
+/// Text of a shipped file, to be changed.
 fn shipped(file: &str) -> String {
     std::fs::read_to_string(scripts().join(file)).expect("shipped")
 }
 
-/// Sets a key behind a place in a file, `[ato.train]`, or the first of it.
+/// Sets the first key of this name after a place in a file, such as `[ato.train]`.
 fn set(text: &mut String, place: &str, key: &str, value: f64) {
     let place = text.find(place).expect("the place");
     let line = text[place..].find(&format!("\n{key} = ")).expect("the key") + place + 1;
@@ -183,21 +183,11 @@ fn world(place: &Place, seed: usize) -> PathBuf {
     folder
 }
 
-/// A run of everything there.
+/// Runs all procedures in a world.
 fn run(place: &Place, world: &Path, more: &[&str]) -> Said {
-    let mut words = ["run", "-q", "--report", "report.json"].to_vec();
-    words.extend([
-        "--line",
-        "drawn",
-        "--unit-config",
-        "drawn",
-        "--train",
-        "drawn",
-    ]);
-    words.extend(more);
-    let mut command = place.command(&words);
-    let output = command.env("PTU_SCRIPTS", world).output();
-    Said::from(output.expect("ptu starts"))
+    let all = "run -q --report report.json --line drawn --unit-config drawn --train drawn";
+    let words: Vec<_> = all.split(' ').chain(more.iter().copied()).collect();
+    place.ptu_where(("PTU_SCRIPTS", world), &words)
 }
 
 /// Goal: no line, unit type or train makes a sound unit fail: what a step needs of them is derived, or the step is skipped

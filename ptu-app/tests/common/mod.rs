@@ -10,6 +10,7 @@ pub mod served;
 pub mod terminal;
 pub mod told;
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
@@ -19,9 +20,10 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// Keys that differ between two runs of one seed: identities, times of day, and wall time.
-const IDENTITIES: [&str; 3] = ["id", "trace_id", "seal"];
-const TIMES_OF_DAY: [&str; 4] = ["started_at", "finished_at", "first_at", "last_at"];
-const WALL_TIME: [&str; 1] = ["wall_time_s"];
+#[rustfmt::skip]
+const OF_ONE_RUN: [&str; 8] = [
+    "id", "trace_id", "seal", "started_at", "finished_at", "first_at", "last_at", "wall_time_s",
+];
 
 /// The history of [`record_bad_unit`].
 static BAD_UNIT: OnceLock<Vec<u8>> = OnceLock::new();
@@ -161,6 +163,23 @@ impl Place {
         Said::from(output)
     }
 
+    /// Answer of `ptu` where a variable of the environment is set.
+    pub fn ptu_where(
+        &self,
+        (name, value): (&str, &(impl AsRef<OsStr> + ?Sized)),
+        arguments: &(impl Typed + ?Sized),
+    ) -> Said {
+        let output = self.command(arguments).env(name, value).output();
+        output.expect("ptu starts").into()
+    }
+
+    /// Steps of the latest run that are recorded so far; none while there is no run.
+    pub fn steps_so_far(&self) -> Vec<Value> {
+        let shown = self.ptu("runs show latest --json");
+        let run: Value = serde_json::from_str(&shown.out).unwrap_or_default();
+        run["steps"].as_array().cloned().unwrap_or_default()
+    }
+
     /// Answer of the place's shell to this line, in which `ptu` is the program.
     pub fn shell(&self, line: &str) -> Said {
         let ptu = self.command("");
@@ -199,13 +218,13 @@ impl Place {
 
     /// Records a short run and gives its id.
     pub fn recorded_run(&self) -> String {
-        self.ptu(&["run", "tcms/link"]).exits(0);
-        text(&self.json(&["runs", "show", "latest", "--json"])["run"]["id"]).to_owned()
+        self.ptu("run tcms/link").exits(0);
+        text(&self.json("runs show latest --json")["run"]["id"]).to_owned()
     }
 
     /// Ids of all recorded runs, newest first.
     pub fn run_ids(&self) -> Vec<String> {
-        let runs = self.json(&["runs", "list", "--json"]);
+        let runs = self.json("runs list --json");
         list(&runs)
             .iter()
             .map(|run| text(&run["id"]).to_owned())
@@ -243,23 +262,22 @@ impl Said {
     /// Holds the program to words on stdout.
     #[track_caller]
     pub fn prints(self, words: &[&str]) -> Self {
-        for word in words {
-            assert!(self.out.contains(word), "no \"{word}\"\n{}", self.all());
-        }
+        self.holds(&self.out, words);
         self
     }
 
     /// Holds the program to words on stderr: the thing that is wrong, and the next move.
     #[track_caller]
     pub fn explains(self, words: &[&str]) -> Self {
-        for word in words {
-            assert!(
-                self.err.contains(word),
-                "\"{word}\" is not said\n{}",
-                self.all()
-            );
-        }
+        self.holds(&self.err, words);
         self
+    }
+
+    #[track_caller]
+    fn holds(&self, text: &str, words: &[&str]) {
+        if let Some(word) = words.iter().find(|word| !text.contains(**word)) {
+            panic!("\"{word}\" is not said\n{}", self.all());
+        }
     }
 }
 
@@ -304,7 +322,7 @@ pub fn record_bad_unit_anew(place: &Place) {
 
 /// The fault of the relay in this database.
 pub fn relay_fault(place: &Place) -> Value {
-    let faults = place.json(&["faults", "list", "--part", "eb_relay", "--json"]);
+    let faults = place.json("faults list --part eb_relay --json");
     assert_eq!(list(&faults).len(), 1, "{faults}");
     faults[0].clone()
 }
@@ -366,7 +384,7 @@ pub fn normalised(mut report: Value) -> Value {
     fn strip(value: &mut Value) {
         match value {
             Value::Object(entries) => {
-                for key in IDENTITIES.iter().chain(&TIMES_OF_DAY).chain(&WALL_TIME) {
+                for key in &OF_ONE_RUN {
                     entries.remove(*key);
                 }
                 entries.values_mut().for_each(strip);

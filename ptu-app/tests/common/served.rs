@@ -177,9 +177,7 @@ impl<'a> Running<'a> {
         while began.elapsed() < PATIENCE {
             let ended = self.child.try_wait().expect("ptu's state");
             assert!(ended.is_none(), "ptu ended before {count} steps: {ended:?}");
-            let shown = self.place.ptu(&["runs", "show", "latest", "--json"]);
-            let run: Value = serde_json::from_str(&shown.out).unwrap_or_default();
-            let mut steps = run["steps"].as_array().cloned().unwrap_or_default();
+            let mut steps = self.place.steps_so_far();
             steps.retain(|step| step["verdict"] != "skipped");
             if steps.len() >= count {
                 return steps;

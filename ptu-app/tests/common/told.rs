@@ -16,7 +16,7 @@ pub struct Facts {
 /// Facts that a surface tells, by their names.
 pub type Told = Vec<(String, String)>;
 
-/// Holds what surfaces tell to the facts of a run. What the run itself does not know is as the first surface has it.
+/// Compares what surfaces tell with the facts of a run. A fact that the run itself does not know is taken from the first surface.
 #[derive(Default)]
 pub struct Monitor {
     held: usize,
@@ -357,7 +357,7 @@ pub fn sheet(texts: &[String], language: Language) -> Told {
             _ => {}
         }
     }
-    // Where nothing is outside steps there is no column for it.
+    // A run with nothing outside its steps has no column for it.
     let none = (counted.len() == 4).then(|| "0".to_owned());
     counted.extend(none);
     told.extend(numbers("passed|failed|error|not run|outside", counted));

@@ -355,7 +355,7 @@ fn refused_by_name<T>(file: &Path, read: Result<T, Failure>) -> Option<T> {
 fn parquet_file() -> Vec<u8> {
     let place = Place::new();
     place
-        .ptu(&["run", "atp/overspeed", "--inject", "eb_relay.slow"])
+        .ptu("run atp/overspeed --inject eb_relay.slow")
         .exits(1);
     let export = ["trace", "export", "latest", "--out", "t.parquet"];
     let part = ["--signal", "speed,eb,mode", "--window", "-0.2..0.2"];
@@ -521,15 +521,9 @@ fn words_of_the_command_line() {
 fn databases() {
     let place = Place::new();
     place
-        .ptu(&[
-            "run",
-            "tcms/link",
-            "atp/overspeed",
-            "--inject",
-            "eb_relay.slow",
-        ])
+        .ptu("run tcms/link atp/overspeed --inject eb_relay.slow")
         .exits(1);
-    place.ptu(&["db", "prune", "--older-than", "99999d"]);
+    place.ptu("db prune --older-than 99999d");
     let whole = std::fs::read(place.path("history.db")).expect("recorded");
     let folder = memory();
     let file = folder.path().join("a.db");

@@ -11,16 +11,9 @@ use crate::{fuzz, fuzz_text, memory, refused_by_name, shipped};
 #[test]
 fn waveforms_channels_and_calibrations() {
     let place = Place::new();
-    let make = [
-        "signal",
-        "make",
-        "code",
-        "55",
-        "code.wav",
-        "--seconds",
-        "0.2",
-    ];
-    place.ptu(&make).exits(0);
+    place
+        .ptu("signal make code 55 code.wav --seconds 0.2")
+        .exits(0);
     let unit =
         UnitConfig::from_toml(&shipped("units", "toml")["units/sg100.toml"]).expect("shipped");
     let folder = memory();

@@ -14,20 +14,11 @@ fn signed() -> Place {
     let pin = ["--pin-file", "pin.txt"];
     let new = ["key", "new", "--who", "Kim", "--out", "kim.key"];
     place.ptu(&[&new[..], &pin].concat()).exits(0);
+    place.ptu("key trust kim.pub --keys depot.keys").exits(0);
+    let run = "run tcms/link --report sheet.html --key kim.key --pin-file pin.txt";
+    place.ptu(run).exits(0);
     place
-        .ptu(&["key", "trust", "kim.pub", "--keys", "depot.keys"])
-        .exits(0);
-    let run = [
-        "run",
-        "tcms/link",
-        "--report",
-        "sheet.html",
-        "--key",
-        "kim.key",
-    ];
-    place.ptu(&[&run[..], &pin].concat()).exits(0);
-    place
-        .ptu(&["runs", "certificate", "latest", "--out", "run.ptucert"])
+        .ptu("runs certificate latest --out run.ptucert")
         .exits(0);
     place
 }

@@ -105,7 +105,7 @@ impl App {
     pub fn show(&mut self, ui: &mut Ui) {
         self.follow_operator();
         let words = self.settings.language.words();
-        self.units.lock(self.settings.locked);
+        self.units.lock(self.settings.is_locked());
         self.units.poll(words, &mut self.messages);
         self.tell_if_gone(words);
         self.apply_settings(ui.ctx());
@@ -122,11 +122,12 @@ impl App {
         self.frame.keys(ui, &mut page_context);
         self.pages.poll(&mut page_context);
         self.frame.around(ui, &mut page_context);
-        if page_context.units.chosen().waiting_run().is_some() && !page_context.settings.locked {
+        if page_context.units.chosen().waiting_run().is_some() && !page_context.settings.is_locked()
+        {
             let goes_on = self.pages.procedures.goes_on(&page_context);
             Panel::top("lost").show(ui, |ui| self.frame.lost(ui, goes_on, &mut page_context));
         }
-        if page_context.settings.locked {
+        if page_context.settings.is_locked() {
             Panel::top("locked").show(ui, |ui| self.frame.locked(ui, &mut page_context));
         }
         let page = page_context.settings.page;
@@ -141,7 +142,7 @@ impl App {
             _ => CentralPanel::default(),
         };
         panel.show(ui, |ui| {
-            if page_context.settings.locked {
+            if page_context.settings.is_locked() {
                 only_look(ui);
             }
             self.pages.show(page, ui, &mut page_context);
@@ -156,9 +157,7 @@ impl App {
             self.noted_not_safe |= self.frame.closing(ui, words, not_safe);
         }
         for to in std::mem::take(page_context.go_to) {
-            if to == Destination::Setup {
-                self.frame.setup.open();
-            }
+            self.frame.go_to(&to);
             page_context.settings.page = self.pages.go_to(to, &mut page_context);
             ui.ctx().request_repaint();
         }
@@ -185,10 +184,8 @@ impl App {
     /// Notes when the name was written; one of another shift is asked for again, unless a run goes on under it.
     fn follow_operator(&mut self) {
         let now_us = clock::now_us();
-        if self.settings.operator != self.operator || self.settings.operator_at_us == 0 {
-            self.operator.clone_from(&self.settings.operator);
-            self.settings.operator_at_us = now_us;
-        }
+        self.settings.note_operator(&self.operator, now_us);
+        self.operator.clone_from(&self.settings.operator);
         let running = |unit: &Unit| unit.run.as_ref().is_some_and(|run| run.is_running());
         if !self.units.iter().any(running) {
             self.settings.forget_operator(now_us);
@@ -204,7 +201,7 @@ impl App {
         if context.options(|options| options.theme_preference) != theme {
             context.set_theme(theme);
         }
-        context.set_zoom_factor(self.settings.zoom);
+        context.set_zoom_factor(self.settings.zoom.into());
         self.settings.density.keep(context);
     }
 

@@ -34,7 +34,7 @@ pub fn open(options: Options) -> Result<(), Failure> {
             .with_inner_size(size)
             .with_min_inner_size(SMALLEST),
         renderer: eframe::Renderer::Glow,
-        // There are no gradients, and where the processor draws, it is paid for at each pixel.
+        // Dithering costs time at each pixel where the processor draws, and there are no gradients.
         dithering: false,
         ..Default::default()
     };

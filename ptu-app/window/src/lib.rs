@@ -29,7 +29,7 @@ pub use density::Density;
 pub(crate) use density::Sizes;
 pub use display::open;
 pub(crate) use messages::Messages;
-pub(crate) use page_context::{Destination, PageContext};
+pub(crate) use page_context::{Destination, PageContext, Wanted};
 pub use parts::SavedQuestion;
 use ptu_options::Page;
 pub use settings::Settings;

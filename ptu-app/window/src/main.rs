@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory as _, FromArgMatches as _, Parser};
 use fault_db::Store;
-use ptu_options::{WindowOptions, presets, refuse_password};
+use ptu_options::{WindowOptions, presets, refuse_password, settings_file};
 use ptu_report::words::tell;
 use ptu_runs::failure::{Asked, Exit, Failure, Trouble};
 use ptu_runs::platform::{leave_own_console, ready_output, running_program, survive_file_limit};
@@ -59,7 +59,7 @@ fn options(asked: WindowOptions) -> Result<Options, Failure> {
             Failure::bench(Trouble::All(vec![why.message, Asked::Creates.into()]))
         })?;
     }
-    let settings_file = Settings::usual_file();
+    let settings_file = settings_file("window.json").ok();
     let mut settings = settings_file
         .as_deref()
         .map(Settings::load)

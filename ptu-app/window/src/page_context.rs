@@ -70,31 +70,44 @@ pub enum Destination {
     Life(String),
     /// The faults that a bar of the statistics stands for.
     Faults(FaultsOf),
-    /// Finds the part of the chosen unit that is faulty, which was brought with this symptom; stays with the case.
-    FindPart(Option<Symptom>),
-    /// Runs all that shows whether it is sound; stays with the case.
-    RunAll(Option<Symptom>),
-    /// Runs these procedures, and those that this part can fail, on the chosen unit; stays with the case.
-    Prove {
-        procedures: BTreeSet<String>,
-        part: String,
-    },
+    /// A run on the chosen unit.
+    Run(Wanted),
     /// The set-up dialog of the chosen unit; the page stays.
     Setup,
-    /// The rest of the chosen unit's run after its link was lost; the page stays.
-    GoOn,
+    /// The dialog of the history's care; the page stays.
+    History,
+    /// The dialog that says what this program is; the page stays.
+    About,
     /// The procedures, with one step chosen and nothing run.
     ChooseStep {
         /// Procedure, as `atp/overspeed`.
         procedure: String,
         step: String,
     },
-    /// The procedures, running one step at once.
-    RunStep {
+}
+
+/// Run that a page asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// One step at once; shows the procedures.
+    Step {
         /// Procedure, as `atp/overspeed`.
         procedure: String,
         step: String,
         /// Serial number of the unit the step is meant for.
         unit: String,
+    },
+    /// Procedures for a faulty part: as few steps as it takes to find the part, or else all; stays with the case.
+    Part {
+        /// Symptom with which the unit was brought.
+        symptom: Option<Symptom>,
+        adaptive: bool,
+    },
+    /// Rest of a run that broke off with the link, once its unit is connected again; the page stays.
+    Rest,
+    /// These procedures, and procedures that suspect the part; stays with the case.
+    Prove {
+        procedures: BTreeSet<String>,
+        part: String,
     },
 }

@@ -89,79 +89,24 @@ impl<T> Request<T> {
     }
 }
 
-/// A response that is requested again and again. The previous response stays until the newer one has
-/// arrived, so that the page's layout does not jump.
-pub struct CachedResponse<T> {
-    shown: Request<T>,
-    newer: Request<T>,
-}
-
-impl<T> Default for CachedResponse<T> {
-    fn default() -> Self {
-        Self {
-            shown: Request::Idle,
-            newer: Request::Idle,
-        }
-    }
-}
-
-impl<T> CachedResponse<T> {
-    /// Requests the same data again and keeps the previous response meanwhile.
-    pub fn request(&mut self, pending: Pending<T>) {
-        match self.shown {
-            Request::Ready(_) => self.newer = Request::Pending(pending),
-            _ => self.shown = Request::Pending(pending),
-        }
-    }
-
-    /// Requests other data: the previous response does not apply to it and is dropped.
-    pub fn request_other(&mut self, pending: Pending<T>) {
-        self.newer = Request::Idle;
-        self.shown = Request::Pending(pending);
-    }
-
-    /// Takes the response if it has arrived; true when it has arrived with this call.
-    pub fn poll(&mut self) -> bool {
-        let newer = self.newer.poll();
-        if newer {
-            self.shown = std::mem::take(&mut self.newer);
-        }
-        newer || self.shown.poll()
-    }
-
-    /// The latest response or the state of its request.
-    pub fn get(&self) -> &Request<T> {
-        &self.shown
-    }
-
-    /// Whether a newer response is still to come.
-    pub fn is_stale(&self) -> bool {
-        !self.newer.is_idle()
-    }
-}
-
-impl<T> CachedResponse<Vec<T>> {
-    /// Entries of the latest response; empty before there is one.
-    pub fn items(&self) -> &[T] {
-        self.shown.value().map(Vec::as_slice).unwrap_or_default()
-    }
-}
-
 /// Which database is open, and how often it was changed.
 type DataVersion = (usize, u64);
 
-/// A response that is requested again when the data have changed, or something else is to be read.
+/// A response that is requested again when the data have changed, or something else is to be read. The previous response
+/// stays until the newer one has arrived, so that the page's layout does not jump.
 pub struct FollowingResponse<K, T> {
     /// What was asked for, and the version of the data then; without a version it is to be requested again.
     asked: Option<(K, Option<DataVersion>)>,
-    response: CachedResponse<T>,
+    shown: Request<T>,
+    newer: Request<T>,
 }
 
 impl<K, T> Default for FollowingResponse<K, T> {
     fn default() -> Self {
         Self {
             asked: None,
-            response: CachedResponse::default(),
+            shown: Request::Idle,
+            newer: Request::Idle,
         }
     }
 }
@@ -177,12 +122,9 @@ impl<K: Clone + PartialEq + Send + 'static, T: Send + 'static> FollowingResponse
     ) -> bool {
         if let Some(is_other) = self.wants(&what, context.data_version()) {
             let pending = context.queries.run(move |paths| read(paths, what));
-            match is_other && !stays {
-                true => self.response.request_other(pending),
-                false => self.response.request(pending),
-            }
+            self.request(pending, stays || !is_other);
         }
-        self.response.poll()
+        self.poll()
     }
 
     /// Whether `what` is to be requested, and if so, whether something else was asked for before.
@@ -194,6 +136,24 @@ impl<K: Clone + PartialEq + Send + 'static, T: Send + 'static> FollowingResponse
             _ => Some(false),
         }
     }
+}
+
+impl<K, T> FollowingResponse<K, T> {
+    /// Waits for a response, and shows the previous response meanwhile if that `stays`.
+    fn request(&mut self, pending: Pending<T>, stays: bool) {
+        match self.shown {
+            Request::Ready(_) if stays => self.newer = Request::Pending(pending),
+            _ => (self.shown, self.newer) = (Request::Pending(pending), Request::Idle),
+        }
+    }
+
+    fn poll(&mut self) -> bool {
+        let newer = self.newer.poll();
+        if newer {
+            self.shown = std::mem::take(&mut self.newer);
+        }
+        newer || self.shown.poll()
+    }
 
     /// Has it read again, whether the data have changed or not.
     pub fn read_again(&mut self) {
@@ -201,13 +161,22 @@ impl<K: Clone + PartialEq + Send + 'static, T: Send + 'static> FollowingResponse
             *version = None;
         }
     }
+
+    /// The latest response or the state of its request.
+    pub fn get(&self) -> &Request<T> {
+        &self.shown
+    }
+
+    /// Whether a newer response is still to come.
+    pub fn is_stale(&self) -> bool {
+        !self.newer.is_idle()
+    }
 }
 
-impl<K, T> std::ops::Deref for FollowingResponse<K, T> {
-    type Target = CachedResponse<T>;
-
-    fn deref(&self) -> &CachedResponse<T> {
-        &self.response
+impl<K, T> FollowingResponse<K, Vec<T>> {
+    /// Entries of the latest response; empty before there is one.
+    pub fn items(&self) -> &[T] {
+        self.shown.value().map(Vec::as_slice).unwrap_or_default()
     }
 }
 
@@ -225,21 +194,21 @@ mod tests {
 
     #[test]
     fn the_previous_response_stays_until_the_newer_one_arrives() {
-        let mut cached = CachedResponse::default();
+        let mut cached = FollowingResponse::<(), u32>::default();
         let (first, pending_response) = pending();
-        cached.request(pending_response);
+        cached.request(pending_response, true);
         assert!(cached.get().value().is_none() && !cached.is_stale());
         first.send(Ok(1)).expect("heard");
         cached.poll();
         let (second, pending_response) = pending();
-        cached.request(pending_response);
+        cached.request(pending_response, true);
         cached.poll();
         assert!(cached.get().value() == Some(&1) && cached.is_stale());
         second.send(Ok(2)).expect("heard");
         cached.poll();
         assert!(cached.get().value() == Some(&2) && !cached.is_stale());
         let (third, pending_response) = pending();
-        cached.request(pending_response);
+        cached.request(pending_response, true);
         third
             .send(Err(Failure::bench(ptu_runs::words::RunTrouble::NoUnit)))
             .expect("heard");
@@ -249,15 +218,15 @@ mod tests {
 
     #[test]
     fn a_response_to_other_data_is_never_shown() {
-        let mut cached = CachedResponse::default();
+        let mut cached = FollowingResponse::<(), u32>::default();
         let (first, pending_response) = pending();
-        cached.request(pending_response);
+        cached.request(pending_response, true);
         first.send(Ok(1)).expect("heard");
         cached.poll();
         let (same, pending_response) = pending();
-        cached.request(pending_response);
+        cached.request(pending_response, true);
         let (_other, pending_response) = pending();
-        cached.request_other(pending_response);
+        cached.request(pending_response, false);
         assert!(
             same.send(Ok(2)).is_err(),
             "the response is no longer expected"

@@ -1,6 +1,6 @@
 //! The settings saved between starts of the window.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use fault_db::read_regular_file;
 use serde::{Deserialize, Serialize};
@@ -11,11 +11,6 @@ use ptu_runs::clock;
 use ptu_runs::failure::Failure;
 use ptu_runs::run::BenchChoice;
 use ptu_runs::whole_file::LONGEST_FILE;
-
-/// Everything is at least and at most so large.
-pub const SMALLEST_ZOOM: f32 = 0.7;
-/// See [`SMALLEST_ZOOM`].
-pub const LARGEST_ZOOM: f32 = 2.5;
 
 /// A name is asked for again after so long: another shift has begun.
 const SHIFT_US: i64 = 10 * 3_600_000_000;
@@ -29,18 +24,15 @@ pub struct Settings {
     pub dark: Option<bool>,
     /// The reader that the window is laid out for.
     pub density: Density,
-    /// Size of everything, 1 = as the desktop has it.
-    pub zoom: f32,
+    pub zoom: Zoom,
     /// Size of the window, points.
     pub window_size: Option<[f32; 2]>,
     /// Page shown last.
     pub page: Page,
     /// Name of the tester.
     pub operator: String,
-    /// When the name was written, µs since 1970; 0 = not known.
-    pub operator_at_us: i64,
-    /// Nothing is begun, armed or written until somebody gives a name.
-    pub locked: bool,
+    #[serde(flatten)]
+    pub shift: Shift,
     /// Where units are brought to; it stands on the sheet of a case.
     pub depot: String,
     /// The server synced with last.
@@ -62,15 +54,49 @@ pub struct Settings {
     pub faults: Vec<SavedQuestion<FaultsQuestion>>,
 }
 
+/// Size of everything, 1 = as the desktop has it; what is too small or too large to work with is none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "f32", into = "f32")]
+pub struct Zoom(f32);
+
+impl From<f32> for Zoom {
+    fn from(zoom: f32) -> Self {
+        Self(zoom.clamp(0.7, 2.5))
+    }
+}
+
+impl From<Zoom> for f32 {
+    fn from(Zoom(zoom): Zoom) -> Self {
+        zoom
+    }
+}
+
+/// The presence of the tester who gave a name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Shift {
+    /// When the name was written, µs since 1970; 0 = not known.
+    operator_at_us: i64,
+    /// Nothing is begun, armed or written until somebody gives a name.
+    locked: bool,
+}
+
 /// Choices of the page Statistics.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct StatisticsQuestion {
     /// Days to look back; none = all there is.
     pub days: Option<i64>,
-    /// Measurement of the control chart.
+    #[serde(flatten)]
+    pub measured: Measured,
+}
+
+/// The measurement of the control chart, of one step or of all.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Measured {
     pub measurement: Option<String>,
-    /// Procedure and step that measure it.
+    /// Procedure and step.
     pub step: Option<(String, String)>,
 }
 
@@ -96,12 +122,11 @@ impl Default for Settings {
             language: Language::shown(),
             dark: None,
             density: Density::default(),
-            zoom: 1.0,
+            zoom: Zoom(1.0),
             window_size: None,
             page: Page::default(),
             operator: String::new(),
-            operator_at_us: 0,
-            locked: false,
+            shift: Shift::default(),
             depot: String::new(),
             server: String::new(),
             distances: String::new(),
@@ -119,12 +144,6 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Where they are kept for this user.
-    pub fn usual_file() -> Option<PathBuf> {
-        let directories = directories::ProjectDirs::from("", "", "ptu")?;
-        Some(directories.config_dir().join("window.json"))
-    }
-
     /// Settings in `file`; defaults if there is none or it cannot be read, which is no reason not to
     /// open.
     pub fn load(file: &Path) -> Self {
@@ -140,23 +159,38 @@ impl Settings {
             },
             false => serde_json::from_slice(text).unwrap_or_default(),
         };
-        settings.zoom = settings.zoom.clamp(SMALLEST_ZOOM, LARGEST_ZOOM);
         settings.forget_operator(clock::now_us());
         settings
     }
 
     /// Takes the name away when it was written in another shift, so that a person cannot sign for another by mistake.
     pub fn forget_operator(&mut self, now_us: i64) {
-        let since_us = now_us.saturating_sub(self.operator_at_us);
+        let since_us = now_us.saturating_sub(self.shift.operator_at_us);
         if !(0..SHIFT_US).contains(&since_us) {
             self.operator.clear();
+        }
+    }
+
+    /// Notes when the name was written, if it is another than before.
+    pub fn note_operator(&mut self, before: &str, now_us: i64) {
+        if self.operator != before || self.shift.operator_at_us == 0 {
+            self.shift.operator_at_us = now_us;
         }
     }
 
     /// Locks the window after its user has gone: the next user gives a name.
     pub fn lock(&mut self) {
         self.operator.clear();
-        self.locked = true;
+        self.shift.locked = true;
+    }
+
+    /// Unlocks the window, once there is a name.
+    pub fn unlock(&mut self) {
+        self.shift.locked = self.operator.trim().is_empty();
+    }
+
+    pub fn is_locked(&self) -> bool {
+        self.shift.locked
     }
 
     /// Keeps them in `file`, at once or not at all.
@@ -181,18 +215,22 @@ mod tests {
             Density::Operator,
             "first start"
         );
+        let at = |operator_at_us| Shift {
+            operator_at_us,
+            locked: false,
+        };
         let kept = Settings {
             language: Language::Korean,
-            zoom: 1.25,
+            zoom: 1.25.into(),
             operator: "김".into(),
             depot: "군자차량기지".into(),
-            operator_at_us: clock::now_us(),
+            shift: at(clock::now_us()),
             ..Settings::default()
         };
         kept.save(&file).expect("saved");
         assert_eq!(Settings::load(&file), kept);
         let yesterday = Settings {
-            operator_at_us: clock::now_us() - 2 * SHIFT_US,
+            shift: at(clock::now_us() - 2 * SHIFT_US),
             ..kept
         };
         yesterday.save(&file).expect("saved");
@@ -206,7 +244,7 @@ mod tests {
         let kept = serde_json::to_vec_pretty(&Settings::default()).expect("JSON");
         fuzzing::Fuzz::new("window-settings", env!("CARGO_MANIFEST_DIR"), [kept])
             .run(20_000, |bytes| {
-                assert!(Settings::of(bytes).zoom.is_finite())
+                assert!(Settings::of(bytes).zoom.0.is_finite())
             });
     }
 }

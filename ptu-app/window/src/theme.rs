@@ -123,7 +123,7 @@ pub fn set(context: &Context) {
     context.all_styles_mut(|style| {
         style.spacing.item_spacing = [8.0, 5.0].into();
         style.spacing.button_padding = [8.0, 3.5].into();
-        // What cannot be seen moving need not be painted again and again.
+        // An animation would repaint the window again and again for something that nobody sees move.
         style.animation_time = 0.0;
     });
 }

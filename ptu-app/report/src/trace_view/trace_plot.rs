@@ -61,6 +61,7 @@ pub struct TracePlot {
     /// Lanes from top to bottom.
     pub lanes: Vec<Lane>,
     cursors: [Option<usize>; 2],
+    /// The scale of a quantity spans the values in view; else all values of the trace.
     pub close: bool,
     pub behind: Option<OverlayTrace>,
     /// Views before each zoom, the latest last.

@@ -55,7 +55,7 @@ pub(super) fn import(database: &Database, from: &Path, json: Json) -> Result<Exi
     let store = database.open_or_make()?;
     let counts = store.import(from);
     let counts = counts.map_err(|error| of_named_file(from, error))?;
-    // What was known before needs no telling again; what came just now may be a rival of it.
+    // Only an import that brought something can have brought a conflict; older ones were told before.
     let conflicts = match counts.events {
         0 => Vec::new(),
         _ => store.conflicts()?,

@@ -72,7 +72,8 @@ impl QueryArguments {
         let columns = columns(&answer);
         let columns: Vec<_> = columns.iter().map(String::as_str).collect();
         self.output
-            .print(&columns, &rows(&answer, &columns), || table(&answer))
+            .form
+            .print_columns(&columns, &rows(&answer, &columns), || table(&answer))
     }
 }
 

@@ -1,4 +1,4 @@
-//! One function for each subject.
+//! The checks of `ptu doctor`, a function for each subject.
 
 use std::path::Path;
 
@@ -36,11 +36,8 @@ pub(super) fn scripts(found: Result<ScriptsDirectory, Failure>, words: &Words) -
     let directory = match found {
         Ok(directory) => directory,
         Err(failure) => {
-            return vec![Finding::wrong(
-                subject,
-                words.told(&failure.message),
-                doctor.other_scripts,
-            )];
+            let found = words.told(&failure.message);
+            return vec![Finding::wrong(subject, found, doctor.other_scripts)];
         }
     };
     let places: Vec<_> = directory.places().iter().map(ToString::to_string).collect();
@@ -49,28 +46,23 @@ pub(super) fn scripts(found: Result<ScriptsDirectory, Failure>, words: &Words) -
         .and_then(|setup| Suite::load(&directory, &[], &setup))
         .and_then(|suite| directory.check_data().map(|data| (suite, data)));
     let first = match loaded {
-        Ok((suite, data)) if suite.errors.is_empty() => Finding::ok(
-            subject,
-            fill(
-                doctor.loaded,
-                &[
-                    ("n", &suite.procedures.len()),
-                    ("data", &data),
-                    ("places", &places.join(doctor.over)),
-                ],
-            ),
-        ),
+        Ok((suite, data)) if suite.errors.is_empty() => {
+            let (n, places) = (suite.procedures.len(), places.join(doctor.over));
+            let of = [
+                ("n", &n as _),
+                ("data", &data as _),
+                ("places", &places as _),
+            ];
+            Finding::ok(subject, fill(doctor.loaded, &of))
+        }
         Ok((suite, _)) => Finding::wrong(subject, suite.errors.join("; "), remedy),
         Err(failure) => Finding::wrong(subject, words.told(&failure.message), remedy),
     };
     let mut findings = vec![first];
     let replacing = directory.replacing().unwrap_or_default();
     if !replacing.is_empty() {
-        findings.push(Finding::warning(
-            subject,
-            fill(doctor.replacing, &[("names", &replacing.join(", "))]),
-            doctor.compare_them,
-        ));
+        let found = fill(doctor.replacing, &[("names", &replacing.join(", "))]);
+        findings.push(Finding::warning(subject, found, doctor.compare_them));
     }
     findings
 }
@@ -82,11 +74,8 @@ pub(super) fn ports(words: &Words) -> Vec<Finding> {
     let found = match ports::found() {
         Ok(found) => found,
         Err(failure) => {
-            return vec![Finding::warning(
-                subject,
-                words.told(&failure.message),
-                doctor.name_port,
-            )];
+            let found = words.told(&failure.message);
+            return vec![Finding::warning(subject, found, doctor.name_port)];
         }
     };
     if found.is_empty() {
@@ -100,11 +89,8 @@ pub(super) fn ports(words: &Words) -> Vec<Finding> {
         });
     }
     if found.iter().any(|port| port.kind == "usb") && ports::is_probed_by_others() {
-        findings.push(Finding::warning(
-            subject,
-            doctor.probed,
-            doctor.stop_probing,
-        ));
+        let remedy = doctor.stop_probing;
+        findings.push(Finding::warning(subject, doctor.probed, remedy));
     }
     findings
 }
@@ -149,61 +135,40 @@ pub(super) fn database(file: &Path, words: &Words) -> Vec<Finding> {
             false => Finding::wrong(subject, of_file(doctor.not_made), doctor.other_database),
         }];
     }
-    let remedy = doctor.check_database;
+    let broken = |error| {
+        let found = words.told(&Failure::from(error).message);
+        Finding::wrong(subject, found, doctor.check_database)
+    };
     let store = match Store::open_read_only(file) {
         Ok(store) => store,
         Err(StoreError::OlderSchema { .. }) => {
             return vec![Finding::ok(subject, of_file(doctor.older))];
         }
-        Err(error) => {
-            return vec![Finding::wrong(
-                subject,
-                words.told(&Failure::from(error).message),
-                remedy,
-            )];
-        }
+        Err(error) => return vec![broken(error)],
     };
     let mut findings = Vec::new();
     if std::fs::OpenOptions::new().append(true).open(file).is_err() {
-        findings.push(Finding::wrong(
-            subject,
-            of_file(doctor.read_only),
-            doctor.other_database,
-        ));
+        let found = of_file(doctor.read_only);
+        findings.push(Finding::wrong(subject, found, doctor.other_database));
     }
     if let Some(told) = owner_only::told_if_shared(file) {
         let told = Words::shown().told(&told);
         findings.push(Finding::warning(subject, told, doctor.keep_to_yourself));
     }
     let newest = store.resolve_run("latest").and_then(|id| store.run(id));
-    match newest {
-        Ok(run) if run.run.started_at_us > now_us() + AHEAD_US => findings.push(Finding::warning(
-            doctor.clock,
-            fill(
-                doctor.later_run,
-                &[
-                    ("run", &day(run.run.started_at_us)),
-                    ("now", &day(now_us())),
-                ],
-            ),
-            doctor.set_clock,
-        )),
-        Ok(run) => findings.push(Finding::ok(
-            subject,
-            fill(
-                doctor.newest,
-                &[("file", &shown), ("run", &day(run.run.started_at_us))],
-            ),
-        )),
-        Err(StoreError::NotFound { .. }) => {
-            findings.push(Finding::ok(subject, of_file(doctor.no_run)));
+    findings.push(match newest.map(|run| run.run.started_at_us) {
+        Ok(at_us) if at_us > now_us() + AHEAD_US => {
+            let of = [("run", &day(at_us) as _), ("now", &day(now_us()) as _)];
+            let found = fill(doctor.later_run, &of);
+            Finding::warning(doctor.clock, found, doctor.set_clock)
         }
-        Err(error) => findings.push(Finding::wrong(
-            subject,
-            words.told(&Failure::from(error).message),
-            remedy,
-        )),
-    }
+        Ok(at_us) => {
+            let of = [("file", &shown as _), ("run", &day(at_us) as _)];
+            Finding::ok(subject, fill(doctor.newest, &of))
+        }
+        Err(StoreError::NotFound { .. }) => Finding::ok(subject, of_file(doctor.no_run)),
+        Err(error) => broken(error),
+    });
     findings
 }
 
@@ -215,26 +180,24 @@ pub(super) fn disk(file: &Path, words: &Words) -> Finding {
         return Finding::ok(subject, doctor.not_known);
     };
     let remedy = doctor.free_space;
+    let shown = folder.display();
     match fs4::available_space(folder) {
         Ok(free) => {
-            let found = fill(
-                doctor.room,
-                &[("n", &(free >> 20)), ("folder", &folder.display())],
-            );
+            let found = fill(doctor.room, &[("n", &(free >> 20)), ("folder", &shown)]);
             match free {
                 ..NO_ROOM => Finding::wrong(subject, found, remedy),
                 NO_ROOM..LITTLE_ROOM => Finding::warning(subject, found, remedy),
                 _ => Finding::ok(subject, found),
             }
         }
-        Err(error) => Finding::warning(
-            subject,
-            fill(
-                doctor.room_unknown,
-                &[("folder", &folder.display()), ("why", &error)],
-            ),
-            doctor.look_for_disk,
-        ),
+        Err(error) => {
+            let of = [("folder", &shown as _), ("why", &error as _)];
+            Finding::warning(
+                subject,
+                fill(doctor.room_unknown, &of),
+                doctor.look_for_disk,
+            )
+        }
     }
 }
 
@@ -242,17 +205,13 @@ pub(super) fn disk(file: &Path, words: &Words) -> Finding {
 pub(super) fn clock(words: &Words) -> Finding {
     let doctor = &words.doctor;
     let subject = doctor.clock;
-    let today = day(now_us());
+    let today = |wording| fill(wording, &[("now", &day(now_us()))]);
     match ClockState::now() {
-        ClockState::Synchronised => {
-            Finding::ok(subject, fill(doctor.set_by_network, &[("now", &today)]))
+        ClockState::Synchronised => Finding::ok(subject, today(doctor.set_by_network)),
+        ClockState::NotSynchronised => {
+            Finding::warning(subject, today(doctor.not_set), doctor.connect_once)
         }
-        ClockState::NotSynchronised => Finding::warning(
-            subject,
-            fill(doctor.not_set, &[("now", &today)]),
-            doctor.connect_once,
-        ),
-        ClockState::Unknown => Finding::ok(subject, fill(doctor.clock_unknown, &[("now", &today)])),
+        ClockState::Unknown => Finding::ok(subject, today(doctor.clock_unknown)),
     }
 }
 
@@ -265,11 +224,10 @@ pub(super) fn server(server: Option<&Address>, words: &Words) -> Finding {
     };
     match Store::connect_read_only(server) {
         Ok(_) => Finding::ok(subject, fill(doctor.answers, &[("server", server)])),
-        Err(error) => Finding::warning(
-            subject,
-            words.told(&Failure::from(error).message),
-            doctor.recorded_here,
-        ),
+        Err(error) => {
+            let found = words.told(&Failure::from(error).message);
+            Finding::warning(subject, found, doctor.recorded_here)
+        }
     }
 }
 
@@ -311,11 +269,8 @@ pub(super) fn bench(
             findings.push(Finding::wrong(doctor.bench, found, doctor.state_more));
             continue;
         }
-        let before = known
-            .iter()
-            .find(|one| one.serial_no == entry.serial)
-            .cloned();
-        let mut registered = before.unwrap_or_else(|| Instrument {
+        let before = known.iter().find(|one| one.serial_no == entry.serial);
+        let mut registered = before.cloned().unwrap_or_else(|| Instrument {
             kind: entry.model.clone().unwrap_or_else(|| MODULE.into()),
             serial_no: entry.serial.clone(),
             ..Instrument::default()
@@ -360,26 +315,15 @@ mod tests {
 
     #[test]
     fn a_closed_port_is_a_warning_that_says_how_to_open_it() {
+        let of_rule = "sudo usermod -aG dialout $USER, and log out and in again";
+        let of_group = "sudo usermod -aG uucp $USER, then log out and in again";
         for (group, remedy) in [
-            (
-                Some("uucp"),
-                "sudo usermod -aG uucp $USER, then log out and in again",
-            ),
-            (
-                Some("root"),
-                "sudo usermod -aG dialout $USER, and log out and in again",
-            ),
-            (
-                None,
-                "sudo usermod -aG dialout $USER, and log out and in again",
-            ),
+            (Some("uucp"), of_group),
+            (Some("root"), of_rule),
+            (None, of_rule),
         ] {
-            let finding = closed_port(
-                "/dev/ttyUSB0",
-                "usb",
-                group,
-                &Language::English.words().doctor,
-            );
+            let words = Language::English.words();
+            let finding = closed_port("/dev/ttyUSB0", "usb", group, &words.doctor);
             assert_eq!(finding.state, State::Warning);
             let said = finding.remedy.unwrap_or_default();
             assert!(said.ends_with(remedy), "{group:?}: {said}");

@@ -45,7 +45,7 @@ pub struct FilterArguments {
     #[arg(long, value_name = "RUN")]
     run: Option<String>,
     /// Only seen then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
-    // A hyphen before it is a slip that the span itself answers.
+    // A span that begins with a hyphen is a slip, which the parser of spans explains.
     #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
     pub when: Option<Span>,
     /// Only with these words in a note on it, on its repair, or on a run that saw it

@@ -54,7 +54,7 @@ impl ListArguments {
             stdio::note(&fill(said, &[("n", &self.limit)]));
         }
         let rows: Vec<_> = faults.iter().map(fault_json).collect();
-        self.output.print(&FAULT_KEYS, &rows, || {
+        self.output.form.print_columns(&FAULT_KEYS, &rows, || {
             let table = table(&faults);
             match more {
                 true => format!("{table}\n{}", Words::shown().terminal.and_more),

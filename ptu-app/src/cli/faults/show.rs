@@ -141,17 +141,13 @@ fn detail(detail: &FaultDetail, parts: &PartNames) -> String {
 
 /// Number and times of the occurrences.
 fn times(fault: &FaultSummary, words: &Words) -> String {
-    let last = local(fault.last_at_us);
+    let [first, last] = [fault.first_at_us, fault.last_at_us].map(local);
     match fault.occurrences {
         1 => fill(words.faults.once, &[("last", &last)]),
-        n => fill(
-            words.faults.n_times,
-            &[
-                ("n", &n),
-                ("first", &local(fault.first_at_us)),
-                ("last", &last),
-            ],
-        ),
+        n => {
+            let of = [("n", &n as _), ("first", &first as _), ("last", &last as _)];
+            fill(words.faults.n_times, &of)
+        }
     }
 }
 

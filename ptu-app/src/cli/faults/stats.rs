@@ -10,46 +10,13 @@ use fault_db::{FaultStat, StatKey, StatQuery, Store};
 use serde_json::{Value, json};
 
 use super::filter::FilterArguments;
-use crate::cli::output::Output;
+use crate::cli::output::{Output, keys};
 use crate::cli::{at_least_one, print_out};
 use ptu_report::distances::Distances;
 use ptu_report::fault_months::{by_month, on_the_way};
 use ptu_runs::clock::{self, rfc3339};
 use ptu_runs::failure::{Asked, Exit, Failure};
 use rate_ratio::RateRatio;
-
-/// Keys of a row, in their order.
-const KEYS: [&str; 21] = [
-    "key",
-    "name",
-    "faults",
-    "not_closed",
-    "occurrences",
-    "share",
-    "units",
-    "last_at",
-    "mtbf_days",
-    "mttr_hours",
-    "repairs",
-    "repairs_judged",
-    "repairs_back",
-    "back_rate",
-    "closed",
-    "no_fault_found",
-    "no_fault_found_rate",
-    "course",
-    "rate_ratio",
-    "rate_ratio_low",
-    "rate_ratio_high",
-];
-
-/// Keys of a month with distances, after the others.
-const DISTANCE_KEYS: [&str; 4] = [
-    "distance_km",
-    "distance_trains",
-    "distance_faults",
-    "per_10000_km",
-];
 
 /// Count faults, the most frequent first: which make up most of them, how long units go without one, how
 /// long repairs take and whether they hold
@@ -165,9 +132,8 @@ impl StatsArguments {
             row
         };
         let rows: Vec<_> = stats.iter().map(row).collect();
-        let more = distances.iter().flat_map(|_| DISTANCE_KEYS);
-        let keys: Vec<_> = KEYS.into_iter().chain(more).collect();
-        self.output.print(&keys, &rows, || {
+        let of_none = row(&FaultStat::default());
+        self.output.form.print_columns(&keys(&of_none), &rows, || {
             let distances = distances.as_ref();
             self.table(&stats, (together.as_ref(), distances), all)
         })

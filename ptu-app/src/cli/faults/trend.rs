@@ -81,7 +81,7 @@ impl TrendArguments {
         if self.output.form.is_json() {
             return crate::cli::print_json(&json(&trend));
         }
-        self.output.print(keys(&trend), &rows(&trend), || {
+        self.output.form.print(&rows(&trend), || {
             trend_text::text(&trend, self.limit as usize)
         })
     }
@@ -178,23 +178,6 @@ fn page_file(text: &str) -> Result<PathBuf, String> {
     match ending.map(str::to_ascii_lowercase).as_deref() {
         Some("html" | "htm") => Ok(file),
         _ => Err("a trend is drawn on a page, in a file that ends in .html".to_owned()),
-    }
-}
-
-/// Keys of the values, or of the days, in their order.
-fn keys(trend: &Trend) -> &'static [&'static str] {
-    match trend.course {
-        TimeSeries::Points(_) => &[
-            "at",
-            "run_id",
-            "unit_serial",
-            "value",
-            "unit",
-            "low",
-            "high",
-            "verdict",
-        ],
-        TimeSeries::Days(..) => &["day", "n", "mean", "least", "most", "not_passed"],
     }
 }
 

@@ -117,24 +117,16 @@ fn months_table(days: &[TrendDay], limit: usize) -> String {
     let mut table = Table::headed(&headings).right(1..6);
     for days in last {
         let n: u32 = days.iter().map(|day| day.n).sum();
+        let least = days.iter().map(|day| day.least);
+        let most = days.iter().map(|day| day.most);
+        let not_passed: u32 = days.iter().map(|day| day.not_passed).sum();
         table.row([
             month(&days[0]),
             n.to_string(),
             short(mean(days)),
-            short(
-                days.iter()
-                    .map(|day| day.least)
-                    .fold(f64::INFINITY, f64::min),
-            ),
-            short(
-                days.iter()
-                    .map(|day| day.most)
-                    .fold(f64::NEG_INFINITY, f64::max),
-            ),
-            days.iter()
-                .map(|day| day.not_passed)
-                .sum::<u32>()
-                .to_string(),
+            short(least.fold(f64::INFINITY, f64::min)),
+            short(most.fold(f64::NEG_INFINITY, f64::max)),
+            not_passed.to_string(),
         ]);
     }
     let means: Vec<_> = days.iter().map(|day| Some(day.mean)).collect();
@@ -143,10 +135,8 @@ fn months_table(days: &[TrendDay], limit: usize) -> String {
 
 fn mean(days: &[TrendDay]) -> f64 {
     let n: f64 = days.iter().map(|day| f64::from(day.n)).sum();
-    days.iter()
-        .map(|day| f64::from(day.n) * day.mean)
-        .sum::<f64>()
-        / n
+    let sums = days.iter().map(|day| f64::from(day.n) * day.mean);
+    sums.sum::<f64>() / n
 }
 
 /// As many bars as fit into a row, each the mean of its share of the values.

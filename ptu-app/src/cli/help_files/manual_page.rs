@@ -5,7 +5,7 @@ use std::io::{Result, Write as _};
 use clap::Command;
 use clap_mangen::Man;
 
-/// What a verb ends with whose help says no more.
+/// Exit codes of a verb whose help has none of its own.
 const EXITS: &str = "0 done or passed, 1 a check failed, 2 wrong command or script, 3 bench, link or database, 130 stopped";
 /// An option, the variable that stands for it, and what the variable holds.
 const VARIABLES: [[&str; 3]; 11] = [

@@ -159,7 +159,7 @@ impl NewArguments {
         })
     }
 
-    /// What it can be used for at once.
+    /// Command that uses the new file at once.
     fn next(&self, name: &str) -> String {
         match self.what {
             What::Procedure => format!("ptu run {name}"),

@@ -34,14 +34,12 @@ pub(super) fn show(
     english.iter().for_each(note);
     let (each, some) = (terminal.each_korean, terminal.without_korean);
     let english = counted(each, some, english.len());
-    let checked = fill(
-        terminal.checked,
-        &[
-            ("procedures", &procedures.len()),
-            ("steps", &steps),
-            ("files", &data_files),
-        ],
-    );
+    let of = [
+        ("procedures", &procedures.len() as _),
+        ("steps", &steps as _),
+        ("files", &data_files as _),
+    ];
+    let checked = fill(terminal.checked, &of);
     let bench = fitted.map_or_else(String::new, |(bench, fitted)| {
         format!("\n{}", of_bench(bench, &fitted))
     });

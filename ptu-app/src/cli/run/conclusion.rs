@@ -34,18 +34,14 @@ impl RunArguments {
         let words = Words::shown();
         if self.adaptive {
             let answer = answer?;
-            answer
-                .warnings
-                .iter()
-                .for_each(|warning| stdio::note(&words.told(warning)));
+            let warnings = answer.warnings.iter();
+            warnings.for_each(|warning| stdio::note(&words.told(warning)));
             print_out(&format!("\n{}", diagnosis_text(&answer, false, words)))?;
         } else if let Ok(answer) = answer
             && answer.warnings.is_empty()
         {
-            let why = fill(
-                words.terminal.after_run,
-                &[("run", &answer.run.run.id.short())],
-            );
+            let run = answer.run.run.id.short();
+            let why = fill(words.terminal.after_run, &[("run", &run)]);
             print_out(&format!("\n{}{why}", words.concluded(&answer)))?;
         }
         Ok(())
@@ -60,18 +56,14 @@ pub(super) fn say_validity(run: &RunDetail) -> Result<(), Failure> {
     };
     let words = Words::shown();
     let (name, value) = departure.fact(words);
-    let between = if departure.why_not.is_empty() {
-        " "
-    } else {
-        ": "
+    let between = match departure.why_not.is_empty() {
+        true => " ",
+        false => ": ",
     };
     print_out(&format!("{name}{between}{value}"))?;
     if run.run.verdict == Some(Verdict::Failed) {
-        let parts: BTreeSet<_> = run
-            .faults
-            .iter()
-            .map(|fault| words.part(&fault.lru))
-            .collect();
+        let parts = run.faults.iter().map(|fault| words.part(&fault.lru));
+        let parts: BTreeSet<_> = parts.collect();
         let parts = parts.into_iter().collect::<Vec<_>>().join(", ");
         let said = fill(words.terminal.departure_goes_on, &[("parts", &parts)]);
         print_out(&said)?;
@@ -86,10 +78,8 @@ pub(super) fn say_proofs(proofs: &[RepairProof]) -> Result<(), Failure> {
         let said = proof_text(proofs, words);
         let proved = proofs.iter().find(|proof| proof.says.is_proven());
         let sheet = proved.map_or_else(String::new, |proof| {
-            fill(
-                words.terminal.case_sheet,
-                &[("fault", &proof.fault.short())],
-            ) + "\n"
+            let fault = proof.fault.short();
+            fill(words.terminal.case_sheet, &[("fault", &fault)]) + "\n"
         });
         print_out(&format!("{said}\n{sheet}"))?;
     }

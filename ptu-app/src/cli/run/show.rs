@@ -2,13 +2,17 @@
 
 use std::path::PathBuf;
 
+use btu_rig::procedure::Procedure;
 use clap::Args;
 use fault_db::RunDetail;
 
-use crate::console::Detail;
-use crate::event_stream::StreamTarget;
+use crate::console::{Console, Detail};
+use crate::event_stream::{EventStream, StreamTarget};
+use crate::run_recording::RunRecording;
 use crate::verdict_table::{failures, verdict_table};
 use ptu_report::words::Words;
+use ptu_runs::failure::Failure;
+use ptu_runs::run::{LinePrinter, Listener, Outcome, RunPlan, SessionEvent};
 
 /// How much is said, and in which form.
 #[derive(Debug, Args)]
@@ -31,20 +35,28 @@ pub struct ShowOptions {
 }
 
 impl ShowOptions {
-    /// Amount of detail.
-    pub fn detail(&self) -> Detail {
+    /// Begins to show a run of this plan.
+    ///
+    /// # Errors
+    /// A file cannot be written, or the system gives no thread.
+    pub fn begin(&self, plan: &RunPlan) -> Result<RunShow, Failure> {
+        let events = match self.json {
+            true => Some(StreamTarget::Stdout),
+            false => self.events.clone().map(StreamTarget::File),
+        };
+        let mcap = self.mcap.as_deref();
+        Ok(RunShow {
+            console: Console::new(plan, self.detail())?,
+            stream: events.map(EventStream::begin).transpose()?,
+            recording: mcap.map(RunRecording::begin).transpose()?,
+        })
+    }
+
+    fn detail(&self) -> Detail {
         match (self.quiet, self.verbose) {
             (true, _) => Detail::Quiet,
             (_, true) => Detail::Verbose,
             _ => Detail::Usual,
-        }
-    }
-
-    /// Where the events go, if they are asked for.
-    pub fn events(&self) -> Option<StreamTarget> {
-        match self.json {
-            true => Some(StreamTarget::Stdout),
-            false => self.events.clone().map(StreamTarget::File),
         }
     }
 
@@ -55,5 +67,42 @@ impl ShowOptions {
             true => failures(run, words),
             false => verdict_table(run, words),
         }
+    }
+}
+
+/// Everything the events of a run go to.
+pub struct RunShow {
+    console: Console,
+    stream: Option<EventStream>,
+    recording: Option<RunRecording>,
+}
+
+impl RunShow {
+    /// The run is over; whether the stream and the recording are whole.
+    pub fn finish(self, outcome: Option<&Outcome>) -> [Result<(), Failure>; 2] {
+        let recorded = self.recording.map(|recording| recording.finish(outcome));
+        let streamed = self.stream.map(|stream| stream.finish(outcome));
+        self.console.finish();
+        [streamed, recorded].map(|ended| ended.unwrap_or(Ok(())))
+    }
+}
+
+impl Listener for RunShow {
+    fn on_event(&mut self, procedure: &Procedure, event: &SessionEvent) {
+        if let Some(recording) = &mut self.recording {
+            recording.event(procedure, event);
+        }
+        if let Some(stream) = &mut self.stream {
+            stream.event(procedure, event);
+        }
+        self.console.on_event(procedure, event);
+    }
+
+    fn line(&self, procedure: &Procedure, event: &SessionEvent) -> Option<String> {
+        self.console.line(procedure, event)
+    }
+
+    fn line_printer(&self) -> Option<LinePrinter> {
+        self.console.line_printer()
     }
 }

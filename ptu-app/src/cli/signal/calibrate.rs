@@ -65,7 +65,7 @@ pub struct CalibrateArguments {
 impl CalibrateArguments {
     pub fn run(self) -> Result<Exit, Failure> {
         let unit = self.unit.find()?;
-        let file = sound_file::usual()?;
+        let file = sound_file()?;
         let mut known = Calibrations::load(&file)?;
         let device = self.device.device.as_str();
         let stop = Stop::default();

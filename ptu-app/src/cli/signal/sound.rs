@@ -231,7 +231,7 @@ fn gaps(count: u64) -> Option<String> {
 
 /// Prints the devices there are, and how each is calibrated.
 pub fn list_devices() -> Result<Exit, Failure> {
-    let known = Calibrations::load(&sound_file::usual()?)?;
+    let known = Calibrations::load(&sound_file()?)?;
     let devices = sound::devices()?;
     let words = &Words::shown().signals;
     if devices.is_empty() {
@@ -267,7 +267,7 @@ fn said(of: &Calibration) -> String {
 
 /// What a whole sample of each channel stands for; says which channel nobody has calibrated.
 pub fn full_scale(device: &str, direction: Direction) -> Result<[f64; CHANNELS], Failure> {
-    let known = Calibrations::load(&sound_file::usual()?)?;
+    let known = Calibrations::load(&sound_file()?)?;
     let without = Side::ALL
         .into_iter()
         .filter(|side| known.of(device, direction, *side).is_none());

@@ -45,22 +45,15 @@ pub fn explanation_text(explanation: &Explanation) -> String {
 
 /// `speed1 is 0 km/h, expected 12.3 km/h, 4.20 s before the trigger`
 fn told(deviation: &Deviation) -> String {
-    let Deviation {
-        signal,
-        channel,
-        first,
-        ..
-    } = deviation;
+    let (channel, first) = (&deviation.channel, &deviation.first);
     let words = Words::shown();
-    fill(
-        words.terminal.is_expected,
-        &[
-            ("signal", &words.signal(signal)),
-            ("value", &said(channel, first.value)),
-            ("expected", &said(channel, first.expected)),
-            ("when", &when(first.at_s, words)),
-        ],
-    )
+    let of = [
+        ("signal", &words.signal(&deviation.signal) as _),
+        ("value", &said(channel, first.value) as _),
+        ("expected", &said(channel, first.expected) as _),
+        ("when", &when(first.at_s, words) as _),
+    ];
+    fill(words.terminal.is_expected, &of)
 }
 
 fn when(at_s: f64, words: &Words) -> String {

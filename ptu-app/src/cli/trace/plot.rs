@@ -6,6 +6,7 @@ use fault_db::{Id, TraceData};
 use unicode_width::UnicodeWidthStr as _;
 
 use super::signal_text::named;
+use crate::sparkline::BARS;
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock::local;
 use ptu_runs::table::{cell, padded};
@@ -16,8 +17,6 @@ const PLOT_WIDTH: usize = 60;
 const LANES: usize = 12;
 /// Widest name of a signal, in columns.
 const WIDEST_NAME: usize = 60;
-/// Heights of a plotted line.
-const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 /// One line a channel: range and a plot that shows each part's extreme.
 pub fn plot(id: Id, trace: &TraceData) -> String {

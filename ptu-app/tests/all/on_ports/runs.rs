@@ -7,7 +7,6 @@ use crate::common::served::{Observer, Running, Unit, passes, released};
 use crate::common::terminal::{Terminal, ended};
 use crate::common::{Place, list, text};
 use protocol::message::Message;
-use serde_json::Value;
 
 /// Time that the observer and a busy machine may add.
 const SLACK: Duration = Duration::from_millis(200);
@@ -88,14 +87,7 @@ fn a_closed_terminal_stops_the_run_and_leaves_the_unit_disarmed() {
     let arguments = ["run", "--unit", &unit.address, "ptu/overspeed"];
     let mut run = terminal.start(&place.command(&arguments));
     let begun = Instant::now();
-    let armed = |place: &Place| {
-        let shown = place.ptu("runs show latest --json");
-        let run: Value = serde_json::from_str(&shown.out).unwrap_or_default();
-        run["steps"]
-            .as_array()
-            .is_some_and(|steps| !steps.is_empty())
-    };
-    while !armed(&place) {
+    while place.steps_so_far().is_empty() {
         assert!(
             begun.elapsed() < ENDS_WITHIN,
             "no step within {ENDS_WITHIN:?}"

@@ -9,11 +9,12 @@ use egui_material_icons::icons::{
 };
 use protocol::signal::{Sample, Signal};
 
+use super::find::Find;
 use super::keys::{FIND, STOP_ALL};
 use super::lock::only_look;
+use super::messages;
 use super::unit_menu::unit_menu;
-use super::{Frame, messages};
-use crate::parts::{ActionPlace, Face, Look, progress};
+use crate::parts::{ActionPlace, Face, Look, progress, running_text};
 use crate::units::Unit;
 use crate::{Page, PageContext, Sizes};
 use ptu_report::naming::DOT;
@@ -21,7 +22,7 @@ use ptu_report::words::{self, fill};
 use ptu_runs::bench_worker::Phase;
 use ptu_runs::table::cut;
 
-/// Between what stands in the bar, points.
+/// Gap between two things in the bar, points.
 const GAP: f32 = 8.0;
 /// Width of the bar of a run, points.
 const RUN_BAR: f32 = 72.0;
@@ -76,7 +77,7 @@ enum What {
 
 type Item = (What, Face<'static>);
 
-pub fn bar(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
+pub fn bar(find: &mut Find, ui: &mut Ui, context: &mut PageContext<'_>) {
     ui.spacing_mut().interact_size.y = Sizes::of(ui).bar - GAP;
     ui.spacing_mut().item_spacing.x = GAP;
     let all = |ui: &Ui, items: &[Item]| items.iter().map(|item| wide(ui, item) + GAP).sum::<f32>();
@@ -95,7 +96,7 @@ pub fn bar(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
             x += size.x + GAP;
             let place = UiBuilder::new().max_rect(place);
             let place = place.layout(Layout::left_to_right(Align::Center));
-            ui.scope_builder(place, |ui| shown(frame, ui, &item, context));
+            ui.scope_builder(place, |ui| shown(find, ui, &item, context));
         }
     }
 }
@@ -107,9 +108,9 @@ fn wide(ui: &Ui, (what, face): &Item) -> f32 {
     }
 }
 
-fn shown(frame: &mut Frame, ui: &mut Ui, (what, face): &Item, context: &mut PageContext<'_>) {
+fn shown(find: &mut Find, ui: &mut Ui, (what, face): &Item, context: &mut PageContext<'_>) {
     ui.scope(|ui| {
-        if context.settings.locked && !matches!(what, What::StopAll | What::Bell) {
+        if context.settings.is_locked() && !matches!(what, What::StopAll | What::Bell) {
             only_look(ui);
         }
         match what {
@@ -127,20 +128,20 @@ fn shown(frame: &mut Frame, ui: &mut Ui, (what, face): &Item, context: &mut Page
             }
             _ => {
                 let response = face.show(ui);
-                act(frame, *what, &response, ui, context);
+                act(find, *what, &response, ui, context);
             }
         }
     });
 }
 
-fn act(frame: &mut Frame, what: What, response: &Response, ui: &Ui, context: &mut PageContext<'_>) {
+fn act(find: &mut Find, what: What, response: &Response, ui: &Ui, context: &mut PageContext<'_>) {
     let chosen = context.units.chosen_place();
     match what {
         What::Unit(place) if place == chosen => {
-            Popup::menu(response).show(|ui| unit_menu(ui, &mut frame.setup, context));
+            Popup::menu(response).show(|ui| unit_menu(ui, context));
         }
         What::Unit(place) if response.clicked() => context.units.choose(place),
-        What::Find if response.clicked() => frame.find.toggle(context),
+        What::Find if response.clicked() => find.toggle(context),
         What::Bell => messages::bell(response, context),
         What::Run if response.clicked() => context.settings.page = Page::Procedures,
         What::StopAll if response.clicked() => context.units.stop_all(),
@@ -197,7 +198,7 @@ fn left(context: &PageContext<'_>, without: Without) -> Vec<Item> {
         let names = setup.injected().unwrap_or_default();
         items.push((What::State, face.named(said).hint(names)));
     }
-    run(unit, words, without, &mut items);
+    run(unit, context.words, without, &mut items);
     states(context, all, &mut items);
     items
 }
@@ -259,20 +260,21 @@ fn link(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Ite
 }
 
 /// State of a run, whatever page is in front.
-fn run(unit: &Unit, words: &words::Frame, without: Without, items: &mut Vec<Item>) {
+fn run(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Item>) {
     let Some(run) = unit.run.as_ref().filter(|run| run.is_running()) else {
         return;
     };
     let present = run.present.as_ref();
-    let counts = run.counts();
-    let counts: [(&str, &dyn std::fmt::Display); 2] =
-        [("n", &counts.run()), ("all", &counts.planned)];
     let (look, icon, said) = if present.is_some_and(|present| present.prompt.is_some()) {
-        (Look::Warned, ICON_HELP, words.asks.to_owned())
+        (Look::Warned, ICON_HELP, words.frame.asks.to_owned())
     } else if present.is_some_and(|present| present.paused.is_some()) {
-        (Look::Warned, ICON_PAUSE_CIRCLE, words.is_paused.to_owned())
+        (
+            Look::Warned,
+            ICON_PAUSE_CIRCLE,
+            words.frame.is_paused.to_owned(),
+        )
     } else {
-        (Look::Quiet, ICON_PLAY_CIRCLE, fill(words.running, &counts))
+        (Look::Quiet, ICON_PLAY_CIRCLE, running_text(run, words))
     };
     let is_button = look == Look::Quiet || present.is_some_and(|present| present.prompt.is_some());
     let look = if is_button { Look::Quiet } else { look };

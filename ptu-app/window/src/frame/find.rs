@@ -13,7 +13,7 @@ use egui_material_icons::icons::{
 };
 use fault_db::{FaultFilter, FaultSummary};
 
-use super::{Frame, rail};
+use super::{keys, rail};
 use crate::parts::lane::cut_text;
 use crate::request::Request;
 use crate::{Density, Destination, Page, PageContext, Palette, Sizes};
@@ -57,12 +57,12 @@ enum What {
     Open(Destination),
     Page(Page),
     Unit(usize),
-    Do(fn(&mut Frame, &mut PageContext<'_>)),
+    Do(fn(&mut PageContext<'_>)),
 }
 
 impl Find {
     pub fn toggle(&mut self, context: &PageContext<'_>) {
-        let open = !self.open && !context.settings.locked;
+        let open = !self.open && !context.settings.is_locked();
         *self = Self {
             open,
             ..Self::default()
@@ -83,35 +83,29 @@ impl Find {
     }
 
     /// Draws it while it is open, with the steps of these procedures; does what was chosen.
-    pub fn show(
-        frame: &mut Frame,
-        ui: &Ui,
-        procedures: &[Arc<Procedure>],
-        context: &mut PageContext<'_>,
-    ) {
-        if !frame.find.open {
+    pub fn show(&mut self, ui: &Ui, procedures: &[Arc<Procedure>], context: &mut PageContext<'_>) {
+        if !self.open {
             return;
         }
-        frame.find.faults.poll();
-        frame.find.look_through(procedures, context);
-        let rows = frame.find.rows(context);
-        let find = &mut frame.find;
+        self.faults.poll();
+        self.look_through(procedures, context);
+        let rows = self.rows(context);
         let key = |key| {
             ui.ctx()
                 .input_mut(|input| input.consume_key(Modifiers::NONE, key))
         };
         let last = rows.len().saturating_sub(1);
         let moved = match (key(Key::ArrowDown), key(Key::ArrowUp)) {
-            (true, _) => Some((find.at + 1).min(last)),
-            (_, true) => Some(find.at.saturating_sub(1)),
+            (true, _) => Some((self.at + 1).min(last)),
+            (_, true) => Some(self.at.saturating_sub(1)),
             _ => None,
         };
-        find.at = moved.unwrap_or(find.at).min(last);
-        let mut taken = key(Key::Enter).then_some(find.at);
+        self.at = moved.unwrap_or(self.at).min(last);
+        let mut taken = key(Key::Enter).then_some(self.at);
         // Never over the bar.
         let place = (Align2::CENTER_TOP, Sizes::of(ui).bar + 24.0, WIDE);
         let (open, beside, ()) = over_page(ui, "find", place, |ui| {
-            let edit = TextEdit::singleline(&mut find.typed)
+            let edit = TextEdit::singleline(&mut self.typed)
                 .hint_text(context.words.frame.find_what)
                 .desired_width(f32::INFINITY);
             let edit = ui.add(edit);
@@ -119,7 +113,7 @@ impl Find {
             let name = context.words.frame.find_what;
             edit.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, name));
             if edit.changed() {
-                find.at = 0;
+                self.at = 0;
             }
             if rows.is_empty() {
                 ui.label(context.words.common.nothing);
@@ -130,19 +124,19 @@ impl Find {
                     if std::mem::replace(&mut kind, row.kind) != row.kind {
                         ui.small(row.kind);
                     }
-                    if row.show(ui, place == find.at, moved.is_some()) {
+                    if row.show(ui, place == self.at, moved.is_some()) {
                         taken = Some(place);
                     }
                 }
             });
         });
         let taken = taken.and_then(|place| rows.get(place));
-        find.open = open && !beside && taken.is_none();
+        self.open = open && !beside && taken.is_none();
         match taken.map(|row| row.what.clone()) {
             Some(What::Open(to)) => context.go_to.push(to),
             Some(What::Page(page)) => context.settings.page = page,
             Some(What::Unit(place)) => context.units.choose(place),
-            Some(What::Do(action)) => action(frame, context),
+            Some(What::Do(action)) => action(context),
             None => {}
         }
     }
@@ -245,7 +239,7 @@ fn pages<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
 }
 
 fn actions<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
-    type Act = fn(&mut Frame, &mut PageContext<'_>);
+    type Act = fn(&mut PageContext<'_>);
     let (words, frame) = (context.words, &context.words.frame);
     let phase = context.units.chosen().phase();
     let connect = match phase == Phase::Offline {
@@ -263,29 +257,35 @@ fn actions<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
     let other = |language: &Language| *language != context.settings.language;
     let language = Language::ALL.into_iter().find(other);
     let actions: [(&str, &str, Act); 8] = [
-        (connect, "F9", |_, context| super::keys::connect(context)),
-        (frame.setup, "", |frame, _| frame.setup.open()),
-        (words.care.title, "", |frame, _| frame.care.toggle()),
+        (connect, "F9", |context| keys::connect(context)),
+        (frame.setup, "", |context| {
+            context.go_to.push(Destination::Setup)
+        }),
+        (words.care.title, "", |context| {
+            context.go_to.push(Destination::History)
+        }),
         (
             language.map_or("", Language::name),
             frame.language,
-            |_, context| {
+            |context| {
                 let now = context.settings.language;
                 let mut other = Language::ALL.into_iter().filter(|other| *other != now);
                 context.settings.language = other.next().unwrap_or(now);
             },
         ),
-        (theme, frame.theme, |_, context| {
+        (theme, frame.theme, |context| {
             context.settings.dark = Some(context.settings.dark == Some(false));
         }),
-        (view, frame.view, |_, context| {
+        (view, frame.view, |context| {
             context.settings.density = match context.settings.density {
                 Density::Engineer => Density::Operator,
                 Density::Operator => Density::Engineer,
             };
         }),
-        (frame.lock, "", |_, context| context.settings.lock()),
-        (frame.about, "", |frame, _| frame.about.open()),
+        (frame.lock, "", |context| context.settings.lock()),
+        (frame.about, "", |context| {
+            context.go_to.push(Destination::About)
+        }),
     ];
     // A unit with a run is disconnected by its own menu alone.
     let has_run = usize::from(phase == Phase::Running);

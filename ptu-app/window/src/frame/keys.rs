@@ -33,7 +33,7 @@ pub fn keys(egui_context: &Context, context: &mut PageContext<'_>) {
 /// Connects the chosen unit, or lets it go unless a run has it: page keys are beside this one.
 pub fn connect(context: &mut PageContext<'_>) {
     let only_reads = context.only_reads();
-    let locked = context.settings.locked;
+    let locked = context.settings.is_locked();
     let unit = context.units.chosen_mut();
     if locked || unit.phase() == Phase::Running {
         return;

@@ -49,7 +49,7 @@ pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
         let place = ActionPlace::new(ui, "lock", named);
         let opened = ui.add_enabled(named, Button::new(words.unlock));
         if named && (entered || place.clicked(&opened)) {
-            settings.locked = false;
+            settings.unlock();
         }
         ui.label(RichText::new(words.lock_is_no_password).color(Palette::of(ui).quiet));
     });

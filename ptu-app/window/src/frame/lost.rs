@@ -4,7 +4,7 @@ use eframe::egui::Ui;
 use egui_material_icons::icons::{ICON_LINK, ICON_LINK_OFF};
 
 use crate::parts::{ActionPlace, Face, Look};
-use crate::{Destination, PageContext};
+use crate::{Destination, PageContext, Wanted};
 
 /// The row, if the chosen unit's run broke off so; `goes_on` = its scripts are still those of the run.
 pub fn row(ui: &mut Ui, goes_on: bool, context: &mut PageContext<'_>) {
@@ -31,7 +31,7 @@ pub fn row(ui: &mut Ui, goes_on: bool, context: &mut PageContext<'_>) {
                 let go_on = Face::new(Look::Secondary, frame.go_on).hint(frame.go_on_hint);
                 if place.clicked(&go_on.icon(ICON_LINK).show(ui)) {
                     unit.connect(context.queries);
-                    context.go_to.push(Destination::GoOn);
+                    context.go_to.push(Destination::Run(Wanted::Rest));
                 }
             }
         }

@@ -4,17 +4,16 @@ use eframe::egui::{Grid, Ui};
 
 use egui_material_icons::icons::ICON_DATABASE;
 
-use super::Frame;
 use crate::parts::{ActionPlace, Face, Look, field, name_edit, segments};
-use crate::settings::{LARGEST_ZOOM, SMALLEST_ZOOM};
-use crate::{Density, PageContext};
+use crate::{Density, Destination, PageContext};
 use ptu_report::words::Language;
 
 const STEP: f32 = 0.1;
 /// Width of a field, points.
 const FIELD: f32 = 200.0;
 
-pub fn menu(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
+/// `with_history`: the rail has no room for the history.
+pub fn menu(with_history: bool, ui: &mut Ui, context: &mut PageContext<'_>) {
     let words = &context.words.frame;
     let settings = &mut *context.settings;
     Grid::new("menu").num_columns(2).show(ui, |ui| {
@@ -40,9 +39,10 @@ pub fn menu(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
         ui.label(words.scale);
         ui.horizontal(|ui| {
             // The size moves every button under the pointer.
-            let place = ActionPlace::new(ui, "size", settings.zoom.to_bits());
+            let zoom = f32::from(settings.zoom);
+            let place = ActionPlace::new(ui, "size", zoom.to_bits());
             let smaller = Face::new(Look::Secondary, "−").show(ui);
-            let shown = format!("{:.0} %", 100.0 * settings.zoom);
+            let shown = format!("{:.0} %", 100.0 * zoom);
             Face::new(Look::State, shown).show(ui);
             let larger = Face::new(Look::Secondary, "+").show(ui);
             let by = match (place.clicked(&smaller), place.clicked(&larger)) {
@@ -50,7 +50,7 @@ pub fn menu(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
                 (_, true) => STEP,
                 _ => 0.0,
             };
-            settings.zoom = (settings.zoom + by).clamp(SMALLEST_ZOOM, LARGEST_ZOOM);
+            settings.zoom = (zoom + by).into();
         });
         ui.end_row();
         let name = name_edit(&mut settings.operator, FIELD);
@@ -60,15 +60,15 @@ pub fn menu(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
         field(ui, context.words.report.depot, depot);
     });
     ui.horizontal(|ui| {
-        if frame.is_low {
+        if with_history {
             let history = Face::new(Look::Quiet, context.words.care.title).icon(ICON_DATABASE);
             if history.show(ui).clicked() {
-                frame.care.toggle();
+                context.go_to.push(Destination::History);
                 ui.close();
             }
         }
         if Face::new(Look::Quiet, words.about).show(ui).clicked() {
-            frame.about.open();
+            context.go_to.push(Destination::About);
             ui.close();
         }
         let lock = Face::new(Look::Quiet, words.lock).hint(words.lock_hint);

@@ -62,7 +62,7 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
     let undoable = context.messages.undoable(now_s, ended);
     // The person who takes a message back is written down with it.
     let named = !context.settings.operator.trim().is_empty();
-    let undoable = undoable.filter(|_| named && !context.settings.locked);
+    let undoable = undoable.filter(|_| named && !context.settings.is_locked());
     let place = undoable.map(|(place, ..)| place);
     let words = context.words;
     let (mut noted, mut seen, mut taken_back) = (false, false, None);
@@ -107,7 +107,7 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
                     let left = format!("{left_s:.0} s");
                     let button = Face::new(Look::Secondary, words.frame.undo).icon(ICON_UNDO);
                     let button = button.small(left).show(ui);
-                    // In a field the key undoes what is typed.
+                    // In a text field the key undoes typing.
                     let typing = ui.ctx().egui_wants_keyboard_input();
                     let by_key = !typing
                         && ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Z));

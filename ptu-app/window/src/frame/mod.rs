@@ -21,7 +21,7 @@ use eframe::egui::{
     Spinner, Ui, vec2,
 };
 
-use super::{Page, PageContext, Palette, Sizes};
+use super::{Destination, Page, PageContext, Palette, Sizes};
 use crate::pages::case_steps;
 use crate::parts::{FORM, dialog_is_open};
 use about::About;
@@ -31,20 +31,18 @@ pub use lock::only_look;
 use ptu_report::words::Words;
 use setup::Setup;
 
-/// Between what was told and the edges of the page, points.
+/// Gap between the messages and the edges of the page, points.
 const AROUND: f32 = 12.0;
 
 /// State of the frame while the window is open.
 #[derive(Default)]
 pub struct Frame {
-    pub setup: Setup,
+    setup: Setup,
     about: About,
     care: HistoryMaintenance,
     undo: messages::Undo,
     pub find: Find,
     is_wide: bool,
-    /// The rail has no room for the history.
-    is_low: bool,
 }
 
 impl Frame {
@@ -64,7 +62,7 @@ impl Frame {
         let ground = Ground::new().fill(palette.panel);
         let bar = Panel::top("bar").exact_size(sizes.bar).resizable(false);
         bar.frame(ground.inner_margin(Margin::symmetric(8, 0)))
-            .show(ui, |ui| bar::bar(self, ui, context));
+            .show(ui, |ui| bar::bar(&mut self.find, ui, context));
         if dialog_is_open(ui.ctx()) {
             // The dialog dims it.
             ui.visuals_mut().disabled_alpha = 1.0;
@@ -77,7 +75,17 @@ impl Frame {
             .exact_size(rail::wide(ui))
             .resizable(false);
         rail.frame(ground.inner_margin(4))
-            .show(ui, |ui| rail::rail(self, ui, context));
+            .show(ui, |ui| rail::rail(ui, context));
+    }
+
+    /// Opens the dialog to which this leads, if it leads to one.
+    pub fn go_to(&mut self, to: &Destination) {
+        match to {
+            Destination::Setup => self.setup.open(),
+            Destination::History => self.care.toggle(),
+            Destination::About => self.about.open(),
+            _ => {}
+        }
     }
 
     /// Bar of a locked window, with the name that opens it.
@@ -106,7 +114,7 @@ impl Frame {
         self.setup.show(ui, context);
         self.care.show(ui, context);
         self.about.show(ui, context);
-        Find::show(self, ui, procedures, context);
+        self.find.show(ui, procedures, context);
     }
 
     /// Shows, over everything, that the window is being closed; true once the person has taken note

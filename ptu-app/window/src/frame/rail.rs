@@ -11,12 +11,12 @@ use egui_material_icons::icons::{
     ICON_TROUBLESHOOT,
 };
 
-use super::{Frame, menu};
-use crate::{Density, Page, PageContext, Palette, Sizes};
+use super::menu;
+use crate::{Density, Destination, Page, PageContext, Palette, Sizes};
 
 /// Width of a window whose rail has names beside the icons, and that width, points.
 const WIDE: [f32; 2] = [1600.0, 200.0];
-/// Between two of the rail, points.
+/// Gap between two entries of the rail, points.
 const GAP: f32 = 1.0;
 
 /// A page, the history or the menu in the rail.
@@ -36,7 +36,7 @@ pub fn wide(ui: &Ui) -> f32 {
     }
 }
 
-pub fn rail(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
+pub fn rail(ui: &mut Ui, context: &mut PageContext<'_>) {
     ui.spacing_mut().item_spacing.y = GAP;
     let usual = match Sizes::of(ui).density {
         Density::Operator => 56.0,
@@ -44,8 +44,8 @@ pub fn rail(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
     };
     let all = Page::ALL.len() as f32 + 2.0;
     // In a low window the history is in the menu.
-    frame.is_low = ui.available_height() < all * (usual + GAP);
-    let all = all - f32::from(u8::from(frame.is_low));
+    let is_low = ui.available_height() < all * (usual + GAP);
+    let all = all - f32::from(u8::from(is_low));
     let high = (ui.available_height() / all - GAP).floor().min(usual);
     for page in Page::ALL {
         let place = RailEntry {
@@ -68,10 +68,10 @@ pub fn rail(frame: &mut Frame, ui: &mut Ui, context: &mut PageContext<'_>) {
         let menu = shown(ui, high, &other(ICON_MENU, context.words.frame.menu));
         let popup = Popup::menu(&menu).align(RectAlign::RIGHT_END);
         let popup = popup.close_behavior(eframe::egui::PopupCloseBehavior::CloseOnClickOutside);
-        popup.show(|ui| menu::menu(frame, ui, context));
+        popup.show(|ui| menu::menu(is_low, ui, context));
         let history = other(ICON_DATABASE, context.words.care.title);
-        if !frame.is_low && shown(ui, high, &history).clicked() {
-            frame.care.toggle();
+        if !is_low && shown(ui, high, &history).clicked() {
+            context.go_to.push(Destination::History);
         }
     });
 }
@@ -90,57 +90,32 @@ fn shown(ui: &mut Ui, high: f32, place: &RailEntry<'_>) -> Response {
         let painter = painter.with_clip_rect(at);
         painter.rect_filled(at.shrink2(vec2(0.0, 4.0)), 0.0, palette.accent);
     }
-    let draw =
-        |at, align, text: &str, font, colour| painter.text(at, align, text, font, colour).right();
+    let draw = |x, y, align: Align2, text: &str, font, colour| {
+        painter.text(pos2(x, y), align, text, font, colour).right()
+    };
+    let (left, centre) = (Align2::LEFT_CENTER, Align2::CENTER_CENTER);
     let of_icon = FontId::new(sizes.icon, place.icon.font_family());
-    let caption = FontId::proportional(12.0);
-    let (left, top, middle) = (rect.left(), rect.top(), rect.center());
-    let sign = place.icon.codepoint;
+    let [body, caption, small] = [sizes.body, 12.0, 11.0].map(FontId::proportional);
+    let (top, middle, sign) = (rect.top(), rect.center(), place.icon.codepoint);
+    let (key, quiet) = (place.key, palette.quiet);
     if rect.width() > 100.0 {
-        let at = pos2(left + 12.0, middle.y);
-        let x = draw(at, Align2::LEFT_CENTER, sign, of_icon, icon) + 12.0;
-        let font = FontId::proportional(sizes.body);
-        draw(
-            pos2(x, middle.y),
-            Align2::LEFT_CENTER,
-            place.name,
-            font,
-            ink,
-        );
-        let at = pos2(rect.right() - 8.0, middle.y);
-        draw(at, Align2::RIGHT_CENTER, place.key, caption, palette.quiet);
+        let x = rect.left() + 12.0;
+        let x = draw(x, middle.y, left, sign, of_icon, icon) + 12.0;
+        draw(x, middle.y, left, place.name, body, ink);
+        let x = rect.right() - 8.0;
+        draw(x, middle.y, Align2::RIGHT_CENTER, key, caption, quiet);
     } else if high >= 2.0 * 12.0 + sizes.icon {
         // Icon and key in one line, the name below.
         let y = top + high * 0.34;
-        let shift = if place.key.is_empty() { 0.0 } else { 11.0 };
-        let at = pos2(middle.x - shift, y);
-        let x = draw(at, Align2::CENTER_CENTER, sign, of_icon, icon) + 4.0;
-        draw(
-            pos2(x, y),
-            Align2::LEFT_CENTER,
-            place.key,
-            FontId::proportional(11.0),
-            palette.quiet,
-        );
-        let at = pos2(middle.x, top + high * 0.74);
-        draw(at, Align2::CENTER_CENTER, place.name, caption, ink);
+        let shift = if key.is_empty() { 0.0 } else { 11.0 };
+        let x = draw(middle.x - shift, y, centre, sign, of_icon, icon) + 4.0;
+        draw(x, y, left, key, small, quiet);
+        let y = top + high * 0.74;
+        draw(middle.x, y, centre, place.name, caption, ink);
     } else {
-        let y = top + high * if place.key.is_empty() { 0.5 } else { 0.34 };
-        draw(
-            pos2(middle.x, y),
-            Align2::CENTER_CENTER,
-            sign,
-            of_icon,
-            icon,
-        );
-        let at = pos2(middle.x, top + high * 0.8);
-        draw(
-            at,
-            Align2::CENTER_CENTER,
-            place.key,
-            FontId::proportional(11.0),
-            palette.quiet,
-        );
+        let y = top + high * if key.is_empty() { 0.5 } else { 0.34 };
+        draw(middle.x, y, centre, sign, of_icon, icon);
+        draw(middle.x, top + high * 0.8, centre, key, small, quiet);
     }
     response.on_hover_text(place.name)
 }

@@ -168,7 +168,7 @@ impl Setup {
         });
         ui.horizontal(|ui| {
             let find = find_edit(ui, &mut self.find, frame.find, FIELD);
-            // What is mostly wanted can be typed at once.
+            // Most people want to type a name at once.
             if std::mem::take(&mut self.opened) {
                 find.request_focus();
             }

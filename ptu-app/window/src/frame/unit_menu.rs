@@ -4,16 +4,15 @@ use eframe::egui::{Button, RichText, Ui};
 use protocol::message::Identity;
 
 use super::keys::CONNECT;
-use super::setup::Setup;
 use crate::parts::{ActionPlace, Face, Look};
-use crate::{PageContext, Palette};
+use crate::{Destination, PageContext, Palette};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::Phase;
 
 /// Least width, points.
 const WIDE: f32 = 260.0;
 
-pub fn unit_menu(ui: &mut Ui, setup: &mut Setup, context: &mut PageContext<'_>) {
+pub fn unit_menu(ui: &mut Ui, context: &mut PageContext<'_>) {
     let (words, frame) = (context.words, &context.words.frame);
     ui.set_min_width(WIDE);
     for place in 0..context.units.count() {
@@ -42,7 +41,7 @@ pub fn unit_menu(ui: &mut Ui, setup: &mut Setup, context: &mut PageContext<'_>) 
     }
     let free = phase == Phase::Offline;
     if ui.add_enabled(free, Button::new(frame.setup)).clicked() {
-        setup.open();
+        context.go_to.push(Destination::Setup);
     }
     if !free {
         ui.label(RichText::new(frame.setup_hint).small());
@@ -50,7 +49,7 @@ pub fn unit_menu(ui: &mut Ui, setup: &mut Setup, context: &mut PageContext<'_>) 
     if context.units.count() > 1 {
         let remove = ui.add_enabled(free, Button::new(frame.remove_unit));
         if remove.clicked() {
-            context.units.remove(context.units.chosen_place());
+            context.units.remove_chosen();
         }
     }
     if let Some(identity) = context.units.chosen().identity() {

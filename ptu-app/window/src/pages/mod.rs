@@ -13,10 +13,8 @@ mod traces;
 
 use eframe::egui::Ui;
 
-use procedures::Wanted;
-
 use super::Page;
-use super::page_context::{Destination, PageContext};
+use super::page_context::{Destination, PageContext, Wanted};
 
 pub use case::case_steps;
 
@@ -90,39 +88,19 @@ impl Pages {
                 self.faults.show_of(of);
                 Page::Faults
             }
-            Destination::FindPart(symptom) => {
-                let adaptive = true;
-                self.procedures
-                    .want(Wanted::Part { symptom, adaptive }, context);
-                Page::Case
-            }
-            Destination::RunAll(symptom) => {
-                let adaptive = false;
-                self.procedures
-                    .want(Wanted::Part { symptom, adaptive }, context);
-                Page::Case
-            }
-            Destination::Prove { procedures, part } => {
-                self.procedures
-                    .want(Wanted::Prove { procedures, part }, context);
-                Page::Case
+            Destination::Run(wanted) => {
+                let page = match &wanted {
+                    Wanted::Step { .. } => Page::Procedures,
+                    Wanted::Part { .. } | Wanted::Prove { .. } => Page::Case,
+                    Wanted::Rest => context.settings.page,
+                };
+                self.procedures.want(wanted, context);
+                page
             }
             // The frame has opened it.
-            Destination::Setup => context.settings.page,
-            Destination::GoOn => {
-                self.procedures.want(Wanted::Rest, context);
-                context.settings.page
-            }
+            Destination::Setup | Destination::History | Destination::About => context.settings.page,
             Destination::ChooseStep { procedure, step } => {
                 self.procedures.choose_step(&procedure, &step);
-                Page::Procedures
-            }
-            Destination::RunStep {
-                procedure,
-                step,
-                unit,
-            } => {
-                self.procedures.run_step(procedure, step, &unit, context);
                 Page::Procedures
             }
         }

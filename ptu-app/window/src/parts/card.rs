@@ -20,7 +20,7 @@ pub struct Card<'a> {
     pub icon: MaterialIcon,
     pub word: &'a str,
     pub colour: Color32,
-    /// Beside the word.
+    /// Number beside the word.
     pub count: &'a str,
     pub headline: &'a str,
 }
@@ -115,4 +115,11 @@ pub fn fact(ui: &mut Ui, name: &str, value: &str) {
     let value = RichText::new(value).color(palette.ink);
     ui.add(Label::new(value).truncate());
     ui.add_space(8.0);
+}
+
+/// The title of what stands below it.
+pub fn title(ui: &mut Ui, text: &str) {
+    let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
+    ui.label(RichText::new(text).size(sizes.title).color(palette.ink));
+    ui.add_space(4.0);
 }

@@ -12,13 +12,13 @@ use egui_material_icons::MaterialIcon;
 use super::{ActionPlace, key_pressed};
 use crate::{Palette, Sizes};
 
-/// Between the parts of a face, and its edge and what is in it, points.
+/// Gap between the parts of a face, and between its edge and its content, points.
 const GAP: f32 = 8.0;
-/// The focus stands so far outside, points.
+/// Distance of the focus ring from the face, points.
 const OUTSIDE: f32 = 2.0;
 /// Strokes of a dashed edge, points.
 const DASH: f32 = 4.0;
-/// Between two dashes.
+/// Gap between two dashes, points.
 const DASH_GAP: f32 = 4.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub enum Look {
     Secondary,
     /// No ground until the pointer is over it.
     Quiet,
-    /// One of a few, which is chosen.
+    /// The chosen one of a few.
     Chosen,
     /// Stops or ends something.
     Danger,
@@ -141,7 +141,7 @@ impl<'a> Face<'a> {
     /// Shows one that is to be held down; true once it was long enough. Meanwhile it fills.
     pub fn held(&self, ui: &mut Ui, place: &ActionPlace) -> bool {
         let done = std::cell::Cell::new(false);
-        // What is only clicked is not down any more after a while.
+        // A widget that senses only clicks does not stay down for long.
         self.shown(ui, Sense::click_and_drag(), &|ui, response| {
             let share = place.held(ui, response);
             done.set(share >= 1.0);

@@ -33,7 +33,7 @@ mod stepper;
 mod table;
 mod unit_filter;
 
-pub use card::{Card, choice, empty, fact, ground};
+pub use card::{Card, choice, empty, fact, ground, title};
 pub use chip::{chip, verdict_chip, verdict_look};
 pub use deliberate::{ActionPlace, key_pressed};
 pub use dialog::{dialog, dialog_is_open, last_row, over_page};
@@ -49,7 +49,7 @@ pub use memory::{MemoryReader, Stored};
 pub use menu::{before_more, menu, more};
 pub use open_file::open_file;
 pub use pick::{named_combo, names, pick};
-pub use progress::progress;
+pub use progress::{progress, progress_text, running_text};
 pub use rows::rows;
 pub use run_list::RunList;
 pub use run_note::{NoteOn, RunNoteForm};

@@ -6,13 +6,29 @@ use crate::Palette;
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::Progress;
 
+/// Steps that were run, of all.
+pub fn running_text(run: &Progress, words: &Words) -> String {
+    let counts = run.counts();
+    let of = [("n", &counts.run() as _), ("all", &counts.planned as _)];
+    fill(words.frame.running, &of)
+}
+
+/// Steps that were run, of all, and those that did not pass.
+pub fn progress_text(run: &Progress, words: &Words) -> String {
+    let counts = run.counts();
+    let of = [
+        ("done", &counts.run() as _),
+        ("all", &counts.planned as _),
+        ("bad", &counts.not_passed() as _),
+    ];
+    fill(words.procedures.progress, &of)
+}
+
 pub fn progress(ui: &mut Ui, size: Vec2, run: &Progress, words: &Words) {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let counts = run.counts();
-    let said: [(&str, &dyn std::fmt::Display); 2] =
-        [("n", &counts.run()), ("all", &counts.planned)];
-    let name = fill(words.frame.running, &said);
+    let name = running_text(run, words);
     response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &name));
     let done = match run.is_running() {
         true => palette.accent,

@@ -1,4 +1,4 @@
-//! One of a few, beside each other.
+//! A row of buttons, of which one is chosen.
 
 use eframe::egui::{Frame, Stroke, Ui};
 

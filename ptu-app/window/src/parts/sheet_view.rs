@@ -268,7 +268,7 @@ fn base(laid: &Galley) -> f32 {
     letter.map_or(0.0, |letter| letter.pos.y)
 }
 
-/// Between which heights of its page an item is.
+/// Range of heights of an item on its page.
 fn extent(item: &Item) -> Rangef {
     match item {
         Item::Text(text) if text.turned => Rangef::EVERYTHING,

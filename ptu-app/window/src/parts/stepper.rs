@@ -11,7 +11,7 @@ use crate::{Palette, Sizes};
 /// Radius of the number, and where its middle is, points.
 const RADIUS: f32 = 14.0;
 const MIDDLE: f32 = 24.0;
-/// Where the name begins; a way so narrow has numbers alone, points.
+/// Left edge of a name, and the width of a step below which there is only its number, points.
 const NAME: f32 = 50.0;
 const NARROW: f32 = 100.0;
 

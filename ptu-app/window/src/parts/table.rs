@@ -12,9 +12,9 @@ use egui_material_icons::MaterialIcon;
 use super::limits_within;
 use crate::{Palette, Sizes};
 
-/// Between two columns, points.
+/// Gap between two columns, points.
 const GAP: f32 = 12.0;
-/// A row of a dense page is so high, points.
+/// Height of a row of a dense page, points.
 const HIGH: f32 = 30.0;
 
 pub struct Column<'a> {

@@ -13,8 +13,8 @@ use unit::UnitMessages;
 
 /// All units of the window; there is always one.
 pub struct Units {
-    first: Unit,
-    more: Vec<Unit>,
+    all: Vec<Unit>,
+    /// Place of the unit that the pages show.
     chosen: usize,
     next_id: u64,
     stops: u64,
@@ -22,19 +22,13 @@ pub struct Units {
 }
 
 impl Units {
-    /// Counts the times everything was stopped: what was ordered before is not begun after.
-    pub fn stops(&self) -> u64 {
-        self.stops
-    }
-
     /// One unit that is not connected.
     ///
     /// # Errors
     /// The system gives no thread.
     pub fn new(choice: BenchChoice, wake: Wake) -> Result<Self, Failure> {
         Ok(Self {
-            first: Unit::new(0, choice, wake.clone())?,
-            more: Vec::new(),
+            all: vec![Unit::new(0, choice, wake.clone())?],
             chosen: 0,
             next_id: 1,
             stops: 0,
@@ -42,69 +36,55 @@ impl Units {
         })
     }
 
-    /// One more beside those there are, and chooses it.
+    /// Adds a unit beside those there are, and chooses it.
     ///
     /// # Errors
     /// The system gives no thread.
     pub fn add(&mut self, choice: BenchChoice) -> Result<(), Failure> {
         let unit = Unit::new(self.next_id, choice, self.wake.clone())?;
         self.next_id += 1;
-        self.more.push(unit);
-        self.chosen = self.more.len();
+        self.chosen = self.all.len();
+        self.all.push(unit);
         Ok(())
     }
 
-    /// Takes away one that is not connected, but never the last.
-    pub fn remove(&mut self, place: usize) {
-        let offline = |unit: &Unit| unit.phase() == Phase::Offline;
-        if self.more.is_empty() || !self.iter().nth(place).is_some_and(offline) {
-            return;
+    /// Takes the chosen unit away if it is not connected, but never the last unit.
+    pub fn remove_chosen(&mut self) {
+        if self.count() > 1 && self.chosen().phase() == Phase::Offline {
+            self.all.remove(self.chosen);
+            self.choose(self.chosen);
         }
-        if place == 0 {
-            std::mem::swap(&mut self.first, &mut self.more[0]);
-            self.more.remove(0);
-        } else if place <= self.more.len() {
-            self.more.remove(place - 1);
-        }
-        self.chosen = self.chosen.min(self.more.len());
     }
 
     pub fn iter(&self) -> impl Iterator<Item = &Unit> {
-        std::iter::once(&self.first).chain(&self.more)
-    }
-
-    /// All of them, to be changed.
-    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Unit> {
-        std::iter::once(&mut self.first).chain(&mut self.more)
+        self.all.iter()
     }
 
     pub fn count(&self) -> usize {
-        1 + self.more.len()
+        self.all.len()
     }
 
-    /// The place of the one the pages show.
+    /// Place of the unit that the pages show.
     pub fn chosen_place(&self) -> usize {
         self.chosen
     }
 
-    /// The pages show this one from now on.
+    /// The pages show the unit of this place from now on.
     pub fn choose(&mut self, place: usize) {
-        self.chosen = place.min(self.more.len());
+        self.chosen = place.min(self.all.len() - 1);
     }
 
     pub fn chosen(&self) -> &Unit {
-        match self.chosen {
-            0 => &self.first,
-            more => self.more.get(more - 1).unwrap_or(&self.first),
-        }
+        &self.all[self.chosen]
     }
 
-    /// The one the pages show, to be changed.
     pub fn chosen_mut(&mut self) -> &mut Unit {
-        match self.chosen {
-            0 => &mut self.first,
-            more => self.more.get_mut(more - 1).unwrap_or(&mut self.first),
-        }
+        &mut self.all[self.chosen]
+    }
+
+    /// Counts the times everything was stopped: what was ordered before is not begun after.
+    pub fn stops(&self) -> u64 {
+        self.stops
     }
 
     /// Runs that have ended here: what the database holds has changed when this has.
@@ -124,22 +104,22 @@ impl Units {
         }
     }
 
-    /// The one of this number, if it is still there.
+    /// The unit of this number, if it is still there.
     pub fn of_id(&mut self, id: u64) -> Option<&mut Unit> {
-        self.iter_mut().find(|unit| unit.id == id)
+        self.all.iter_mut().find(|unit| unit.id == id)
     }
 
     /// Stops every run, takes every stimulus away and disarms, at all units.
     pub fn stop_all(&mut self) {
         self.stops += 1;
-        for unit in self.iter_mut() {
+        for unit in &mut self.all {
             unit.stop_all();
         }
     }
 
     /// Nothing is connected, begun or armed while `locked`; what is under way goes on.
     pub(super) fn lock(&mut self, locked: bool) {
-        for unit in self.iter_mut() {
+        for unit in &mut self.all {
             if locked && !unit.locked {
                 unit.disarm();
             }
@@ -147,15 +127,15 @@ impl Units {
         }
     }
 
-    /// One of them was let go without its outputs being confirmed safe.
+    /// A unit was let go without its outputs being confirmed safe.
     pub(super) fn any_not_safe(&self) -> bool {
         self.iter().any(|unit| unit.not_safe)
     }
 
     /// Takes what happened at all of them.
     pub(super) fn poll(&mut self, words: &Words, messages: &mut Messages) {
-        let several = !self.more.is_empty();
-        for (place, unit) in (1..).zip(self.iter_mut()) {
+        let several = self.count() > 1;
+        for (place, unit) in (1..).zip(&mut self.all) {
             let unit_said = several.then(|| format!("{place} {}", unit.name()));
             let mut said = UnitMessages {
                 unit: unit_said,
@@ -168,7 +148,7 @@ impl Units {
     /// Stops all and lets all go; true once every bench's thread has ended.
     pub(super) fn close(&mut self) -> bool {
         let mut closed = true;
-        for unit in self.iter_mut() {
+        for unit in &mut self.all {
             // Each is told, however many are still at it.
             closed &= unit.bench.close();
         }

@@ -299,7 +299,7 @@ impl Unit {
     }
 }
 
-/// Where a run broke off with the link: as is said of it as a whole, or of its last step.
+/// The finding that a run broke off with the link: of the run as a whole, or of its last step.
 fn link_loss(run: &Progress) -> Option<&Finding> {
     let results = run.procedures.iter().rev().flat_map(|of| &of.results);
     let mut all = results.flat_map(|result| result.findings.iter());

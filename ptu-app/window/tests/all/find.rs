@@ -24,7 +24,7 @@ fn the_accent_button_is_pressed_by_a_key_unless_something_stands_over_it() {
         let harness = window.harness();
         harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
         window.step();
-        window.app().units.chosen().phase()
+        window.phase()
     };
     look_for(&mut window, "xyz");
     assert_eq!(accent(&mut window), Phase::Offline);
@@ -41,7 +41,7 @@ fn the_accent_button_is_pressed_by_a_key_unless_something_stands_over_it() {
             modifiers,
         });
         window.step();
-        window.app().units.chosen().phase()
+        window.phase()
     };
     look_for(&mut window, "xyz");
     hold(&mut window, Key::Enter, Modifiers::COMMAND, true);
@@ -56,9 +56,7 @@ fn the_accent_button_is_pressed_by_a_key_unless_something_stands_over_it() {
     window.key(Key::F9);
     window.wait_for("not connected");
     hold(&mut window, Key::F9, Modifiers::NONE, true);
-    window.until("the unit", |window| {
-        window.app().units.chosen().phase() == Phase::Idle
-    });
+    window.wait_for_phase(Phase::Idle);
     let held = hold(&mut window, Key::F9, Modifiers::NONE, true);
     assert_eq!(held, Phase::Idle);
 }
@@ -104,7 +102,7 @@ fn a_fault_a_step_a_page_and_an_action_are_found_and_nothing_is_run() {
 
         look_for(&mut window, page);
         window.key(Key::Enter);
-        window.until("the page", |window| window.app().page() == Page::Signals);
+        window.wait_for_page(Page::Signals);
 
         look_for(&mut window, words.frame.light);
         window.key(Key::ArrowDown);

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use crate::common::window::{Window, settings_in};
-use crate::common::{Place, scripts};
+use crate::common::{Place, list, scripts, text};
 use eframe::egui::Key;
 use ptu_options::Page;
 use ptu_report::words::Language;
@@ -54,10 +54,10 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
     window.click_for("Record repair", "repaired");
     window.wait_for_part("SN-77");
     window.wait_for("Recorded: repaired");
-    let id = fault["id"].as_str().expect("an id").to_owned();
+    let id = text(&fault["id"]).to_owned();
     let stored = window.place.json(&["faults", "show", &id, "--json"]);
     assert_eq!(stored["state"], "repaired");
-    let events = stored["events"].as_array().expect("events");
+    let events = list(&stored["events"]);
     let who = |event: &&Value| event["who"] == "Kim";
     assert_eq!(events.iter().filter(who).count(), 2);
     // A repair is proven by a run, not by a person's word: closing is not offered.
@@ -71,7 +71,7 @@ fn a_fault_is_found_acknowledged_repaired_and_its_trace_and_run_are_a_click_away
         window.page(Page::Faults);
         // The page of the same name stands before it among what can be clicked.
         window.click_last(button);
-        window.until(button, |window| window.app().page() == page);
+        window.wait_for_page(page);
     }
 }
 
@@ -123,7 +123,7 @@ fn what_was_written_about_a_fault_can_be_undone_for_ten_seconds() {
         window.wait_for_part(relay);
         let of_relay = ["faults", "list", "--part", "eb_relay", "--json"];
         let id = window.place.json(&of_relay)[0]["id"].clone();
-        let show = ["faults", "show", id.as_str().expect("an id"), "--json"];
+        let show = ["faults", "show", text(&id), "--json"];
         let before = window.place.json(&show);
         window.click_part(relay);
         window.write(words.common.note, "wrong unit");
@@ -142,7 +142,7 @@ fn what_was_written_about_a_fault_can_be_undone_for_ten_seconds() {
         assert!(!window.shows(words.frame.undo));
         let mut after = window.place.json(&show);
         let withdrawn = after["withdrawn"].take();
-        let listed = withdrawn.as_array().expect("a list");
+        let listed = list(&withdrawn);
         assert_eq!(listed.len(), 1);
         assert_eq!(listed[0]["kind"], "acknowledged");
         assert_eq!(listed[0]["withdrawn"]["who"], "Kim");
@@ -171,8 +171,8 @@ fn korean_pages_name_measurements_parts_and_severities_in_korean() {
     window.click_for_part(words.procedures.run, "비상제동 계전기 (eb_relay, ");
     window.wait_for_part("EB 반응 시간");
     let report = window.place.json("runs show latest --json");
-    let steps = report["steps"].as_array().expect("steps").iter();
-    let measured = steps.flat_map(|step| step["measurements"].as_array().expect("a list"));
+    let steps = list(&report["steps"]).iter();
+    let measured = steps.flat_map(|step| list(&step["measurements"]));
     let mut names: Vec<_> = measured.filter_map(|of| of["name"].as_str()).collect();
     names.dedup();
     assert!(names.contains(&"eb_reaction"), "{names:?}");
@@ -203,14 +203,14 @@ fn korean_pages_name_measurements_parts_and_severities_in_korean() {
 fn what_was_typed_for_one_fault_is_not_stored_on_another() {
     let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
     let faults = place.json("faults list --json");
-    let part = |fault: &Value| fault["part"].as_str().expect("a part").to_owned();
-    let faults = faults.as_array().expect("faults");
+    let part = |fault: &Value| text(&fault["part"]).to_owned();
+    let faults = list(&faults);
     let other = faults
         .iter()
         .find(|fault| part(fault) != "eb_relay")
         .expect("the run tells of more than the relay");
     assert_eq!(part(other), "atp_cpu");
-    let id = other["id"].as_str().expect("an id").to_owned();
+    let id = text(&other["id"]).to_owned();
     let mut window = on(place, Page::Faults, Language::English);
     window.wait_for_part("2 of 2");
     // The relay is the cause of the other fault.
@@ -277,7 +277,7 @@ fn the_window_says_what_the_command_line_says() {
         let place = Place::new();
         place.ptu(&[&["run"], run].concat()).exits(code);
         let answer = place.json("diagnose latest --json");
-        let said = |key: &str| answer[key].as_str().expect("a sentence").to_owned();
+        let said = |key: &str| text(&answer[key]).to_owned();
         assert!(
             said("conclusion").contains(begins),
             "{}",
@@ -306,14 +306,14 @@ fn the_window_says_what_the_command_line_says() {
 fn three_parts_are_shown_and_the_other_candidates_on_demand() {
     let place = with_a_run("atp_receiver.dead", &["atp/limit_speed"]);
     let answer = place.json("diagnose latest --json");
-    let candidates = answer["candidates"].as_array().expect("candidates").clone();
+    let candidates = list(&answer["candidates"]).to_vec();
     assert!(candidates.len() > 3, "{answer:#}");
     let mut window = on(place, Page::Diagnosis, Language::English);
-    window.wait_for(answer["conclusion"].as_str().expect("a sentence"));
+    window.wait_for(text(&answer["conclusion"]));
     let shown = |window: &Window| {
         let all = window.shown();
         let is_shown = |candidate: &&Value| {
-            let name = candidate["fault"].as_str().expect("a fault");
+            let name = text(&candidate["fault"]);
             all.iter().any(|text| text == name)
         };
         candidates.iter().filter(is_shown).count()
@@ -334,20 +334,13 @@ fn what_cannot_be_told_names_the_check_that_would_and_runs_it() {
     // A run of one procedure that fails leaves more than one part to blame.
     let place = with_a_run("atp_receiver.dead", &["atp/limit_speed"]);
     let answer = place.json("diagnose latest --json");
-    let next = answer["next_check"]["step"]
-        .as_str()
-        .expect("a next check")
-        .to_owned();
+    let next = text(&answer["next_check"]["step"]).to_owned();
     let mut window = on(place, Page::Diagnosis, Language::English);
     window.wait_for(&next);
     window.key(Key::F9);
-    window.until("the unit", |window| {
-        window.app().units.chosen().phase() == Phase::Idle
-    });
+    window.wait_for_phase(Phase::Idle);
     window.click("Run it");
-    window.until("the procedures page", |window| {
-        window.app().page() == Page::Procedures
-    });
+    window.wait_for_page(Page::Procedures);
     window.wait_for_part("Run over: ");
     let run = window.place.json("runs show latest --json");
     let step = &run["steps"][0];
@@ -366,14 +359,14 @@ fn what_cannot_be_told_names_the_check_that_would_and_runs_it() {
 fn a_double_click_changes_a_fault_once() {
     let place = with_a_run("eb_relay.slow", &["atp/overspeed"]);
     let faults = place.json("faults list --part eb_relay --json");
-    let id = faults[0]["id"].as_str().expect("an id").to_owned();
+    let id = text(&faults[0]["id"]).to_owned();
     let mut window = on(place, Page::Faults, Language::English);
     window.write("text", "eb_relay");
     window.wait_for_part("1 of ");
     window.click_part("EB relay · ");
     let states = |window: &Window| {
         let stored = window.place.json(&["faults", "show", &id, "--json"]);
-        let events = stored["events"].as_array().expect("events").clone();
+        let events = list(&stored["events"]).to_vec();
         let states = events.iter().filter(|event| event["who"] == "Kim");
         let states: Vec<_> = states.map(|event| event["state"].clone()).collect();
         states

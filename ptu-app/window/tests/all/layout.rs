@@ -20,11 +20,11 @@ pub const SIZES: [[f32; 2]; 4] = [
     [853.0, 533.0],
     [1920.0, 1080.0],
 ];
-/// What can be clicked is so high at least, points.
+/// Least height of anything that can be clicked, points.
 const LOWEST: f32 = 28.0;
-/// Lines and roundings, points.
+/// Tolerance for lines and rounding, points.
 const SLACK: f32 = 1.5;
-/// A part of a page that scrolls is higher than this; what is lower was made for one text.
+/// Least height of a part of a page that scrolls, points; a lower one was made for one line of text.
 const SCROLLS: f32 = 60.0;
 
 /// Goal: everything on every page can be read and clicked in every window. Method: a unit with a slow relay is tested; each page, the
@@ -170,10 +170,7 @@ fn laid_out(
     look(&mut window, "live signals");
     window.click(words.procedures.run);
     // The rail has a page of the name of the button that leads to the sheet.
-    window.until("the end of the run", |window| {
-        let run = window.app().units.chosen().run.as_ref();
-        run.is_some_and(|run| run.id().is_some())
-    });
+    window.until("the end of the run", |window| window.run_id().is_some());
     window.wait_for_part("(eb_relay, ");
     look(&mut window, "results");
 }
@@ -185,7 +182,7 @@ fn armed(window: &mut Window, words: &Words) {
     window.step();
 }
 
-/// What of the last frame cannot be read or clicked.
+/// Everything in the last frame that cannot be read or clicked.
 pub fn complaints(window: &mut Window) -> Vec<String> {
     complaints_of(window, LOWEST)
 }

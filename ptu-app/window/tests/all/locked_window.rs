@@ -9,10 +9,6 @@ use ptu_report::words::Language;
 use ptu_runs::bench_worker::Phase;
 use ptu_window::Settings;
 
-fn phase(window: &Window) -> Phase {
-    window.app().units.chosen().phase()
-}
-
 /// Goal: who has gone home has nothing started, armed or written in his name, and what goes on can be seen and stopped.
 /// Method: a run under way when the window is locked; every way to begin something, and F12; then a name.
 #[test]
@@ -29,16 +25,16 @@ fn a_locked_window_shows_and_stops_and_begins_nothing() {
         let mut window = Window::sized([900.0, 600.0], Place::new(), scripts(), settings);
         window.connect_simulated();
         window.click(words.procedures.run);
-        window.until("the run", |window| phase(window) == Phase::Running);
+        window.wait_for_phase(Phase::Running);
         window.page(Page::Case);
         window.click_for(frame.lock, frame.locked);
         assert_eq!(complaints(&mut window), Vec::<String>::new());
         // The run goes on, and is still seen.
         window.page(Page::Bench);
         window.wait_for(words.bench.group_speed);
-        assert_eq!(phase(&window), Phase::Running);
+        assert_eq!(window.phase(), Phase::Running);
         window.key(Key::F12);
-        window.until("the end of the run", |window| phase(window) == Phase::Idle);
+        window.wait_for_phase(Phase::Idle);
         assert_eq!(latest(&window)["run"]["verdict"], "aborted");
         assert_eq!(latest(&window)["run"]["operator"], "Kim");
 
@@ -62,7 +58,7 @@ fn a_locked_window_shows_and_stops_and_begins_nothing() {
         window.key(Key::F9);
         window.step();
         assert!(!window.shows(frame.find_what));
-        assert_eq!(phase(&window), Phase::Idle, "still connected");
+        assert_eq!(window.phase(), Phase::Idle, "still connected");
         assert!(!window.enabled(frame.unlock), "without a name");
 
         window.write(case.your_name, "Lee");

@@ -70,11 +70,9 @@ fn settle(window: &mut Window) {
         window.until("answers", |_| last.take().is_some());
         window.step();
     }
-    if window.app().units.chosen().phase() == Phase::Running {
+    if window.phase() == Phase::Running {
         window.key(Key::F12);
-        window.until("the end of a run", |window| {
-            window.app().units.chosen().phase() == Phase::Idle
-        });
+        window.wait_for_phase(Phase::Idle);
     }
 }
 
@@ -163,11 +161,7 @@ fn each_page_is_resized_while_a_run_goes_on() {
     realtime.unit.realtime = true;
     window = Window::connected(window.place, realtime);
     window.click(words.procedures.run);
-    let steps = |window: &Window| {
-        let run = window.app().units.chosen().run.as_ref();
-        run.map_or(0, |run| run.counts().run())
-    };
-    window.until("a step", |window| steps(window) > 0);
+    window.until("a step", |window| window.steps_run() > 0);
     let mut wrong = Vec::new();
     for page in Page::ALL {
         window.page(page);
@@ -177,18 +171,16 @@ fn each_page_is_resized_while_a_run_goes_on() {
             window.step();
             let found = complaints(&mut window).into_iter();
             wrong.extend(found.map(|found| format!("{page:?} {size:?}: {found}")));
-            let phase = window.app().units.chosen().phase();
+            let phase = window.phase();
             assert_eq!(phase, Phase::Running, "{page:?} {size:?}");
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
-    let before = steps(&window);
-    window.until("another step", |window| steps(window) > before);
+    let before = window.steps_run();
+    window.until("another step", |window| window.steps_run() > before);
     window.key(Key::F12);
-    window.until("the end of the run", |window| {
-        window.app().units.chosen().phase() == Phase::Idle
-    });
-    let shown = steps(&window);
+    window.wait_for_phase(Phase::Idle);
+    let shown = window.steps_run();
     let run = latest(&window);
     assert_eq!(run["run"]["state"], "finished");
     assert!(list(&run["steps"]).len() >= shown as usize, "{shown} steps");
@@ -232,12 +224,8 @@ fn two_windows_on_one_file_lose_nothing() {
     }
     let mut runs = BTreeSet::new();
     for window in &mut both {
-        window.until("the run is stored", |window| {
-            let run = window.app().units.chosen().run.as_ref();
-            run.is_some_and(|run| run.id().is_some())
-        });
-        let run = window.app().units.chosen().run.as_ref();
-        runs.insert(run.and_then(|run| run.id()).expect("just seen"));
+        window.until("the run is stored", |window| window.run_id().is_some());
+        runs.insert(window.run_id().expect("just seen"));
     }
     assert_eq!(runs.len(), 2);
     for run in runs {

@@ -219,9 +219,7 @@ fn the_sheet_leads_to_the_traces_and_is_there_again_afterwards() {
     let of_run = |name: &String| name.starts_with("EB relay · code 25: EB reaction 640 ms");
     let first = window.shown().into_iter().find(of_run);
     window.click(&first.expect("a trace"));
-    window.until("the traces page", |window| {
-        window.app().page() == Page::Traces
-    });
+    window.wait_for_page(Page::Traces);
     window.key(Key::F6);
     window.wait_for("code 25: alarm, FSB, EB");
 }

@@ -96,7 +96,6 @@ fn the_window_reads_a_server_and_says_why_it_writes_nothing() {
         let settings = Settings {
             language,
             operator: "Kim".into(),
-            operator_at_us: ptu_runs::clock::now_us(),
             ..settings(Page::Faults)
         };
         let here = Place::new();

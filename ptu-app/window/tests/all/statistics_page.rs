@@ -69,7 +69,7 @@ fn the_figures_are_those_of_the_command_line_and_bars_lead_to_their_faults() {
         }
         window.wait_for(words.statistics.mtbf_is);
         window.click_part(&of_relay);
-        window.until("faults", |window| window.app().page() == Page::Faults);
+        window.wait_for_page(Page::Faults);
         let chip = format!("{} {relay}  ×", words.faults.cause);
         window.wait_for(&chip);
         assert!(window.shows_part(&format!("{relay} · ")));
@@ -149,7 +149,7 @@ fn a_serial_number_leads_to_its_life_and_an_entry_to_its_fault() {
         let told = told.split(',').next().unwrap_or_default().to_owned();
         assert!(window.shows_part(&told), "{told}: {:#?}", window.shown());
         window.click_part(&format!("{}: ", words.event_kind("repair")));
-        window.until("the fault", |window| window.app().page() == Page::Faults);
+        window.wait_for_page(Page::Faults);
         window.click_for_part("SN-1", &fill(words.life.part, &[("serial", &"SN-1")]));
         window.wait_for(words.life.units_of_part);
         window.click_for(words.life.back, words.statistics.mtbf_is);
@@ -206,17 +206,8 @@ fn faults_for_each_10_000_km_are_those_of_the_command_line() {
     for language in Language::ALL {
         let said = &language.words().statistics;
         let place = Place::new();
-        let run = [
-            "run",
-            "atp/overspeed",
-            "--serial-no",
-            "A-1",
-            "--train-no",
-            "612",
-        ];
-        place
-            .ptu(&[&run[..], &["--inject", "eb_relay.slow"]].concat())
-            .exits(1);
+        let run = "run atp/overspeed --serial-no A-1 --train-no 612 --inject eb_relay.slow";
+        place.ptu(run).exits(1);
         let readings = "train,date,km\n612,2020-01-01,0\n612,2099-01-01,9000000\n";
         let file = place.write("odometers.csv", readings);
         let stats = format!("faults stats --by month --distances {file} --json");

@@ -206,6 +206,32 @@ fn a_database_that_is_none_is_told_and_the_window_stays() {
     assert!(window.shows_part("The traces cannot be listed"));
 }
 
+/// Goal: the page and the messages tell in the same words why there is no trace. Method: the samples of a trace are overwritten.
+#[test]
+fn a_trace_that_cannot_be_opened_is_told_in_one_sentence() {
+    let place = Place::with_bad_unit();
+    place.change(
+        "history.db",
+        "UPDATE trace SET data = zeroblob(length(data))",
+    );
+    let mut window = Window::with(place, scripts(), settings(Page::Traces));
+    let begins = Language::English.words().traces.cannot_open;
+    window.wait_for_part(begins);
+    window.step();
+    let mut told = window.shown();
+    told.retain(|text| text.contains(begins));
+    // The sign stands before a message alone.
+    let told: Vec<_> = told
+        .iter()
+        .map(|text| text.trim_start_matches("⚠ "))
+        .collect();
+    assert!(
+        told.len() > 1 && told[0].len() > begins.len() + 2,
+        "{told:?}"
+    );
+    assert!(told.iter().all(|text| text == &told[0]), "{told:?}");
+}
+
 /// Goal: two speeds can be read off one axis, and a stretch is looked at and left again. Method: the limit is put into the
 /// lane of the speed, which is kept; a drag with the right button, and back.
 #[test]

@@ -16,10 +16,6 @@ fn realtime(page: Page) -> Settings {
     settings
 }
 
-fn running(window: &Window) -> bool {
-    window.app().units.chosen().phase() == Phase::Running
-}
-
 #[test]
 fn connects_arms_and_stops_everything_with_one_key() {
     let mut window = Window::open(Page::Bench);
@@ -48,12 +44,12 @@ fn a_run_is_followed_by_its_signals() {
         let shown = window.shown();
         let named = shown.iter().find_map(|text| text.split(plot).nth(1));
         let speed = named.and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
-        running(window) && speed.is_some_and(|speed| speed > 5.0)
+        window.phase() == Phase::Running && speed.is_some_and(|speed| speed > 5.0)
     });
     window.click("Live signals");
     assert!(!window.shows_part(plot));
     window.key(Key::F12);
-    window.until("the end of the run", |window| !running(window));
+    window.wait_for_phase(Phase::Idle);
 }
 
 #[test]
@@ -69,15 +65,11 @@ fn a_fault_injected_by_hand_is_found_and_traced_to_its_part() {
     window.wait_for_part("the EB relay (eb_relay, ");
     // A step that failed is a click from the trace that shows it.
     window.click("Trace");
-    window.until("the traces page", |window| {
-        window.app().page() == Page::Traces
-    });
+    window.wait_for_page(Page::Traces);
     window.wait_for("0.00 s trigger");
     window.page(Page::Procedures);
     window.click("Diagnosis");
-    window.until("the diagnosis page", |window| {
-        window.app().page() == Page::Diagnosis
-    });
+    window.wait_for_page(Page::Diagnosis);
     window.wait_for_part("eb_relay");
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "failed");
@@ -177,46 +169,35 @@ fn speaks_korean_from_one_frame_to_the_next() {
 fn a_run_is_paused_stepped_and_stopped_and_its_record_closed() {
     let mut window = Window::connected(Place::new(), realtime(Page::Procedures));
     window.click("Run");
-    window.until("the run", running);
+    window.wait_for_phase(Phase::Running);
     window.click_for_part("Pause", "Paused before: ");
-    let steps = |window: &Window| {
-        let run = window.app().units.chosen().run.as_ref();
-        run.map_or(0, |run| run.counts().run())
-    };
-    let before = steps(&window);
+    let before = window.steps_run();
     window.click("One step");
-    window.until("one more step", |window| steps(window) > before);
+    window.until("one more step", |window| window.steps_run() > before);
     window.wait_for_part("Paused before: ");
-    assert_eq!(steps(&window), before + 1);
+    assert_eq!(window.steps_run(), before + 1);
     window.click("Go on");
     window.click_for_part("Stop", "Run over: aborted");
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "aborted");
     assert_eq!(run["run"]["state"], "finished");
-    window.until("the unit live again", |window| {
-        window.app().units.chosen().phase() == Phase::Idle
-    });
+    window.wait_for_phase(Phase::Idle);
 }
 
 #[test]
 fn stop_all_ends_a_run_with_its_clean_up_however_often_it_is_pressed() {
     let mut window = Window::connected(Place::new(), realtime(Page::Procedures));
     window.click("Run");
-    window.until("a step", |window| {
-        let run = window.app().units.chosen().run.as_ref();
-        run.is_some_and(|run| run.counts().run() > 0)
-    });
+    window.until("a step", |window| window.steps_run() > 0);
     for _ in 0..5 {
         window.key(Key::F12);
     }
     window.wait_for_part("Run over: aborted");
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "aborted");
-    let run = window.app().units.chosen().run.as_ref().expect("a run");
-    let messages = run
-        .procedures
-        .iter()
-        .map(|procedure| procedure.findings.to_string());
+    let run = window.run().expect("a run");
+    let procedures = run.procedures.iter();
+    let messages = procedures.map(|procedure| procedure.findings.to_string());
     let messages: String = messages.collect();
     assert!(messages.contains("stopped by the operator"), "{messages}");
     assert!(!messages.contains("cut short"), "{messages}");
@@ -237,12 +218,12 @@ fn what_is_over_is_no_longer_said() {
     window.connect_simulated();
     assert!(!window.shows_part("Not connected"));
     window.click("Run");
-    window.until("the run", running);
+    window.wait_for_phase(Phase::Running);
     window.key(Key::F12);
     // On a slow machine the message that the run stops is over before the next picture.
     window.wait_for_part("Run over: aborted");
     window.click("Run");
-    window.until("the next run", running);
+    window.wait_for_phase(Phase::Running);
     assert!(!window.shows_part("Run over"));
 }
 
@@ -250,11 +231,11 @@ fn what_is_over_is_no_longer_said() {
 fn letting_go_in_a_run_closes_its_record_first() {
     let mut window = Window::connected(Place::new(), realtime(Page::Procedures));
     window.click("Run");
-    window.until("the run", running);
+    window.wait_for_phase(Phase::Running);
     // A key beside those of the pages ends no run.
     window.disconnect();
     window.step();
-    assert!(running(&window));
+    assert_eq!(window.phase(), Phase::Running);
     window.click("SIM-0001");
     window.click_for_part("Disconnect", "outputs safe");
     window.wait_for("not connected");
@@ -370,11 +351,8 @@ fn a_database_that_is_none_or_locked_is_said_and_the_unit_stays_connected() {
     let before = window.place.json("runs list --json");
     window.click("Run");
     window.until("one more run", |window| {
-        let run = window.app().units.chosen().run.as_ref();
-        run.is_some_and(|run| {
-            run.id()
-                .is_some_and(|id| !before.to_string().contains(&id.to_string()))
-        })
+        let id = window.run_id();
+        id.is_some_and(|id| !before.to_string().contains(&id.to_string()))
     });
 }
 
@@ -387,7 +365,7 @@ fn a_window_closed_in_mid_run_closes_the_record_and_keeps_its_settings() {
     let mut window = Window::connected(Place::new(), settings);
     window.click("Run");
     window.until("the run", |window| {
-        let run = window.app().units.chosen().run.as_ref();
+        let run = window.run();
         run.is_some_and(|run| run.present.is_some())
     });
     let root = ViewportId::ROOT;

@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use ptu_options::Page;
 use ptu_report::words::Language;
-use ptu_runs::bench_worker::Phase;
+use ptu_runs::bench_worker::{Phase, Progress};
 use ptu_runs::data::ScriptsDirectory;
 use ptu_window::DataPaths;
 use ptu_window::{App, Options, Settings};
@@ -17,16 +17,16 @@ use ptu_window::{App, Options, Settings};
 use super::picture::{Picture, Textures};
 use super::{Place, scripts};
 
-/// Patience with what other threads do; a busy machine may hold them up. It costs time only in vain.
+/// Longest wait for other threads, which a busy machine may hold up. Only a wait in vain lasts so long.
 const PATIENCE: Duration = Duration::from_secs(300);
 /// A person takes longer between two things that are meant, s.
 const MOMENT_S: f64 = 0.7;
-/// What was told is shown as long as on a display.
+/// Time of a frame as on a display, so that messages stay as long.
 const FRAME_S: f32 = 1.0 / 60.0;
 const STEP: Duration = Duration::from_millis(15);
 /// Longest pause between two frames of one that waits.
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
-/// No page has more to press.
+/// Most stops of the keyboard on a page.
 const MOST_STOPS: usize = 200;
 /// Width around a widget within which the mark of the keyboard lies, points.
 const AROUND: f32 = 4.0;
@@ -126,7 +126,7 @@ impl Window {
         self.harness.step();
     }
 
-    /// Frames until this holds, fewer the longer it takes: what is shown for a moment comes soon.
+    /// Draws frames until this holds, ever fewer of them: anything shown only for a moment comes early.
     pub fn until(&mut self, what: &str, mut holds: impl FnMut(&Self) -> bool) {
         let began = Instant::now();
         while !holds(self) {
@@ -140,14 +140,23 @@ impl Window {
         }
     }
 
-    /// Frames until something of this name is shown.
+    /// Draws frames until something of this name is shown.
     pub fn wait_for(&mut self, label: &str) {
         self.until(label, |window| window.shows(label));
     }
 
-    /// Frames until something whose name contains this is shown.
+    /// Draws frames until something whose name contains this is shown.
     pub fn wait_for_part(&mut self, part: &str) {
         self.until(part, |window| window.shows_part(part));
+    }
+
+    /// Draws frames until the chosen unit is connected, runs or is let go.
+    pub fn wait_for_phase(&mut self, phase: Phase) {
+        self.until(&format!("{phase:?}"), |window| window.phase() == phase);
+    }
+
+    pub fn wait_for_page(&mut self, page: Page) {
+        self.until(page.key(), |window| window.app().page() == page);
     }
 
     /// Turns the pages of a sheet until something of this name is in view.
@@ -287,9 +296,7 @@ impl Window {
 
     /// Presses the key that connects the unit, once it is not.
     pub fn connect(&mut self) {
-        self.until("a unit that is not connected", |window| {
-            window.app().units.chosen().phase() == Phase::Offline
-        });
+        self.wait_for_phase(Phase::Offline);
         self.key(Key::F9);
     }
 
@@ -423,7 +430,7 @@ impl Window {
         panic!("no key leads to {label}: {:#?}", self.shown());
     }
 
-    /// What has the keyboard, and where it is seen.
+    /// Name of the widget that has the keyboard, and where it is seen.
     fn focused(&self) -> Option<(String, Rect)> {
         let mut nodes = self.harness.query_all_by(|_| true);
         let node = nodes.find(|node| node.is_focused())?;
@@ -479,6 +486,26 @@ impl Window {
             .picture(context, self.harness.output(), ground)
     }
 
+    /// Phase of the chosen unit.
+    pub fn phase(&self) -> Phase {
+        self.app().units.chosen().phase()
+    }
+
+    /// The present or last run on the chosen unit.
+    pub fn run(&self) -> Option<&Progress> {
+        self.app().units.chosen().run.as_ref()
+    }
+
+    /// Number of that run, once it is over and recorded.
+    pub fn run_id(&self) -> Option<fault_db::Id> {
+        self.run().and_then(Progress::id)
+    }
+
+    /// Steps of that run that were run.
+    pub fn steps_run(&self) -> u32 {
+        self.run().map_or(0, |run| run.counts().run())
+    }
+
     pub fn app(&self) -> &App {
         self.harness.state().as_ref().expect("made")
     }
@@ -531,7 +558,7 @@ pub fn settings(page: Page) -> Settings {
 
 /// What the database holds of the latest run.
 pub fn latest(window: &Window) -> serde_json::Value {
-    window.place.json(&["runs", "show", "latest", "--json"])
+    window.place.json("runs show latest --json")
 }
 
 /// A scripts directory with the shipped units, lines and trains and one procedure of its own.

@@ -61,7 +61,7 @@ impl HistoryMaintenance {
 
     fn contents(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
-        if context.settings.locked {
+        if context.settings.is_locked() {
             super::only_look(ui);
         }
         let file = context.queries.paths.database.display().to_string();

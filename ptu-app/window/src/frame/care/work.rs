@@ -47,9 +47,9 @@ pub fn import(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
             Err(StoreError::Stopped) => return Ok(stopped(words)),
             done => done.map_err(|error| of_file(&file, error))?,
         };
-        // What was taken stays: nothing stops from here on.
+        // The rows that were taken stay: from here on nothing stops.
         store.stop_when(|| false)?;
-        // What was known before needs no telling again; what came just now may be a rival of it.
+        // Only an import that brought something can have brought a conflict; older ones were told before.
         let conflicts = match counts.events {
             0 => Vec::new(),
             _ => store.conflicts()?,

@@ -7,7 +7,7 @@ use eframe::egui::{
 };
 use protocol::signal::Signal;
 
-use super::live::{framed, heading, put};
+use super::live::{framed, heading, put_centred};
 use super::live_copy::BenchSnapshot;
 use super::rolling::{Lane, MOST, Rows, SPANS_S, chosen, lanes};
 use super::text;
@@ -83,12 +83,10 @@ impl Plot {
                 WidgetInfo::labeled(Role::Image, true, name)
             });
             if signals.is_empty() {
-                let (middle, centre) = (area.center(), Align2::CENTER_CENTER);
-                let painter = ui.painter();
-                put(
+                let (painter, middle) = (ui.painter(), area.center());
+                put_centred(
                     painter,
                     middle,
-                    centre,
                     14.0,
                     palette.quiet,
                     words.bench.plot_nothing,

@@ -28,8 +28,6 @@ const SIGNALS: usize = 4;
 pub struct Evidence {
     part: String,
     read: Request<Read>,
-    names: PartNames,
-    chain: Option<Chain>,
     trace: Option<SmallTrace>,
 }
 
@@ -45,6 +43,7 @@ struct FailedCheck {
 struct Read {
     names: PartNames,
     chain: Option<Chain>,
+    /// The trace, until it is drawn.
     trace: Option<OpenTrace>,
     signals: Vec<String>,
 }
@@ -63,20 +62,16 @@ impl Evidence {
         Self {
             part: part.to_owned(),
             read: Request::Pending(context.queries.run(question)),
-            names: PartNames::default(),
-            chain: None,
             trace: None,
         }
     }
 
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         self.read.poll();
-        if let Request::Ready(_) = &self.read
-            && let Request::Ready(read) = std::mem::take(&mut self.read)
+        if let Request::Ready(read) = &mut self.read
+            && let Some(opened) = read.trace.take()
         {
-            (self.names, self.chain) = (read.names, read.chain);
-            let small = |opened| SmallTrace::beside_twin(opened, &read.signals, context);
-            self.trace = read.trace.map(small);
+            self.trace = Some(SmallTrace::beside_twin(opened, &read.signals, context));
         }
         if let Some(trace) = &mut self.trace {
             trace.poll(context);
@@ -84,16 +79,21 @@ impl Evidence {
     }
 
     pub fn has_way(&self) -> bool {
-        self.chain.is_some()
+        self.chain().is_some()
     }
 
     pub fn has_trace(&self) -> bool {
         self.trace.is_some()
     }
 
+    fn chain(&self) -> Option<(&Chain, &PartNames)> {
+        let read = self.read.value()?;
+        Some((read.chain.as_ref()?, &read.names))
+    }
+
     pub fn way(&self, ui: &mut Ui, words: &Words) {
-        if let Some(way) = &self.chain {
-            chain(ui, way, &self.part, &self.names, words);
+        if let Some((way, names)) = self.chain() {
+            chain(ui, way, &self.part, names, words);
         }
     }
 

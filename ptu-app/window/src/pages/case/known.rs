@@ -4,7 +4,7 @@ use eframe::egui::{RichText, Ui};
 use fault_db::{FaultFilter, FaultState, FaultSummary, RepairRecord, StoreError};
 
 use crate::parts::{fact, link, repair_line};
-use crate::request::{CachedResponse, Request};
+use crate::request::{FollowingResponse, Request};
 use crate::{DataPaths, Destination, PageContext, Palette, Sizes};
 use ptu_report::naming::PartNames;
 use ptu_report::words::{Words, fill};
@@ -19,8 +19,9 @@ const SHOWN: usize = 5;
 /// The history of one unit, read when it is asked for.
 #[derive(Default)]
 pub struct KnownUnit {
-    of: Option<(String, (usize, u64))>,
-    history: CachedResponse<History>,
+    /// Serial number of the unit.
+    of: Option<String>,
+    history: FollowingResponse<String, History>,
 }
 
 #[derive(Default)]
@@ -32,20 +33,10 @@ struct History {
 }
 
 impl KnownUnit {
-    pub fn poll(&mut self) {
-        self.history.poll();
-    }
-
     /// Reads the history of this unit unless it is known.
-    pub fn keep(&mut self, serial: &str, context: &PageContext<'_>) {
-        let version = context.data_version();
-        if (self.of.as_ref()).is_some_and(|(of, at)| of == serial && *at == version) {
-            return;
-        }
-        self.of = Some((serial.to_owned(), version));
-        let serial = serial.to_owned();
-        let asked = context.queries.run(move |paths| read(paths, serial));
-        self.history.request(asked);
+    pub fn keep_up(&mut self, serial: &str, context: &PageContext<'_>) {
+        self.of = Some(serial.to_owned());
+        (self.history).keep_up((serial.to_owned(), true), context, read);
     }
 
     /// Serial number of the part that is in the unit, as its last repair has it.
@@ -108,7 +99,7 @@ impl KnownUnit {
             let said = format!("{}  {part}", clock::local(*at_us));
             repair_line(ui, words, &said, repair, go_to);
         }
-        if let Some((serial, _)) = &self.of
+        if let Some(serial) = &self.of
             && link(ui, fill(words.life.open, &[("serial", serial)])).clicked()
         {
             go_to.push(Destination::Life(serial.clone()));

@@ -19,7 +19,7 @@ use fault_db::Id;
 
 use super::procedures::Concluded;
 use super::report::SheetOf;
-use crate::parts::{ActionPlace, Face, Look, choice as choice_card, name_edit};
+use crate::parts::{ActionPlace, Face, Look, choice as choice_card, name_edit, title};
 use crate::request::Request;
 use crate::units::Unit;
 use crate::{Destination, PageContext, Palette, Sizes};
@@ -61,10 +61,8 @@ impl CasePage {
     ) {
         self.follow_unit(context);
         if let Some(serial) = &self.unit {
-            self.known.keep(serial, context);
+            self.known.keep_up(serial, context);
         }
-        self.known.poll();
-        self.units.poll();
         self.tiles.poll(context);
         self.proof.poll(context);
         if let Some(found) = &mut self.found {
@@ -203,10 +201,23 @@ impl CasePage {
                     Stage::Unit if !context.units.chosen().is_connected() => {
                         self.start(ui, context)
                     }
-                    Stage::Unit => self.unit(ui, context),
+                    Stage::Unit => {
+                        self.name(ui, context);
+                        title(ui, context.words.case.what_is_wrong);
+                        self.tiles.show(ui, context);
+                        ui.add_space(8.0);
+                        self.known.show(ui, context.words, context.go_to);
+                    }
                     Stage::Find => self.running(ui, has_orders, context),
-                    Stage::Result => self.result(ui, context),
-                    Stage::Repair => self.repair(ui, context),
+                    Stage::Result => {
+                        if let Some(found) = &mut self.found {
+                            found.show(ui, screen.x < STRIP[0], context.words);
+                        }
+                    }
+                    Stage::Repair => {
+                        self.repair.show(ui, &self.known, context);
+                        self.name(ui, context);
+                    }
                     Stage::Prove => self.prove(ui, has_orders, context),
                     Stage::Sheet => {}
                 });
@@ -240,7 +251,11 @@ impl CasePage {
                 Stage::Unit if !context.units.chosen().is_connected() => {
                     self.start_foot(ui, context)
                 }
-                Stage::Unit => self.unit_foot(ui, context),
+                Stage::Unit => {
+                    if self.tiles.foot(ui, context) {
+                        (self.found, self.stage) = (None, Stage::Find);
+                    }
+                }
                 Stage::Find => {
                     let goes_on = has_orders
                         || self.is_over(context)
@@ -254,9 +269,25 @@ impl CasePage {
                         self.stage = Stage::Result;
                     }
                 }
-                Stage::Result => self.result_foot(ui, context),
-                Stage::Repair => self.repair_foot(ui, context),
-                Stage::Prove => self.prove_foot(ui, has_orders, context),
+                Stage::Result => {
+                    let unit = context.units.chosen();
+                    let found = self.found.as_ref();
+                    let chosen = found.and_then(|found| found.foot(ui, unit, context.words));
+                    if let Some(way) = chosen {
+                        self.next(way, context);
+                    }
+                }
+                Stage::Repair => self.repair.foot(ui, context),
+                Stage::Prove if self.is_running(has_orders, context) => {
+                    let next = Face::new(Look::Primary, words.stage_sheet);
+                    next.off(Some(words.under_way)).show(ui);
+                }
+                Stage::Prove => {
+                    let of = (self.found.as_ref(), &self.repair);
+                    if self.proof.foot(ui, of, context) {
+                        self.stage = Stage::Sheet;
+                    }
+                }
                 Stage::Sheet => self.proof.sign_foot(ui, self.seen, context),
             }
         });
@@ -334,11 +365,4 @@ fn name_field(ui: &mut Ui, context: &mut PageContext<'_>) {
     let wide = ui.available_width().min(220.0);
     ui.add(name_edit(&mut context.settings.operator, wide))
         .labelled_by(label.id);
-}
-
-/// Draws the title of a step of the case.
-fn title(ui: &mut Ui, text: &str) {
-    let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
-    ui.label(RichText::new(text).size(sizes.title).color(palette.ink));
-    ui.add_space(4.0);
 }

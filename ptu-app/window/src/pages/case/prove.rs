@@ -10,13 +10,12 @@ use egui_material_icons::icons::ICON_DRAW;
 use fault_db::Id;
 
 use super::repair::Repair;
-use super::result::headline;
+use super::result::{Found, headline};
 use super::verdict::Told;
-use super::{CasePage, Stage, title};
 use crate::pages::procedures::{Concluded, why_not};
 use crate::parts::{ActionPlace, Face, Look, dialog, field, last_row, name_edit, pick};
 use crate::request::Request;
-use crate::{Destination, Page, PageContext, Palette, Sizes};
+use crate::{Destination, Page, PageContext, Palette, Sizes, Wanted};
 use ptu_report::naming::DOT;
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Phase, Progress};
@@ -44,7 +43,7 @@ const FIELD: f32 = 300.0;
 
 impl RepairProof {
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
-        let locked = context.settings.locked;
+        let locked = context.settings.is_locked();
         if locked || context.settings.page != Page::Case {
             // A PIN that was typed is its owner's alone.
             self.sign = None;
@@ -98,6 +97,53 @@ impl RepairProof {
         if let Some(said) = &self.said {
             ui.label(RichText::new(said).size(Sizes::of(ui).lead).strong());
         }
+    }
+
+    /// Buttons that fit the part, prove the repair, and show the sheet; true when the last was clicked.
+    pub fn foot(
+        &mut self,
+        ui: &mut Ui,
+        (found, repair): (Option<&Found>, &Repair),
+        context: &mut PageContext<'_>,
+    ) -> bool {
+        let words = &context.words.case;
+        let unit = context.units.chosen();
+        let phase = unit.phase();
+        let place = ActionPlace::new(ui, "case prove", (phase == Phase::Idle, self.fitted));
+        let fitted = self.fitted && !self.reconnects;
+        let may = fitted && unit.may_run();
+        let look = |first| match first {
+            true => Look::Primary,
+            false => Look::Secondary,
+        };
+        let why_not = why_not(unit, context.words);
+        // Before it is fitted, the other button is the reason.
+        let first = if fitted { why_not } else { words.fitted };
+        let prove = Face::new(look(fitted), words.prove);
+        let prove = prove.because((!may).then_some(first)).show(ui);
+        if let (true, Some(found)) = (place.clicked(&prove), found) {
+            context.go_to.push(Destination::Run(Wanted::Prove {
+                procedures: found.procedures.clone(),
+                part: repair.part.clone(),
+            }));
+        }
+        let at_rest = matches!(phase, Phase::Idle | Phase::Offline);
+        let face = Face::new(look(!fitted), words.fitted);
+        let face = face.because((!at_rest).then_some(why_not));
+        if place.clicked(&face.show(ui)) {
+            let part = &repair.part;
+            let unit = context.units.chosen_mut();
+            // In practice the part takes the faults with it that were injected into it; others stay.
+            let choice = &mut unit.choice;
+            choice
+                .faults
+                .retain(|fault| fault.split('.').next() != Some(part.as_str()));
+            unit.disconnect();
+            (self.fitted, self.reconnects) = (true, true);
+        }
+        // The sheet of a run that did not pass says that the repair is not proved.
+        let passed = self.verdict == Some(Verdict::Passed);
+        passed && place.clicked(&Face::new(Look::Secondary, words.to_sheet).show(ui))
     }
 
     /// Foot of the sheet: who checked it, or the button that asks.
@@ -265,72 +311,5 @@ impl Sign {
             }
         });
         chosen
-    }
-}
-
-impl CasePage {
-    pub(super) fn prove(&mut self, ui: &mut Ui, has_orders: bool, context: &mut PageContext<'_>) {
-        if self.is_running(has_orders, context) {
-            self.running(ui, has_orders, context);
-            return;
-        }
-        let words = &context.words.case;
-        title(ui, words.stage_prove);
-        self.proof.told(ui);
-        ui.label(words.fitted_hint);
-        ui.label(words.prove_hint);
-    }
-
-    pub(super) fn prove_foot(
-        &mut self,
-        ui: &mut Ui,
-        has_orders: bool,
-        context: &mut PageContext<'_>,
-    ) {
-        let words = &context.words.case;
-        if self.is_running(has_orders, context) {
-            let next = Face::new(Look::Primary, words.stage_sheet);
-            next.off(Some(words.under_way)).show(ui);
-            return;
-        }
-        let unit = context.units.chosen();
-        let phase = unit.phase();
-        let place = ActionPlace::new(ui, "case prove", (phase == Phase::Idle, self.proof.fitted));
-        let fitted = self.proof.fitted && !self.proof.reconnects;
-        let may = fitted && unit.may_run();
-        let look = |first| match first {
-            true => Look::Primary,
-            false => Look::Secondary,
-        };
-        let why_not = why_not(unit, context.words);
-        // Before it is fitted, the other button is the reason.
-        let first = if fitted { why_not } else { words.fitted };
-        let prove = Face::new(look(fitted), words.prove);
-        let prove = prove.because((!may).then_some(first)).show(ui);
-        if let (true, Some(found)) = (place.clicked(&prove), &self.found) {
-            context.go_to.push(Destination::Prove {
-                procedures: found.procedures.clone(),
-                part: self.repair.part.clone(),
-            });
-        }
-        let at_rest = matches!(phase, Phase::Idle | Phase::Offline);
-        let face = Face::new(look(!fitted), words.fitted);
-        let face = face.because((!at_rest).then_some(why_not));
-        if place.clicked(&face.show(ui)) {
-            let part = &self.repair.part;
-            let unit = context.units.chosen_mut();
-            // In practice the part takes the faults with it that were injected into it; others stay.
-            let choice = &mut unit.choice;
-            choice
-                .faults
-                .retain(|fault| fault.split('.').next() != Some(part.as_str()));
-            unit.disconnect();
-            (self.proof.fitted, self.proof.reconnects) = (true, true);
-        }
-        // The sheet of a run that did not pass says that the repair is not proved.
-        let passed = self.proof.verdict == Some(Verdict::Passed);
-        if passed && place.clicked(&Face::new(Look::Secondary, words.to_sheet).show(ui)) {
-            self.stage = Stage::Sheet;
-        }
     }
 }

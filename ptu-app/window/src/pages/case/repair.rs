@@ -7,9 +7,10 @@ use fault_db::{FaultAction, Id, RepairRecord};
 
 use super::known::KnownUnit;
 use super::result::Found;
-use super::{CasePage, title};
 use crate::messages::Written;
-use crate::parts::{ActionPlace, Face, Look, field, go_on, name_edit, note_edit, pick, typed};
+use crate::parts::{
+    ActionPlace, Face, Look, field, go_on, name_edit, note_edit, pick, title, typed,
+};
 use crate::request::Request;
 use crate::{DataPaths, PageContext};
 use ptu_report::words::fill;
@@ -123,48 +124,46 @@ impl Repair {
     }
 }
 
-impl CasePage {
-    pub(super) fn repair(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+impl Repair {
+    /// Draws the form.
+    pub fn show(&mut self, ui: &mut Ui, known: &KnownUnit, context: &PageContext<'_>) {
         let words = &context.words.case;
-        let known = &self.known;
-        let form = &mut self.repair;
-        title(ui, known.part_name(&form.part, context.words));
+        title(ui, known.part_name(&self.part, context.words));
         ui.label(words.switch_off);
         ui.add_space(8.0);
         Grid::new("repair").num_columns(2).show(ui, |ui| {
             ui.label(words.part);
             let name = |part: &str| known.part_name(part, context.words).to_owned();
-            let parts = form.parts.iter().map(|part| (part.clone(), name(part)));
-            if pick(ui, (words.part, FIELD), &mut form.part, parts) {
-                form.serial_old = known.serial_of(&form.part).unwrap_or_default();
+            let parts = self.parts.iter().map(|part| (part.clone(), name(part)));
+            if pick(ui, (words.part, FIELD), &mut self.part, parts) {
+                self.serial_old = known.serial_of(&self.part).unwrap_or_default();
             }
             ui.end_row();
-            let (old, new) = (&mut form.serial_old, &mut form.serial_new);
+            let (old, new) = (&mut self.serial_old, &mut self.serial_new);
             let fields = [
                 field(ui, words.serial_old, name_edit(old, FIELD)),
                 field(ui, words.serial_new, name_edit(new, FIELD)),
-                field(ui, words.note, note_edit(&mut form.note, FIELD)),
+                field(ui, words.note, note_edit(&mut self.note, FIELD)),
             ];
             go_on(ui, &fields);
         });
-        self.name(ui, context);
     }
 
-    pub(super) fn repair_foot(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+    /// The button that stores the repair.
+    pub fn foot(&mut self, ui: &mut Ui, context: &PageContext<'_>) {
         let words = &context.words.case;
-        let form = &mut self.repair;
         let who = context.settings.operator.trim().to_owned();
-        let may = !who.is_empty() && form.says_what() && form.saving.is_idle();
-        let place = ActionPlace::new(ui, "case save", form.saving.is_idle());
+        let may = !who.is_empty() && self.says_what() && self.saving.is_idle();
+        let place = ActionPlace::new(ui, "case save", self.saving.is_idle());
         let hint = match who.is_empty() {
             true => words.name_first,
             false => words.serial_or_note,
         };
         let save = Face::new(Look::Primary, words.save).off((!may).then_some(hint));
-        if let (true, Some(run)) = (place.clicked(&save.show(ui)), form.run) {
-            let repair = form.record();
+        if let (true, Some(run)) = (place.clicked(&save.show(ui)), self.run) {
+            let repair = self.record();
             let store = move |paths: &DataPaths| store(paths, run, &repair, &who);
-            form.saving = Request::Pending(context.queries.run(store));
+            self.saving = Request::Pending(context.queries.run(store));
         }
     }
 }
@@ -188,7 +187,7 @@ fn store(
     let mut first = None;
     let mut done = BTreeSet::new();
     for fault in faults {
-        // One before may have been of the same case; a second repair of it would be another one.
+        // A fault of a case that was just repaired is repaired with it; it needs no second repair.
         let state = store.fault(fault)?.fault.state;
         if !done.contains(&fault) && state.next(FaultAction::Repair).is_ok() {
             let (named, rest) = store.repair_case(fault, repair, who, at_us)?;

@@ -4,16 +4,16 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use btu_rig::procedure::{Measurement, StepResult, Verdict};
-use diagnosis::CheckName;
+use diagnosis::NextCheck;
 use eframe::egui::{RichText, Ui};
 use fault_db::{Id, StepCounts};
 
 use super::evidence::Evidence;
 use super::verdict::{Next, Told, named};
-use super::{CasePage, STRIP, Stage, title};
 use crate::pages::procedures::{Concluded, why_not};
-use crate::parts::{ActionPlace, Card, Face, Look, limit_scale, segments};
-use crate::{Density, Destination, PageContext, Palette, Sizes};
+use crate::parts::{ActionPlace, Card, Face, Look, limit_scale, segments, title};
+use crate::units::Unit;
+use crate::{Density, PageContext, Palette, Sizes};
 use ptu_report::diagnosis::MOST_REASONS;
 use ptu_report::naming::{self, DOT};
 use ptu_report::words::{Words, fill};
@@ -99,26 +99,6 @@ pub enum Part {
     Beside,
 }
 
-impl Found {
-    fn part(&mut self, ui: &mut Ui, part: Part, words: &Words) {
-        if part == Part::Why {
-            reasons(ui, words, self);
-            next_check(ui, self, words);
-        } else if let Some(evidence) = &mut self.evidence {
-            match part {
-                Part::Way => evidence.way(ui, words),
-                _ => evidence.trace(ui, words),
-            }
-        }
-    }
-
-    pub fn poll(&mut self, context: &mut PageContext<'_>) {
-        if let Some(evidence) = &mut self.evidence {
-            evidence.poll(context);
-        }
-    }
-}
-
 /// The headline with its parts, steps or reason.
 pub fn headline(
     told: Told,
@@ -133,7 +113,7 @@ pub fn headline(
         let mut results = run.procedures.iter().rev().flat_map(|of| &of.results);
         let result = results.find(error);
         let of_step = result.map(|result| words.findings(&result.findings));
-        // What was found outside the steps says it otherwise.
+        // Without a step that says why, a finding outside the steps does.
         let outside = run
             .procedures
             .iter()
@@ -176,33 +156,47 @@ fn shown_by(run: &Progress) -> Option<(String, Vec<Measurement>)> {
         .find(|(_, measured)| !measured.is_empty())
 }
 
-impl CasePage {
-    pub(super) fn result(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        let words = context.words;
-        let Some(found) = &mut self.found else {
-            return;
-        };
+impl Found {
+    fn part(&mut self, ui: &mut Ui, part: Part, words: &Words) {
+        if part == Part::Why {
+            reasons(ui, words, self);
+            next_check(ui, self, words);
+        } else if let Some(evidence) = &mut self.evidence {
+            match part {
+                Part::Way => evidence.way(ui, words),
+                _ => evidence.trace(ui, words),
+            }
+        }
+    }
+
+    pub fn poll(&mut self, context: &mut PageContext<'_>) {
+        if let Some(evidence) = &mut self.evidence {
+            evidence.poll(context);
+        }
+    }
+
+    /// Draws the result; `names_run`: no strip beside it says of which run the result is.
+    pub fn show(&mut self, ui: &mut Ui, names_run: bool, words: &Words) {
         let said: [(&str, &dyn std::fmt::Display); 2] = [
-            ("id", &found.run.short()),
-            ("time", &clock::local(found.ended_us)),
+            ("id", &self.run.short()),
+            ("time", &clock::local(self.ended_us)),
         ];
-        let counts = &found.counts;
+        let counts = &self.counts;
         let count: [(&str, &dyn std::fmt::Display); 2] =
             [("n", &counts.not_passed()), ("run", &counts.run())];
         let mut count = fill(words.case.count, &count);
-        // The strip says it otherwise.
-        if ui.ctx().content_rect().width() < STRIP[0] {
+        if names_run {
             count = [count, fill(words.case.of_run, &said)].join(DOT);
         }
         let card = Card {
-            icon: found.told.icon(),
-            word: found.told.word(&words.case),
-            colour: found.told.colour(&Palette::of(ui)),
+            icon: self.told.icon(),
+            word: self.told.word(&words.case),
+            colour: self.told.colour(&Palette::of(ui)),
             count: &count,
-            headline: &found.headline,
+            headline: &self.headline,
         };
         card.show(ui, |ui| {
-            if let Some((step, measured)) = &found.shown_by {
+            if let Some((step, measured)) = &self.shown_by {
                 ui.label(&*words.content(step));
                 for measured in measured.iter().take(MOST_BARS) {
                     let name = naming::measurement(&measured.name, words);
@@ -213,9 +207,9 @@ impl CasePage {
         });
         ui.add_space(8.0);
         let has = |part| match part {
-            Part::Why => found.answer.is_some(),
-            Part::Way => found.evidence.as_ref().is_some_and(Evidence::has_way),
-            Part::Beside => found.evidence.as_ref().is_some_and(Evidence::has_trace),
+            Part::Why => self.answer.is_some(),
+            Part::Way => self.evidence.as_ref().is_some_and(Evidence::has_way),
+            Part::Beside => self.evidence.as_ref().is_some_and(Evidence::has_trace),
         };
         let parts = [
             (Part::Why, words.case.why),
@@ -226,26 +220,26 @@ impl CasePage {
         if ui.ctx().content_rect().width() >= WIDE {
             for (part, name) in parts {
                 title(ui, name);
-                found.part(ui, part, words);
+                self.part(ui, part, words);
             }
             return;
         }
-        segments(ui, &mut found.shown, parts);
+        segments(ui, &mut self.shown, parts);
         ui.add_space(8.0);
-        found.part(ui, found.shown, words);
+        self.part(ui, self.shown, words);
     }
 
-    pub(super) fn result_foot(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        let words = context.words;
-        let Some(found) = &self.found else {
-            return;
-        };
-        let place = ActionPlace::new(ui, "case result", found.run);
-        let check = found.answer.as_ref();
-        let check = check.and_then(|answer| answer.diagnosis.next_check.as_ref());
-        let first = (found.told).next(found.counts.run() == found.counts.planned);
-        let failed = found.told.is_failed();
-        let unit = context.units.chosen();
+    /// The check that would tell the diagnosis most.
+    pub fn next_check(&self) -> Option<&NextCheck> {
+        self.answer.as_ref()?.diagnosis.next_check.as_ref()
+    }
+
+    /// Buttons for what is to be done next, the first thing first; what was chosen.
+    pub fn foot(&self, ui: &mut Ui, unit: &Unit, words: &Words) -> Option<Next> {
+        let place = ActionPlace::new(ui, "case result", self.run);
+        let check = self.next_check();
+        let first = self.told.next(self.counts.run() == self.counts.planned);
+        let failed = self.told.is_failed();
         let time = check.map(|check| format!("{:.0} s", check.cost_s.ceil()));
         let is_first = |way| way == first;
         let case = &words.case;
@@ -273,7 +267,7 @@ impl CasePage {
             };
             let why_not = (runs && !unit.may_run()).then(|| why_not(unit, words));
             let button = Face::new(look, text).off(why_not);
-            // What there is no room for is reached by the steps.
+            // A way that has no room here is reached by the steps above.
             if !is_first(*way) && button.wide(ui) > ui.available_width() {
                 continue;
             }
@@ -281,51 +275,13 @@ impl CasePage {
                 asked = Some(*way);
             }
         }
-        let check = check.map(|next| next.check.clone());
-        if let Some(way) = asked {
-            self.next(way, check, context);
-        }
-    }
-
-    fn next(&mut self, way: Next, check: Option<CheckName>, context: &mut PageContext<'_>) {
-        let Some(found) = &self.found else {
-            return;
-        };
-        match way {
-            Next::Repair => {
-                self.repair.prepare(found, &self.known);
-                self.stage = Stage::Repair;
-            }
-            Next::Sheet => self.stage = Stage::Sheet,
-            Next::ShowFailed => context.go_to.push(Destination::Report(found.run)),
-            Next::Check => {
-                let check = check.zip(self.unit.clone());
-                context
-                    .go_to
-                    .extend(check.map(|(check, unit)| Destination::RunStep {
-                        procedure: check.procedure,
-                        step: check.step,
-                        unit,
-                    }));
-            }
-            Next::WholeSuite | Next::RunAgain => {
-                let symptom = self.tiles.symptom();
-                context.go_to.push(match way {
-                    Next::WholeSuite => Destination::RunAll(symptom),
-                    _ => Destination::FindPart(symptom),
-                });
-                (self.found, self.stage) = (None, Stage::Find);
-            }
-        }
+        asked
     }
 }
 
 /// Shows the check that would tell the diagnosis most, and what of.
 fn next_check(ui: &mut Ui, found: &Found, words: &Words) {
-    let Some(answer) = &found.answer else {
-        return;
-    };
-    let Some(next) = &answer.diagnosis.next_check else {
+    let Some((answer, next)) = found.answer.as_ref().zip(found.next_check()) else {
         return;
     };
     let step = words.content(&next.check.step);

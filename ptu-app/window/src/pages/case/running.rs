@@ -4,10 +4,10 @@ use btu_rig::procedure::Verdict;
 use eframe::egui::Ui;
 use protocol::signal::{Sample, Signal};
 
-use super::{CasePage, title};
+use super::CasePage;
 use crate::pages::bench::text::known;
 use crate::pages::procedures::{measurements, present};
-use crate::parts::{fact, ground, verdict_chip};
+use crate::parts::{fact, ground, title, verdict_chip};
 use crate::{Density, PageContext, Palette, Sizes};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Phase, Progress};
@@ -52,6 +52,19 @@ impl CasePage {
         if let Some(yes) = answer {
             context.units.chosen_mut().answer(yes);
         }
+    }
+
+    /// The run that is to prove the repair, or what is to be done before it.
+    pub(super) fn prove(&mut self, ui: &mut Ui, has_orders: bool, context: &mut PageContext<'_>) {
+        if self.is_running(has_orders, context) {
+            self.running(ui, has_orders, context);
+            return;
+        }
+        let words = &context.words.case;
+        title(ui, words.stage_prove);
+        self.proof.told(ui);
+        ui.label(words.fitted_hint);
+        ui.label(words.prove_hint);
     }
 
     /// The last run has ended and was not looked at yet.

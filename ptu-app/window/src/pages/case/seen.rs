@@ -3,9 +3,8 @@
 use eframe::egui::Ui;
 use fault_db::{RunFilter, RunSummary};
 
-use super::title;
-use crate::parts::{ActionPlace, Face, Look, choice as choice_card};
-use crate::request::CachedResponse;
+use crate::parts::{ActionPlace, Face, Look, choice as choice_card, title};
+use crate::request::FollowingResponse;
 use crate::{PageContext, Sizes};
 use ptu_report::naming::DOT;
 use ptu_runs::clock;
@@ -23,15 +22,10 @@ const DEMONSTRATED: &str = "eb_relay.slow";
 /// Units of the history, each with the run that saw it last.
 #[derive(Default)]
 pub struct SeenUnits {
-    version: Option<(usize, u64)>,
-    runs: CachedResponse<Vec<RunSummary>>,
+    runs: FollowingResponse<(), Vec<RunSummary>>,
 }
 
 impl SeenUnits {
-    pub fn poll(&mut self) {
-        self.runs.poll();
-    }
-
     /// Shows them while no unit is connected; where none was ever tested, a demonstration is offered.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_up(context);
@@ -62,12 +56,7 @@ impl SeenUnits {
     }
 
     fn keep_up(&mut self, context: &PageContext<'_>) {
-        let version = context.data_version();
-        if self.version == Some(version) {
-            return;
-        }
-        self.version = Some(version);
-        self.runs.request(context.queries.run(|paths| {
+        self.runs.keep_up(((), true), context, |paths, ()| {
             if !paths.is_there() {
                 return Ok(Vec::new());
             }
@@ -86,7 +75,7 @@ impl SeenUnits {
                 }
             }
             Ok(seen)
-        }));
+        });
     }
 }
 

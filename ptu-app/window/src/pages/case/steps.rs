@@ -3,12 +3,11 @@
 use eframe::egui::{Align, Layout, RichText, ScrollArea, Ui};
 use egui_material_icons::icons::{ICON_ADD_CIRCLE, ICON_DESCRIPTION, ICON_LOCK};
 
-use super::verdict::Told;
+use super::verdict::{Next, Told};
 use super::{CasePage, Stage, name_field};
-use crate::parts::{ActionPlace, Face, Look, Step, fact};
-use crate::{Destination, PageContext, Palette, Sizes};
+use crate::parts::{ActionPlace, Face, Look, Step, fact, running_text};
+use crate::{Destination, PageContext, Palette, Sizes, Wanted};
 use ptu_report::count_text;
-use ptu_report::words::fill;
 use ptu_runs::bench_worker::{Phase, Progress};
 use ptu_runs::clock;
 
@@ -91,6 +90,36 @@ impl CasePage {
         }
     }
 
+    /// Does what was chosen of a result.
+    pub(super) fn next(&mut self, way: Next, context: &mut PageContext<'_>) {
+        let Some(found) = &self.found else {
+            return;
+        };
+        match way {
+            Next::Repair => self.go(Some(Stage::Repair)),
+            Next::Sheet => self.stage = Stage::Sheet,
+            Next::ShowFailed => context.go_to.push(Destination::Report(found.run)),
+            Next::Check => {
+                let check = found.next_check().map(|next| next.check.clone());
+                let step = check.zip(self.unit.clone());
+                let step = step.map(|(check, unit)| Wanted::Step {
+                    procedure: check.procedure,
+                    step: check.step,
+                    unit,
+                });
+                context.go_to.extend(step.map(Destination::Run));
+            }
+            Next::WholeSuite | Next::RunAgain => {
+                let wanted = Wanted::Part {
+                    symptom: self.tiles.symptom(),
+                    adaptive: way == Next::RunAgain,
+                };
+                context.go_to.push(Destination::Run(wanted));
+                (self.found, self.stage) = (None, Stage::Find);
+            }
+        }
+    }
+
     /// Reason for which this stage cannot be gone to.
     fn blocked(&self, stage: Stage, context: &PageContext<'_>) -> Option<&'static str> {
         let words = &context.words.case;
@@ -100,7 +129,7 @@ impl CasePage {
             .as_ref()
             .is_some_and(|found| found.told.is_failed());
         // A run that goes on is looked at where it goes on.
-        // So is one that is over until it is taken, which only these two steps do.
+        // A run that is over counts as well until its result is taken, which only these two steps do.
         let takes = matches!(self.stage, Stage::Find | Stage::Prove);
         let runs =
             unit.run_of_case().is_some_and(Progress::is_running) || takes && self.is_over(context);
@@ -128,12 +157,7 @@ impl CasePage {
             Stage::Start => self.unit.clone().unwrap_or_default(),
             Stage::Unit => self.tiles.said(words),
             Stage::Find => match (run, stage == self.stage) {
-                (Some(run), true) => {
-                    let counts = run.counts();
-                    let said: [(&str, &dyn std::fmt::Display); 2] =
-                        [("n", &counts.run()), ("all", &counts.planned)];
-                    fill(words.frame.running, &said)
-                }
+                (Some(run), true) => running_text(run, words),
                 _ => self
                     .found
                     .as_ref()

@@ -3,10 +3,9 @@
 use eframe::egui::Ui;
 use egui_material_icons::icons::ICON_ARROW_FORWARD;
 
-use super::{CasePage, Stage, title};
 use crate::parts::{ActionPlace, Face, Look, choice};
 use crate::request::Request;
-use crate::{Destination, PageContext, Sizes};
+use crate::{Destination, PageContext, Sizes, Wanted};
 use ptu_report::words::Words;
 use ptu_runs::symptoms::{self, Symptom};
 
@@ -47,7 +46,8 @@ impl SymptomTiles {
         }
     }
 
-    fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>) {
+    /// Draws the tiles to choose from.
+    pub fn show(&mut self, ui: &mut Ui, context: &PageContext<'_>) {
         if self.symptoms.is_idle() {
             let asked = context.queries.run(|paths| {
                 let scripts = &paths.scripts;
@@ -78,30 +78,27 @@ impl SymptomTiles {
     }
 }
 
-impl CasePage {
-    pub(super) fn unit(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        self.name(ui, context);
-        title(ui, context.words.case.what_is_wrong);
-        self.tiles.show(ui, context);
-        ui.add_space(8.0);
-        self.known.show(ui, context.words, context.go_to);
-    }
-
-    pub(super) fn unit_foot(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
+impl SymptomTiles {
+    /// The button that has the part looked for; true when it was clicked.
+    pub fn foot(&self, ui: &mut Ui, context: &mut PageContext<'_>) -> bool {
         let words = &context.words.case;
         let may = context.units.chosen().may_run();
         let named = !context.settings.operator.trim().is_empty();
         let place = ActionPlace::new(ui, "case find", may);
-        let why_not = match (named, self.tiles.chosen.is_some()) {
+        let why_not = match (named, self.chosen.is_some()) {
             (false, _) => Some(words.name_first),
             (true, false) => Some(words.what_is_wrong),
             (true, true) => (!may).then_some(words.under_way),
         };
         let find = Face::new(Look::Primary, words.find_part).off(why_not);
-        if place.clicked(&find.end(ICON_ARROW_FORWARD).show(ui)) {
-            let symptom = self.tiles.symptom();
-            context.go_to.push(Destination::FindPart(symptom));
-            (self.found, self.stage) = (None, Stage::Find);
+        let clicked = place.clicked(&find.end(ICON_ARROW_FORWARD).show(ui));
+        if clicked {
+            let wanted = Wanted::Part {
+                symptom: self.symptom(),
+                adaptive: true,
+            };
+            context.go_to.push(Destination::Run(wanted));
         }
+        clicked
     }
 }

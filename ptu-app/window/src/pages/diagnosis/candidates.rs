@@ -89,7 +89,7 @@ fn show(
             ui.label(name.strong().size(17.0));
         }
         ui.label(context.words.fault_text(&candidate.text));
-        // As it is typed.
+        // The name of the fault as it is typed on the command line.
         let typed = RichText::new(&candidate.fault).small();
         ui.label(typed.color(Palette::of(ui).quiet));
     });

@@ -11,7 +11,7 @@ use fault_db::{Id, RunOccurrence};
 use super::case::{Told, named};
 use crate::parts::{Card, Face, Look, RunList, empty};
 use crate::request::Request;
-use crate::{DataPaths, Destination, PageContext, Palette};
+use crate::{DataPaths, Destination, PageContext, Palette, Wanted};
 use ptu_report::naming::{PartNames, failed_turn};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
@@ -187,20 +187,16 @@ fn next_check(ui: &mut Ui, context: &mut PageContext<'_>, answer: &Answer) {
     ui.horizontal_wrapped(|ui| {
         ui.label(words.next_check);
         ui.label(RichText::new(context.words.check(&next.check)).strong());
-        let gains = fill(
-            words.gains,
-            &[
-                ("bits", &format!("{:.2}", next.gain_bits)),
-                ("time", &format!("{:.0} s", next.cost_s)),
-            ],
-        );
+        let bits = format!("{:.2}", next.gain_bits);
+        let time = format!("{:.0} s", next.cost_s);
+        let gains = fill(words.gains, &[("bits", &bits), ("time", &time)]);
         ui.label(RichText::new(gains).color(Palette::of(ui).quiet));
         if ui.button(RichText::new(words.run_it).strong()).clicked() {
-            context.go_to.push(Destination::RunStep {
+            context.go_to.push(Destination::Run(Wanted::Step {
                 procedure: next.check.procedure.clone(),
                 step: next.check.step.clone(),
                 unit: answer.run.run.unit_serial.clone(),
-            });
+            }));
         }
     });
 }

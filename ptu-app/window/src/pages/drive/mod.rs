@@ -19,7 +19,7 @@ use ptu_runs::drive::{Driven, drive_all};
 use ptu_runs::pool::cores;
 use ptu_runs::pool::held;
 
-/// Where the thread that drives puts what was driven.
+/// Slot into which the thread that drives puts its results.
 type Slot = Arc<Mutex<Option<Vec<Driven>>>>;
 
 #[derive(Default)]

@@ -99,7 +99,7 @@ impl Change {
         }
         ui.horizontal_wrapped(|ui| {
             for state in TOWARDS {
-                // What closed it is taken back while nothing rests on that.
+                // Reopening takes the closing back, while nothing rests on that.
                 let reopens = (fault.state, state) == (FaultState::Closed, FaultState::Open);
                 let taken_back = reopens && was_closed_last(detail) && !seen_since;
                 if fault.state.next(FaultAction::towards(state)).is_err() && !taken_back {
@@ -122,7 +122,7 @@ impl Change {
                 }
             }
         });
-        let may = unnamed.is_none() && busy.is_none() && !context.settings.locked;
+        let may = unnamed.is_none() && busy.is_none() && !context.settings.is_locked();
         let can = |asked: &&mut Asked| fault.state.next(FaultAction::towards(asked.to)).is_ok();
         let Some(asked) = self.asked.as_mut().filter(can).filter(|_| may) else {
             return;

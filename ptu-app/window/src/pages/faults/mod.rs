@@ -171,7 +171,7 @@ impl FaultsPage {
     }
 
     fn chosen(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        // What others write takes no click away; the store refuses what it no longer allows.
+        // A change by others takes no click away; the store refuses one that it no longer allows.
         let stale = self.changed_here;
         let none = PartNames::default();
         let parts = self

@@ -20,7 +20,7 @@ use super::bench::{BenchSnapshot, Plot, chosen};
 use crate::messages::{About, told};
 use crate::parts::{RunNoteForm, Side};
 use crate::request::Request;
-use crate::{PageContext, Palette, Sizes};
+use crate::{PageContext, Palette, Sizes, Wanted};
 pub use conclusion::Concluded;
 pub use controls::why_not;
 use prepare::{Prepared, RunSettings, ShownSuite};
@@ -31,7 +31,6 @@ use ptu_runs::run::{BenchChoice, Suite};
 use results::ResultsView;
 pub use results::measurements;
 use selection::Selection;
-pub use wanted::Wanted;
 
 /// Least height of the live signals, points.
 const LIVE_LEAST: f32 = 140.0;
@@ -179,7 +178,7 @@ impl ProceduresPage {
 
     /// Takes what has come, whatever page is in front.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
-        if self.stops != context.units.stops() || context.settings.locked {
+        if self.stops != context.units.stops() || context.settings.is_locked() {
             // Nothing begins by itself after everything was stopped, nor while no name has been given.
             self.stops = context.units.stops();
             self.orders.clear();

@@ -2,9 +2,8 @@
 
 use eframe::egui::{Grid, Ui, vec2};
 
-use crate::parts::{progress, verdict_chip};
+use crate::parts::{progress, progress_text, verdict_chip};
 use crate::{PageContext, Palette};
-use ptu_report::words::fill;
 use ptu_runs::bench_worker::Phase;
 
 /// A line for each unit when there are several.
@@ -35,18 +34,12 @@ pub fn overview(ui: &mut Ui, context: &mut PageContext<'_>) {
                     continue;
                 };
                 progress(ui, vec2(160.0, 8.0), run, words);
-                let counts = run.counts();
-                let counts: [(&str, &dyn std::fmt::Display); 3] = [
-                    ("done", &counts.run()),
-                    ("all", &counts.planned),
-                    ("bad", &counts.not_passed()),
-                ];
                 ui.horizontal(|ui| {
                     if let Some(Some(outcome)) = &run.ended {
                         verdict_chip(ui, outcome.verdict, words);
                     }
                     let quiet = Palette::of(ui).quiet;
-                    ui.colored_label(quiet, fill(words.procedures.progress, &counts));
+                    ui.colored_label(quiet, progress_text(run, words));
                 });
                 ui.end_row();
             }

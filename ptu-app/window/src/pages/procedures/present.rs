@@ -8,7 +8,7 @@ use fault_db::StepKind;
 
 use super::results::{measurements, source};
 use super::tree::minutes;
-use crate::parts::{ActionPlace, Face, Look, ground, progress, verdict_chip};
+use crate::parts::{ActionPlace, Face, Look, ground, progress, progress_text, verdict_chip};
 use crate::{Palette, Sizes};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Progress, RunPosition};
@@ -79,13 +79,7 @@ fn head(ui: &mut Ui, words: &Words, run: &Progress) {
     ui.label(RichText::new(of_unit).color(quiet));
     progress(ui, vec2(ui.available_width(), BAR), run, words);
     ui.horizontal_wrapped(|ui| {
-        let counts = run.counts();
-        let counts: [(&str, &dyn std::fmt::Display); 3] = [
-            ("done", &counts.run()),
-            ("all", &counts.planned),
-            ("bad", &counts.not_passed()),
-        ];
-        ui.label(fill(procedures.progress, &counts));
+        ui.label(progress_text(run, words));
         match &run.ended {
             Some(Some(outcome)) => {
                 verdict_chip(ui, outcome.verdict, words);

@@ -37,7 +37,7 @@ impl ProceduresPage {
                 (Choice::All, said.all),
                 (Choice::None, said.none),
             ];
-            // What is not loaded is not chosen.
+            // Before the procedures are loaded there is nothing to choose from.
             let offered = match self.suite {
                 Request::Ready(_) => &all[..],
                 _ => &all[..1],

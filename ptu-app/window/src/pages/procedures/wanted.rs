@@ -1,58 +1,13 @@
 //! Runs that another page asks for: a step, the search for a part, the proof of a repair.
 
-use std::collections::BTreeSet;
-
 use super::prepare::RunSettings;
 use super::selection::Selection;
 use super::{ProceduresPage, controls};
-use crate::PageContext;
 use crate::messages::told;
+use crate::{PageContext, Wanted};
 use ptu_report::words::fill;
-use ptu_runs::symptoms::Symptom;
-
-/// Run that another page asks for.
-pub enum Wanted {
-    Step {
-        procedure: String,
-        step: String,
-    },
-    /// Procedures for a faulty part: as few steps as it takes to find the part, or else all.
-    Part {
-        symptom: Option<Symptom>,
-        adaptive: bool,
-    },
-    /// Rest of a run that broke off with the link, once its unit is connected again.
-    Rest,
-    /// These procedures, and procedures that suspect the part.
-    Prove {
-        procedures: BTreeSet<String>,
-        part: String,
-    },
-}
 
 impl ProceduresPage {
-    /// Runs this step on the chosen unit if it is the one called `unit`.
-    pub fn run_step(
-        &mut self,
-        procedure: String,
-        step: String,
-        unit: &str,
-        context: &mut PageContext<'_>,
-    ) {
-        let words = &context.words.procedures;
-        let chosen = context.units.chosen();
-        if !chosen.may_run() {
-            context
-                .messages
-                .trouble(controls::why_not(chosen, context.words), told(""));
-        } else if chosen.name() != unit {
-            let said = fill(words.other_unit, &[("unit", &unit)]);
-            context.messages.trouble(said, told(""));
-        } else {
-            self.want(Wanted::Step { procedure, step }, context);
-        }
-    }
-
     /// The scripts are those of the run that broke off.
     pub fn goes_on(&self, context: &PageContext<'_>) -> bool {
         let suite = self.suite.value();
@@ -63,9 +18,20 @@ impl ProceduresPage {
         same.unwrap_or_default()
     }
 
-    /// Runs this on the chosen unit.
+    /// Runs this on the chosen unit; a step only if the unit is the one that the step is meant for.
     pub fn want(&mut self, wanted: Wanted, context: &mut PageContext<'_>) {
-        self.wanted = Some((wanted, context.units.chosen().id));
+        let chosen = context.units.chosen();
+        if let Wanted::Step { unit, .. } = &wanted {
+            let why_not = match chosen.may_run() {
+                true => fill(context.words.procedures.other_unit, &[("unit", unit)]),
+                false => controls::why_not(chosen, context.words).to_owned(),
+            };
+            if !chosen.may_run() || chosen.name() != *unit {
+                context.messages.trouble(why_not, told(""));
+                return;
+            }
+        }
+        self.wanted = Some((wanted, chosen.id));
         self.keep_loaded(context);
     }
 
@@ -99,7 +65,9 @@ impl ProceduresPage {
             Wanted::Part { .. } | Wanted::Prove { .. } => true,
         };
         let (selection, what) = match wanted {
-            Wanted::Step { procedure, step } => {
+            Wanted::Step {
+                procedure, step, ..
+            } => {
                 let found = all.iter().find(|known| known.id == procedure);
                 let only = found.map(|found| Selection::only(found, &step));
                 (only.unwrap_or_default(), format!("{procedure} {step}"))

@@ -3,7 +3,7 @@
 use eframe::egui::Ui;
 use fault_db::{Id, RunSummary};
 
-use super::SheetOf;
+use super::sheet_of::SheetOf;
 use crate::parts::{RunList, caption, pick};
 use ptu_report::naming::DOT;
 use ptu_report::words::Words;

@@ -2,6 +2,7 @@
 
 mod compare;
 mod file;
+mod sheet_of;
 mod strip;
 
 use std::path::PathBuf;
@@ -18,6 +19,7 @@ use ptu_report::naming::PartNames;
 use ptu_report::run::page::{Page, pages};
 use ptu_report::run::{CaseSheet, RunComparison, Sheet, SheetTrace};
 use ptu_report::words::{Language, fill};
+pub use sheet_of::SheetOf;
 
 #[derive(Default)]
 pub struct ReportPage {
@@ -46,31 +48,6 @@ struct Asked {
     of: SheetOf,
     language: Language,
     depot: String,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SheetOf {
-    Run(Id),
-    /// A fault's case, after this run.
-    Case {
-        fault: Id,
-        run: Id,
-    },
-    /// Two runs of a unit; with what passed in both, if wanted.
-    Compared {
-        before: Id,
-        after: Id,
-        all: bool,
-    },
-}
-
-impl SheetOf {
-    /// The run it ends with.
-    fn run(self) -> Id {
-        match self {
-            Self::Run(run) | Self::Case { run, .. } | Self::Compared { after: run, .. } => run,
-        }
-    }
 }
 
 struct Shown {

@@ -9,7 +9,7 @@ use crate::PageContext;
 use crate::parts::{
     ActionPlace, Face, Look, caption, drawings, path_edit, pick, segments, show_drawings,
 };
-use crate::request::CachedResponse;
+use crate::request::FollowingResponse;
 use ptu_report::signal::sketch;
 use ptu_report::words::Words;
 use ptu_runs::signal::{self, SAMPLE_HZ, Strength, Wave};
@@ -33,14 +33,8 @@ pub struct Generator {
     level_mv: f64,
     noisy: bool,
     snr_db: f64,
-    sketch: Sketch,
-}
-
-/// Sketch of a waveform, and the waveform that it shows.
-#[derive(Default)]
-struct Sketch {
-    of: Option<(Wave, Strength)>,
-    samples: CachedResponse<Vec<f32>>,
+    /// Beginning of the waveform, mV.
+    sketch: FollowingResponse<(Wave, Strength), Vec<f32>>,
 }
 
 impl Default for Generator {
@@ -53,7 +47,7 @@ impl Default for Generator {
             level_mv: 500.0,
             noisy: false,
             snr_db: 20.0,
-            sketch: Sketch::default(),
+            sketch: FollowingResponse::default(),
         }
     }
 }
@@ -142,10 +136,17 @@ impl Generator {
 
     /// Draws the waveform.
     pub fn sketch(&mut self, ui: &mut Ui, unit: &Arc<UnitConfig>, context: &PageContext<'_>) {
-        let (wave, strength) = (self.wave(), self.strength());
-        if let Some(wave) = wave {
-            self.sketch.show(ui, (&wave, strength), unit, context);
-        }
+        let Some(wave) = self.wave() else { return };
+        let (wanted, unit) = ((wave, self.strength()), unit.clone());
+        let make = move |_: &_, (wave, strength)| {
+            let samples = signal::samples(&wave, &unit, strength)?;
+            let count = (SKETCHED_S * f64::from(SAMPLE_HZ)) as usize;
+            Ok(samples.take(count).map(|mv| mv as f32).collect())
+        };
+        self.sketch.keep_up((wanted, true), context, make);
+        let plot = sketch(self.sketch.items(), f64::from(SAMPLE_HZ), context.words);
+        let room = vec2(ui.available_width(), SKETCH);
+        show_drawings(ui, &drawings(vec![plot], room), None);
     }
 
     fn strength(&self) -> Strength {
@@ -166,31 +167,5 @@ impl Generator {
         }
         let bytes = signal::bytes_of(&self.bytes).ok()?;
         (bytes.len() <= MOST_BYTES).then_some(Wave::Twc(bytes))
-    }
-}
-
-impl Sketch {
-    fn show(
-        &mut self,
-        ui: &mut Ui,
-        (wave, strength): (&Wave, Strength),
-        unit: &Arc<UnitConfig>,
-        context: &PageContext<'_>,
-    ) {
-        let now = (wave.clone(), strength);
-        if self.of.as_ref() != Some(&now) {
-            let (unit, (wave, strength)) = (unit.clone(), now.clone());
-            self.samples.request(context.queries.run(move |_| {
-                let samples = signal::samples(&wave, &unit, strength)?;
-                let count = (SKETCHED_S * f64::from(SAMPLE_HZ)) as usize;
-                Ok(samples.take(count).map(|mv| mv as f32).collect())
-            }));
-            self.of = Some(now);
-        }
-        self.samples.poll();
-        let samples = self.samples.items();
-        let plot = sketch(samples, f64::from(SAMPLE_HZ), context.words);
-        let room = vec2(ui.available_width(), SKETCH);
-        show_drawings(ui, &drawings(vec![plot], room), None);
     }
 }

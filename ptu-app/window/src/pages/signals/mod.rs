@@ -4,13 +4,13 @@ mod generator;
 mod seen;
 mod source;
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use eframe::egui::{CentralPanel, ScrollArea, Ui};
 
 use crate::PageContext;
 use crate::pages::signals::generator::Generator;
-use crate::pages::signals::seen::{Seen, View};
+use crate::pages::signals::seen::{Slot, View};
 use crate::pages::signals::source::Source;
 use crate::parts::{Job, foot, form, segments};
 use crate::request::Request;
@@ -18,9 +18,6 @@ use protocol::config::UnitConfig;
 use ptu_runs::failure::Trouble;
 use ptu_runs::pool::held;
 use ptu_runs::sound::{self, DeviceFound};
-
-/// Where a thread that reads or records puts how it looks now.
-type Slot = Arc<Mutex<Option<Seen>>>;
 
 struct Offered {
     unit: Arc<UnitConfig>,
@@ -87,7 +84,7 @@ impl SignalsPage {
             return;
         };
         let unit = offered.unit.clone();
-        let why_not = match (self.job.is_under_way(), context.settings.locked) {
+        let why_not = match (self.job.is_under_way(), context.settings.is_locked()) {
             (true, _) => Some(words.signals.under_way),
             (_, true) => Some(words.frame.locked),
             (false, false) => None,

@@ -1,6 +1,8 @@
 //! View of a recording: detected signals as a list, and below them the pictures of a channel, as in the
 //! report.
 
+use std::sync::{Arc, Mutex};
+
 use eframe::egui::{
     Color32, ColorImage, Context, RichText, ScrollArea, TextureHandle, TextureOptions, Ui, Vec2,
     vec2,
@@ -28,6 +30,9 @@ pub struct Seen {
     pub reading: Reading,
     pub pictures: Vec<Picture>,
 }
+
+/// Slot into which a thread that reads or records puts its latest picture.
+pub type Slot = Arc<Mutex<Option<Seen>>>;
 
 /// Shown reading, and its channel.
 #[derive(Default)]

@@ -6,9 +6,8 @@ use std::sync::Arc;
 use eframe::egui::{RichText, Ui};
 use protocol::config::UnitConfig;
 
-use super::Slot;
 use super::generator::{GeneratedSignal, Order};
-use super::seen::Seen;
+use super::seen::{Seen, Slot};
 use crate::parts::{Done, Face, Job, Look, caption, file_place, pick, usual_folder};
 use crate::{PageContext, Palette};
 use ptu_options::sound_file;
@@ -124,7 +123,7 @@ impl Source {
                 return Ok(Done::all(String::new(), Vec::new()));
             }
             let file = free_beside(&file);
-            let known = Calibrations::load(&sound_file::usual()?)?;
+            let known = Calibrations::load(&sound_file()?)?;
             let full_scale_mv = known.full_scale_mv(&device, Direction::Input);
             let mut receivers = Receivers::new(CHANNELS, f64::from(SAMPLE_HZ), &unit, true);
             let mut waiting = vec![Vec::new(); CHANNELS];
@@ -197,7 +196,7 @@ impl Source {
                     clipped.into_iter().collect(),
                 ));
             }
-            let known = Calibrations::load(&sound_file::usual()?)?;
+            let known = Calibrations::load(&sound_file()?)?;
             let full_scale_mv = known.full_scale_mv(&device, Direction::Output);
             let samples = signal::samples(&wave, &unit, strength)?;
             let side = match wave {

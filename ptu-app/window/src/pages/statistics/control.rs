@@ -11,6 +11,7 @@ use crate::parts::lane::{TEXT, y_at, y_axis};
 use crate::parts::look_back::since_us;
 use crate::parts::{caption, chip, ground, pick};
 use crate::request::FollowingResponse;
+use crate::settings::Measured;
 use crate::{DataPaths, PageContext, Palette, Sizes};
 use ptu_report::limits::short;
 use ptu_report::naming::{DOT, measurement};
@@ -29,14 +30,6 @@ const DOT_RADIUS: f32 = 2.5;
 const NAMES: f32 = 160.0;
 const STEPS: f32 = 240.0;
 
-/// The measurement shown, of one step or of all.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Measured {
-    measurement: Option<String>,
-    /// Procedure and step.
-    step: Option<(String, String)>,
-}
-
 /// Choices, and the trend of the chosen measurement.
 struct Known {
     names: Vec<String>,
@@ -46,20 +39,12 @@ struct Known {
 
 #[derive(Default)]
 pub struct ControlChart {
-    of: Measured,
+    /// Choice of a person.
+    pub of: Measured,
     known: FollowingResponse<(Measured, Asked), Known>,
 }
 
 impl ControlChart {
-    /// The measurement and the step that were chosen.
-    pub fn chosen(&self) -> (Option<String>, Option<(String, String)>) {
-        (self.of.measurement.clone(), self.of.step.clone())
-    }
-
-    pub fn choose(&mut self, measurement: Option<String>, step: Option<(String, String)>) {
-        self.of = Measured { measurement, step };
-    }
-
     /// Asks again when the data or what is asked for are others.
     pub fn keep_up(&mut self, asked: Asked, context: &PageContext<'_>) {
         let wanted = ((self.of.clone(), asked), true);
@@ -248,7 +233,7 @@ fn chart(ui: &mut Ui, words: &Words, trend: &Trend) {
             true => painter.extend(Shape::dashed_line(&[from, to], stroke, 4.0, 4.0)),
             false => drop(painter.line_segment([from, to], stroke)),
         }
-        // One beside another would be written over it.
+        // Names of two lines that are close would be written over each other.
         if named.iter().all(|other| (other - y).abs() > TEXT) {
             let text = fill(name, &[("n", &short(level))]);
             let at = to + vec2(8.0, 0.0);

@@ -146,17 +146,14 @@ impl StatisticsPage {
 
     /// Questions that were given a name.
     fn questions(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        let (measurement, step) = self.control.chosen();
         let now = StatisticsQuestion {
             days: self.days,
-            measurement,
-            step,
+            measured: self.control.of.clone(),
         };
         let saved = (&mut context.settings.statistics, &mut self.question);
         if let Some(asked) = saved_questions(ui, &SavedSaid::questions(context.words), saved, &now)
         {
-            self.days = asked.days;
-            self.control.choose(asked.measurement, asked.step);
+            (self.days, self.control.of) = (asked.days, asked.measured);
         }
     }
 

@@ -22,6 +22,7 @@ use std::sync::Arc;
 use eframe::egui::{CentralPanel, Frame, Panel, RichText, Ui};
 use fault_db::Id;
 
+use crate::messages::told;
 use crate::parts::{Side, link};
 use crate::{Destination, PageContext, Palette};
 use compared_trace::OverlayRequest;
@@ -32,7 +33,8 @@ use notes::TraceNotes;
 use ptu_report::naming::PartNames;
 use ptu_report::trace_view::TracePlot;
 use ptu_report::trace_view::listing::{self, OpenTrace};
-use ptu_report::words::fill;
+use ptu_report::words::{Words, fill};
+use ptu_runs::failure::Trouble;
 use record_comparison::RecordComparison;
 pub use small::SmallTrace;
 
@@ -111,8 +113,8 @@ impl TracesPage {
                 failed => self.opening = failed,
             }
             if let Request::Failed(why) = &self.opening {
-                let said = context.words.traces.cannot_open;
-                context.messages.trouble(said, why.clone());
+                let said = cannot_open(why, context.words);
+                context.messages.trouble(said, told(""));
             }
         }
         if let Some(scene) = &mut self.scene {
@@ -125,9 +127,13 @@ impl TracesPage {
     fn central(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         let Some(scene) = &mut self.scene else {
-            match self.opening.is_idle() {
-                true => drop(ui.label(words.traces.choose_one)),
-                false => drop(self.opening.shown(ui, words)),
+            match &self.opening {
+                Request::Idle => drop(ui.label(words.traces.choose_one)),
+                Request::Failed(why) => {
+                    let bad = Palette::of(ui).bad;
+                    ui.label(RichText::new(cannot_open(why, words)).color(bad));
+                }
+                Request::Pending(_) | Request::Ready(_) => drop(ui.label(words.common.loading)),
             }
             return;
         };
@@ -169,6 +175,11 @@ impl TracesPage {
             .frame(Frame::NONE)
             .show(ui, |ui| self.painted.lanes(ui, scene, &self.notes, words));
     }
+}
+
+/// A trace that cannot be opened, and why, in one sentence.
+fn cannot_open(why: &Trouble, words: &Words) -> String {
+    [words.traces.cannot_open, &*words.trouble(why)].join(": ")
 }
 
 /// Whose trace it is, what is amiss with it, and ways on from here.

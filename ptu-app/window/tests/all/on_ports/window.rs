@@ -141,20 +141,13 @@ fn a_cable_pulled_in_mid_run_is_said_and_the_record_closed() {
     settings.unit.endpoint = unit.address.clone();
     let mut window = Window::with(Place::new(), scripts(), settings);
     window.connect();
-    window.until("the unit", |window| {
-        window.app().units.chosen().phase() == Phase::Idle
-    });
+    window.wait_for_phase(Phase::Idle);
     window.click("시험 시작");
-    window.until("a step", |window| {
-        let run = window.app().units.chosen().run.as_ref();
-        run.is_some_and(|run| run.counts().run() > 0)
-    });
+    window.until("a step", |window| window.steps_run() > 0);
     unit.kill();
     window.wait_for_part("장치와의 링크가 끊어졌습니다");
     window.wait_for_part("시험 종료: 판정 불가");
-    window.until("disconnected", |window| {
-        window.app().units.chosen().phase() == Phase::Offline
-    });
+    window.wait_for_phase(Phase::Offline);
     let run = latest(&window);
     assert_eq!(run["run"]["verdict"], "error");
     assert_eq!(run["run"]["state"], "finished");

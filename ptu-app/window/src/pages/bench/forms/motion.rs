@@ -161,21 +161,15 @@ mod tests {
             accel_kmhps: 0.0,
             ..MotionForm::default()
         };
-        assert_eq!(
-            form.test_go(),
-            Stimulus::PtuSpeed {
+        let (go, stand) = (Speed::from_kmh(40.0), Speed::ZERO);
+        for (sent, to) in [(form.test_go(), go), (form.test_stand(), stand)] {
+            let expected = Stimulus::PtuSpeed {
                 channels: 0b10,
                 backward: true,
-                to: Speed::from_kmh(40.0),
-                accel_mps2: 0.0
-            }
-        );
-        assert!(matches!(
-            form.test_stand(),
-            Stimulus::PtuSpeed {
-                to: Speed::ZERO,
-                ..
-            }
-        ));
+                to,
+                accel_mps2: 0.0,
+            };
+            assert_eq!(sent, expected);
+        }
     }
 }

@@ -119,7 +119,14 @@ pub fn named(ui: &Ui, rect: Rect, salt: impl AsIdSalt, name: impl Fn() -> String
     }
 }
 
-/// Text of one size, where it is told.
-pub fn put(painter: &Painter, at: Pos2, align: Align2, size: f32, colour: Color32, text: &str) {
-    painter.text(at, align, text, FontId::proportional(size), colour);
+/// Text to the right of this place.
+pub fn put_left(painter: &Painter, at: Pos2, size: f32, colour: Color32, text: &str) {
+    let font = FontId::proportional(size);
+    painter.text(at, Align2::LEFT_CENTER, text, font, colour);
+}
+
+/// Text around this place.
+pub fn put_centred(painter: &Painter, at: Pos2, size: f32, colour: Color32, text: &str) {
+    let font = FontId::proportional(size);
+    painter.text(at, Align2::CENTER_CENTER, text, font, colour);
 }

@@ -3,12 +3,12 @@
 use std::f32::consts::{PI, TAU};
 
 use eframe::egui::{
-    Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
+    Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
 };
 use protocol::signal::Signal;
 
 use super::View;
-use super::card::{named, put};
+use super::card::{named, put_centred, put_left};
 use crate::Palette;
 use crate::pages::bench::scale::Dial;
 use crate::pages::bench::text::UNKNOWN;
@@ -86,23 +86,12 @@ pub fn dial(ui: &mut Ui, size: Vec2, scale: Dial, view: &View<'_>, palette: &Pal
         .zip(limit)
         .is_some_and(|(speed, limit)| speed > limit);
     let colour = if over { palette.bad } else { strong };
-    put(
-        &painter,
-        face.middle + vec2(0.0, 2.0),
-        Align2::CENTER_CENTER,
-        30.0,
-        colour,
-        &digits,
-    );
-    let unit_at = face.middle + vec2(0.0, 25.0);
-    put(
-        &painter,
-        unit_at,
-        Align2::CENTER_CENTER,
-        12.0,
-        palette.quiet,
-        "km/h",
-    );
+    let centred = |below, size, colour, text: &str| {
+        let at = face.middle + vec2(0.0, below);
+        put_centred(&painter, at, size, colour, text);
+    };
+    centred(2.0, 30.0, colour, &digits);
+    centred(25.0, 12.0, palette.quiet, "km/h");
     legend(ui, area, speeds, colours, words, palette);
 }
 
@@ -113,40 +102,19 @@ fn paint_speeds(
     [measured, truth, limit, target]: [Option<f64>; 4],
     colours: [Color32; 4],
 ) {
-    if let Some(limit) = limit {
-        face.mark(
-            painter,
-            limit,
-            face.radius - 3.0,
-            face.radius + 10.0,
-            colours[2],
-        );
-    }
-    if let Some(target) = target {
-        face.mark(
-            painter,
-            target,
-            face.radius - 9.0,
-            face.radius - 22.0,
-            colours[3],
-        );
-    }
+    let radius = face.radius;
+    let mark = |kmh: Option<f64>, tip, foot, colour| {
+        if let Some(kmh) = kmh {
+            face.mark(painter, kmh, tip, foot, colour);
+        }
+    };
+    mark(limit, radius - 3.0, radius + 10.0, colours[2]);
+    mark(target, radius - 9.0, radius - 22.0, colours[3]);
     if let Some(truth) = truth {
-        let needle = [
-            face.at(truth, face.radius * 0.38),
-            face.at(truth, face.radius - 2.0),
-        ];
+        let needle = [radius * 0.38, radius - 2.0].map(|radius| face.at(truth, radius));
         painter.line_segment(needle, Stroke::new(2.0, colours[1]));
     }
-    if let Some(measured) = measured {
-        face.mark(
-            painter,
-            measured,
-            face.radius - 4.0,
-            face.radius * 0.36,
-            colours[0],
-        );
-    }
+    mark(measured, radius - 4.0, radius * 0.36, colours[0]);
 }
 
 fn paint_face(painter: &Painter, face: &DialFace, limit: Option<f64>, palette: &Palette) {
@@ -164,16 +132,8 @@ fn paint_face(painter: &Painter, face: &DialFace, limit: Option<f64>, palette: &
     for kmh in face.scale.numbers() {
         let points = [face.at(kmh, face.radius), face.at(kmh, face.radius - 9.0)];
         painter.line_segment(points, Stroke::new(2.0, palette.quiet));
-        let at = face.at(kmh, face.radius - 19.0);
-        let number = format!("{kmh:.0}");
-        put(
-            painter,
-            at,
-            Align2::CENTER_CENTER,
-            12.0,
-            palette.quiet,
-            &number,
-        );
+        let (at, number) = (face.at(kmh, face.radius - 19.0), format!("{kmh:.0}"));
+        put_centred(painter, at, 12.0, palette.quiet, &number);
     }
 }
 
@@ -201,14 +161,7 @@ fn legend(
             colour,
         );
         let name_at = pos2(rect.left() + 22.0, rect.top() + height * 0.28);
-        put(
-            painter,
-            name_at,
-            Align2::LEFT_CENTER,
-            12.0,
-            palette.quiet,
-            name,
-        );
+        put_left(painter, name_at, 12.0, palette.quiet, name);
         let value = match speed {
             Some(kmh) => format!("{kmh:.1} km/h"),
             None => words.not_known.to_owned(),
@@ -218,7 +171,7 @@ fn legend(
             None => (13.0, palette.quiet),
         };
         let value_at = pos2(rect.left() + 22.0, rect.top() + height * 0.67);
-        put(painter, value_at, Align2::LEFT_CENTER, size, ink, &value);
+        put_left(painter, value_at, size, ink, &value);
         named(ui, rect, ("speed", place), || format!("{name}: {value}"));
     }
 }

@@ -1,10 +1,10 @@
 //! Effort from ATO to TCMS to the train, and the state of TCMS.
 
-use eframe::egui::{Align2, Color32, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use eframe::egui::{Align2, Color32, FontId, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 use protocol::signal::Signal;
 
 use super::View;
-use super::card::{Fact, facts, named, put};
+use super::card::{Fact, facts, named, put_left};
 use crate::Palette;
 use crate::pages::bench::live_copy::BenchSnapshot;
 use crate::pages::bench::scale::from_middle;
@@ -125,14 +125,7 @@ fn paint(ui: &mut Ui, name: &str, bar: Bar, palette: &Palette) {
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
     let painter = ui.painter();
     let left = pos2(area.left(), area.center().y);
-    put(
-        painter,
-        left,
-        Align2::LEFT_CENTER,
-        12.0,
-        palette.quiet,
-        name,
-    );
+    put_left(painter, left, 12.0, palette.quiet, name);
     let frame = Rect::from_min_max(
         pos2(area.left() + NAME, area.top() + 2.0),
         pos2(area.right() - SAID, area.bottom() - 2.0),
@@ -154,6 +147,7 @@ fn paint(ui: &mut Ui, name: &str, bar: Bar, palette: &Palette) {
     painter.vline(frame.center().x, frame.y_range(), middle);
     let ink = palette.ink;
     let right = pos2(area.right(), area.center().y);
-    put(painter, right, Align2::RIGHT_CENTER, 14.0, ink, &bar.said);
+    let font = FontId::proportional(14.0);
+    painter.text(right, Align2::RIGHT_CENTER, &bar.said, font, ink);
     named(ui, area, ("bar", name), || format!("{name}: {}", bar.said));
 }

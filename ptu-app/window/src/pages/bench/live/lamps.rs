@@ -1,10 +1,10 @@
 //! Lamps: dark when off, lit when on, dashed while the value is unknown.
 
-use eframe::egui::{Align2, Color32, Rect, RichText, Sense, Stroke, StrokeKind, Ui, Vec2};
+use eframe::egui::{Color32, Rect, RichText, Sense, Stroke, StrokeKind, Ui, Vec2};
 use eframe::egui::{pos2, vec2};
 use protocol::signal::Signal;
 
-use super::card::{named, put, write};
+use super::card::{named, put_centred, write};
 use crate::Palette;
 use crate::pages::bench::live_copy::BenchSnapshot;
 use crate::parts::dashed_outline;
@@ -153,14 +153,7 @@ fn paint(ui: &Ui, rect: Rect, lamp: &Lamp, says: &str, palette: &Palette) {
         LampState::Unknown => {
             let line = Stroke::new(1.0, palette.quiet);
             painter.extend(dashed_outline(rect.shrink(1.0), line, 5.0));
-            put(
-                painter,
-                bulb,
-                Align2::CENTER_CENTER,
-                18.0,
-                palette.warn,
-                "?",
-            );
+            put_centred(painter, bulb, 18.0, palette.warn, "?");
             (palette.quiet, palette.warn)
         }
     };

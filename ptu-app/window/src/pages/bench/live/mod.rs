@@ -15,7 +15,7 @@ use btu_rig::procedure::UnitEvent;
 use btu_rig::stimulus::StationData;
 use eframe::egui::{Ui, vec2};
 
-pub use card::{framed, heading, put};
+pub use card::{framed, heading, put_centred};
 pub use log::log;
 
 use super::live_copy::BenchSnapshot;

@@ -1,12 +1,12 @@
 //! The track strip: start, PSM1 to PSM4, stop point, train.
 
 use eframe::egui::{
-    Align2, Color32, Painter, Rect, RichText, Sense, Shape, Stroke, StrokeKind, Ui, pos2, vec2,
+    Color32, Painter, Rect, RichText, Sense, Shape, Stroke, StrokeKind, Ui, pos2, vec2,
 };
 use protocol::signal::Signal;
 
 use super::View;
-use super::card::{named, put, write};
+use super::card::{named, put_centred, put_left, write};
 use crate::Palette;
 use crate::pages::bench::text;
 use crate::pages::bench::track::Strip;
@@ -73,14 +73,7 @@ fn paint(ui: &Ui, area: Rect, strip: &Strip, words: &Bench, palette: &Palette) {
         Stroke::new(3.0, palette.bad),
     );
     let beside = pos2(stop + 5.0, rail - 12.0);
-    put(
-        painter,
-        beside,
-        Align2::LEFT_CENTER,
-        12.0,
-        palette.bad,
-        words.stop_point,
-    );
+    put_left(painter, beside, 12.0, palette.bad, words.stop_point);
     if let Some(unit) = strip.unit {
         let at = x(unit);
         let tick = vec![
@@ -137,14 +130,7 @@ fn paint_markers(
         low = taken - at < NEAR && !low;
         let y = if low { rail - 28.0 } else { rail + 17.0 };
         let name = format!("PSM{psm}");
-        put(
-            painter,
-            pos2(at, y),
-            Align2::CENTER_CENTER,
-            12.0,
-            colour,
-            &name,
-        );
+        put_centred(painter, pos2(at, y), 12.0, colour, &name);
         if low {
             painter.vline(at, y + 7.0..=rail - 9.0, Stroke::new(1.0, palette.grid));
         }
