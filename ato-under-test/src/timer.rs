@@ -44,8 +44,8 @@ pub struct Burst {
 }
 
 impl Burst {
-    /// One scan; true when it brings the `many`th occurrence of the span.
-    pub fn is_many(&mut self, now: Instant, occurs: bool, many: u32, span: Duration) -> bool {
+    /// One scan; true in the one that brings the `many`th occurrence of the span.
+    pub fn tells_many(&mut self, now: Instant, occurs: bool, many: u32, span: Duration) -> bool {
         if now.since(self.since) > span {
             (self.count, self.since, self.told) = (0, now, false);
         }

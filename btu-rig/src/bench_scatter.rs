@@ -94,7 +94,7 @@ impl BenchScatter {
         let scatter: Self =
             toml::from_str(text).map_err(|error| ConfigError::Syntax(error.to_string()))?;
         scatter.train.check()?;
-        check_spreads! { scatter.sensors;
+        check_spreads! { SensorScatter = scatter.sensors;
             level_factor: 0.1, 10.0;
             level_noise: 0.0, 0.2;
             carrier_offset_hz: -500.0, 500.0;
@@ -102,13 +102,13 @@ impl BenchScatter {
             rate_jitter_hz: 0.0, 5.0;
             tooth_pitch: 0.0, 0.1;
             spurious_pulses_per_s: 0.0, 100.0;
-        }
-        check_spreads! { scatter.timing;
+        }?;
+        check_spreads! { TimingScatter = scatter.timing;
             power_up_ms: 0.0, 1000.0;
             to_unit_ms: 0.0, 100.0;
             from_unit_ms: 0.0, 100.0;
             late_share: 0.0, 0.5;
-        }
+        }?;
         Ok(scatter)
     }
 

@@ -1,5 +1,5 @@
-//! Speed to run at: the most restrictive of limit and fixed speed, lowered by running mode
-//! [S0 §3.1.1, S2 §3.2], and of lower limits ahead.
+//! Speed to run at: the limit, or a lower one ahead, less a margin that depends on the running mode; no more than the
+//! fixed speed, and in slow running no more than `slow_kmh` [S0 §3.1.1, S2 §3.2].
 
 use protocol::Speed;
 use protocol::config::AtoConfig;
@@ -8,7 +8,8 @@ use protocol::message::RunningMode;
 use super::inputs::AtoInputs;
 use super::track_limit::{TrainPosition, limit_ahead};
 
-/// The cruising speed where the train is. `slowing_m` tells in which way it slows from one speed to a lower one, m/s.
+/// The cruising speed where the train is. `slowing_m` gives the distance, m, in which the train slows from one speed to
+/// a lower one, both in m/s.
 pub fn on_track(
     inputs: &AtoInputs<'_>,
     config: &AtoConfig,

@@ -9,14 +9,14 @@
 //!
 //! The model is held to the measured speed, and what it lacks (a brake that gives more or less, a gradient
 //! that is not in the track database) is estimated as a constant acceleration. Toward standstill pulses
-//! come so seldom that a measured speed says less than the model: there it goes on by itself.
+//! come so seldom that a measured speed says less than the model: there the model goes on by itself.
 
 use protocol::CYCLE;
 use protocol::config::{AtoTrainConfig, ObserverConfig};
 
 /// Cycles of efforts that are remembered: the longest dead time, 1 s.
 const CYCLES: usize = 22;
-/// Time a frame takes from the tachometer to ATO, s: a scan on each side.
+/// Time a frame takes from the tachometer to ATO, s: one scan.
 const FRAME_S: f64 = 0.01;
 /// Time between pulses at which a measured speed begins to lose its weight, and has none left, s.
 const PULSE_S: (f64, f64) = (0.034, 0.1);

@@ -9,7 +9,7 @@ use crate::kernel::{EventLog, hundredths};
 use crate::signals::AntennaSignal;
 use crate::timer::{OnDelay, ms};
 
-/// Greatest error of the beginning that a receiver states.
+/// Greatest error in the beginning of a code, as a receiver of waveforms states it by `heard_for`.
 const KNOWN_TO: Duration = Duration::from_ms(500);
 
 /// A code that comes more often than this within the hold time flickers; at a border that a train crosses it comes
@@ -33,7 +33,7 @@ pub struct CodeDecoder {
     /// time.
     comes_back: bool,
     heard: Heard,
-    /// When a more restrictive code took the place of another, or came back after it.
+    /// When a more restrictive code took the place of another, or was heard again after a less restrictive one.
     restricted: Option<Instant>,
     /// The last code that was heard beside the one in force, and when.
     other: Option<(Code, Instant)>,
@@ -86,7 +86,7 @@ impl CodeDecoder {
         if match_ != Code::None && match_ != self.code {
             self.other = Some((match_, now));
         }
-        // A code that is steady is detected with the scan in which its time is over.
+        // `Heard` counts each scan whole: its time is one scan longer than the time since a steady code began.
         let heard = self.heard.time(match_) + signal.heard_for;
         let enough = heard >= detect + SCAN || !confirms;
         let takes_over = enough && match_ != Code::None && stricter(match_, self.code);

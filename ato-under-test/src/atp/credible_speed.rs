@@ -1,10 +1,10 @@
 //! Plausibility of the speed of both tachometers: a speed that no train can have is not believed.
 //!
 //! A train slows by its adhesion at most. Where both inputs fall faster, pulses are missing: a connector, the supply
-//! of both sensors, wheels that are locked. Then the train counts as moving until its brake has been applied for as
-//! long as a stop from the last speed that was believed takes at the least rate, and TCMS, where it tells its speed,
-//! says that its own axles stand. The train also counts as moving while TCMS tells of axles that turn and no
-//! tachometer does, or that turn much faster than both. Power that moves nothing from rest is cut.
+//! of both sensors, wheels that are locked. Then the train counts as moving until pulses are back, or until its brake
+//! has had the time for a stop from the last believed speed at the least rate, and TCMS, where it tells a speed, tells
+//! of axles that stand. The train also counts as moving while TCMS tells of axles that turn and no tachometer does, or
+//! that turn much faster than both tachometers. Power that moves nothing from rest is cut.
 //!
 //! A clock that is fast makes all speeds too low: where TCMS's counter contradicts the clock, speeds are raised by
 //! the same share.
@@ -37,6 +37,7 @@ pub struct SpeedEvidence {
     pub acknowledge: bool,
     /// The speeds come from test signals, which change as a tester likes.
     pub tested: bool,
+    /// An injected fault has put this check out of action.
     pub unguarded: bool,
 }
 

@@ -11,11 +11,11 @@ use super::sides::contacts;
 use crate::kernel::EventLog;
 use crate::timer::{Burst, Edge, OnDelay, ms};
 
-/// Time a train that has just stopped has until its place counts: alignment is known a scan after
-/// standstill.
+/// Time for which a train must stand at a platform and not be aligned before `DoorEnableRefused` is logged: alignment
+/// is known a scan after standstill.
 const SETTLES: Duration = Duration::from_ms(200);
 
-/// Doors ordered to open so often in this time are not opened by a person: a contact chatters.
+/// Doors that seem to open so often in this time are not opened by a person: a contact chatters.
 const CHATTER_OPENINGS: u32 = 4;
 const CHATTER_SPAN: Duration = Duration::from_ms(1_000);
 
@@ -26,7 +26,7 @@ pub struct DoorInputs {
     pub lines: Option<DoorLines>,
     /// Doors that open without being enabled are supervised: a cab is active, and nothing is wrong with the function.
     pub supervised: bool,
-    /// Enables last until the doors are proved closed: nothing is wrong with that.
+    /// Enables last until the doors are proved closed: nothing is wrong with this function.
     pub latched: bool,
     pub standstill: bool,
     pub aligned: bool,
@@ -77,7 +77,7 @@ impl Doors {
         let span = ms(config.open_moving_ms);
         let closed = inputs.lines.is_none_or(DoorLines::closed);
         let opens = self.unproved.rises(!closed);
-        if (self.openings).is_many(now, opens, CHATTER_OPENINGS, CHATTER_SPAN) {
+        if (self.openings).tells_many(now, opens, CHATTER_OPENINGS, CHATTER_SPAN) {
             log.push(now, Event::DoorChatters, CHATTER_OPENINGS as i32);
         }
         self.open_m = if closed {
@@ -113,8 +113,8 @@ impl Doors {
         open_moving
     }
 
-    /// Doors that are open without being enabled hold the train. That they opened so is an event; doors that were
-    /// enabled when they opened, and are no longer, are none.
+    /// Holds the train while doors are open without being enabled. Logs doors that opened without being enabled, but
+    /// not doors that were enabled when they opened and are no longer. Logs lines that contradict each other.
     fn supervise(
         &mut self,
         now: Instant,
@@ -193,7 +193,7 @@ mod tests {
         }
     }
 
-    /// A standing train at a platform on this side, or at none.
+    /// Doors of a train that stands at a platform, with their log and clock.
     struct Train {
         doors: Doors,
         log: EventLog,

@@ -2,7 +2,7 @@
 
 use protocol::message::{DoorSide, Outputs};
 
-/// The side of which this is true.
+/// The side whose argument is true; `Both` or `None` where both or neither are.
 pub const fn side_of(left: bool, right: bool) -> DoorSide {
     match (left, right) {
         (false, false) => DoorSide::None,

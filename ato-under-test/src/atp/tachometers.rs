@@ -93,6 +93,7 @@ impl Tachometers {
             .for_each(|meter| meter.set_pulse(pulse_m));
     }
 
+    /// One scan; `evidence` is of the same `inputs`.
     pub fn step(
         &mut self,
         now: Instant,
@@ -117,7 +118,7 @@ impl Tachometers {
                 self.loose_mps2 = loose;
             }
             let event = [Event::TachoNoise1, Event::TachoNoise2][i];
-            if self.noise[i].is_many(now, impossible, NOISE_SCANS, NOISE_SPAN) {
+            if self.noise[i].tells_many(now, impossible, NOISE_SCANS, NOISE_SPAN) {
                 log.push(now, event, hundredths(jump));
             }
         }

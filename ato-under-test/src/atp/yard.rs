@@ -1,7 +1,8 @@
-//! Where yard mode ends: a code of the line, or one that cancels yard mode, takes its limit away.
+//! Where yard mode ends: at a code of the line, or at one that cancels yard mode.
 //!
-//! Then the code counts as under cab signal, and no more than the yard's limit is permitted. A yard code gives the limit
-//! back; so does the mode switch, when it leaves its position and comes back. A yard without any code changes nothing.
+//! Then the lower one of the yard's limit and the code's limit under cab signal holds. A yard code gives the yard's
+//! limit back; so does the mode switch, when it leaves its position and comes back. A yard without any code changes
+//! nothing.
 //! Where the code table has no codes for the yard, only a code that says stop ends it, and one that lets a train run gives
 //! the limit back.
 

@@ -6,7 +6,8 @@ use protocol::{Duration, Instant};
 use crate::receivers::Sampled;
 use crate::timer::at_rate;
 
-/// Time without a frame after which a second code counts as gone: two are lost.
+/// Time without a `Crosstalk` frame after which the second code counts as gone: two of these frames, which come every
+/// 50 ms, are lost.
 const CROSSTALK_LASTS: Duration = Duration::from_ms(150);
 
 /// Latched I/O inputs.
@@ -18,7 +19,7 @@ pub struct IoImage {
     heard: Option<Instant>,
     pub alive: bool,
     timeout: Duration,
-    /// Rate of the clock that times the inputs.
+    /// Rate of the unit's clock; an injected fault makes it other than 1.
     pub clock_rate: f64,
     crosstalk: Option<(Crosstalk, Instant)>,
     pub sampled: Option<Sampled>,

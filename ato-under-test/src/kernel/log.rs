@@ -9,12 +9,12 @@ use super::Ring;
 /// Entries kept; older ones fall off and their indices stay used.
 pub const LOG_CAPACITY: usize = protocol::event::LOG_ENTRIES;
 
-/// Parameter of an event in hundredths of its unit.
+/// A value in hundredths of its unit, as events and messages carry it.
 pub fn hundredths(value: f64) -> i32 {
     libm::round(value * 100.0) as i32
 }
 
-/// Parameter of an event in hundredths of a percent.
+/// A share in hundredths of a percent, as events carry it.
 pub fn hundredths_of_percent(share: f64) -> i32 {
     libm::round(share * 1e4) as i32
 }
@@ -49,7 +49,11 @@ impl EventLog {
             code: event.definition().code,
             at_ms: now.stamp_ms(),
             parameter,
-            ..self.frame
+            speed_cms: self.frame.speed_cms,
+            limit_cms: self.frame.limit_cms,
+            position_cm: self.frame.position_cm,
+            mode: self.frame.mode,
+            eb_cause: self.frame.eb_cause,
         });
     }
 

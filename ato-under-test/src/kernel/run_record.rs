@@ -32,8 +32,12 @@ impl RunRecord {
             index: self.rows.next_index(),
             run: self.run,
             at_ms: now.stamp_ms(),
+            position_cm: cycle.position_cm,
+            speed_cms: cycle.speed_cms,
+            target_cms: cycle.target_cms,
+            effort: cycle.effort,
             marker: if passed { cycle.marker } else { 0 },
-            ..cycle
+            ato_state: cycle.ato_state,
         };
         if self.rows.newest().is_some_and(|last| repeats(last, &row)) {
             return;

@@ -72,7 +72,7 @@ mod tests {
     use alloc::vec::Vec;
 
     use super::*;
-    use crate::for_tests::{parameters, sg100};
+    use crate::for_tests::{logged, sg100};
 
     /// Edges as (time in ms, marker), those that count, and the parameters of what is blamed on TRA.
     fn counted(edges: &[(u64, u8)]) -> (Vec<(u64, u8)>, Vec<i32>) {
@@ -84,7 +84,15 @@ mod tests {
             debounce.take(now, pulse, true, &config, &mut log).is_some()
         };
         let first = edges.iter().filter(take).copied().collect();
-        (first, parameters(&log, Event::TraBounces))
+        let told = logged(&log);
+        assert!(
+            told.iter()
+                .all(|(code, _)| *code == Event::TraBounces.definition().code)
+        );
+        (
+            first,
+            told.into_iter().map(|(_, parameter)| parameter).collect(),
+        )
     }
 
     #[test]

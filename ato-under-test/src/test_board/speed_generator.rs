@@ -41,7 +41,7 @@ impl SpeedGenerator {
         self.request = request;
     }
 
-    /// Makes pulses of this input, 0 or 1.
+    /// Whether the generator makes pulses in place of this tachometer, 0 or 1.
     pub fn drives(&self, channel: usize) -> bool {
         self.request.channels & (1 << channel) != 0
     }
@@ -74,7 +74,7 @@ impl SpeedGenerator {
         pulses
     }
 
-    /// Speed of the pulses that left it, measured by their edges.
+    /// Speed of the pulses that left the generator, measured by their edges.
     pub fn measured(&self) -> Speed {
         self.counter.speed
     }

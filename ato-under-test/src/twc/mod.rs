@@ -189,8 +189,9 @@ impl Twc {
             answered_seq: sender.seq(),
             station: data.station,
             train_number: if own == 0 { data.train_number } else { own },
+            mode: train.mode,
             bits,
-            ..train
+            speed_cms: train.speed_cms,
         }
     }
 }

@@ -9,7 +9,7 @@ use protocol::message::{
 };
 
 use super::Unit;
-use super::train_state::{StateReport, dated};
+use super::train_state::StateReport;
 use crate::atp::{Code, shown_cause};
 use crate::kernel::hundredths;
 
@@ -129,8 +129,8 @@ impl Unit {
             return;
         };
         let mut state = train_state(self, now);
-        let dated = (dated(&state), self.tested().twc.received);
-        if let Some(held) = self.state_report.step(dated, changes, cycle) {
+        let received = self.tested().twc.received;
+        if let Some(held) = (self.state_report).step((&state, received), changes, cycle) {
             state.held = held;
             self.ports.send(now, &Message::from(state), out);
         }

@@ -9,8 +9,8 @@ const SPACING: u8 = 3;
 /// The values of a state that a frame dates to its scan, and the number of frames received through TWC.
 type Dated = (TrainState, u16);
 
-/// What of a state is dated; the rest, which differs from scan to scan, is left out.
-pub fn dated(state: &TrainState) -> TrainState {
+/// The values of a state that a frame dates to its scan; all others are left out.
+fn dated(state: &TrainState) -> TrainState {
     TrainState {
         outputs: state.outputs,
         asked: state.asked,
@@ -40,9 +40,15 @@ pub struct StateReport {
 }
 
 impl StateReport {
-    /// One scan with a subscribed tester, and the state at its end; `changes`: it wants changes at once. The age of
-    /// what a frame sent now shows, in scans.
-    pub fn step(&mut self, state: Dated, changes: bool, cycle: bool) -> Option<u8> {
+    /// One scan with a subscribed tester, and the state at its end with the number of frames received through TWC;
+    /// `changes`: the tester wants changes at once. The age of what a frame sent now shows, in scans.
+    pub fn step(
+        &mut self,
+        (state, twc_received): (&TrainState, u16),
+        changes: bool,
+        cycle: bool,
+    ) -> Option<u8> {
+        let state = (dated(state), twc_received);
         self.wait = self.wait.saturating_sub(1);
         self.unsent = self.unsent.map(|age| age.saturating_add(1));
         if self.last.replace(state).is_some_and(|last| last != state) {
@@ -65,12 +71,11 @@ mod tests {
 
     use super::*;
 
-    fn state(code_index: u8) -> Dated {
-        let state = TrainState {
+    fn state(code_index: u8) -> TrainState {
+        TrainState {
             code_index,
             ..TrainState::default()
-        };
-        (state, 0)
+        }
     }
 
     /// Codes scan by scan from the first of a cycle, and the age reported in each scan.
@@ -78,7 +83,7 @@ mod tests {
         let mut report = StateReport::default();
         let scans = codes.iter().enumerate();
         scans
-            .map(|(i, &code)| report.step(state(code), changes, i % 5 == 0))
+            .map(|(i, &code)| report.step((&state(code), 0), changes, i % 5 == 0))
             .collect()
     }
 
@@ -103,7 +108,7 @@ mod tests {
     #[test]
     fn what_changed_before_a_tester_subscribed_is_not_held() {
         let mut report = StateReport::default();
-        assert_eq!(report.step(state(1), true, false), None);
-        assert_eq!(report.step(state(1), true, true), Some(0));
+        assert_eq!(report.step((&state(1), 0), true, false), None);
+        assert_eq!(report.step((&state(1), 0), true, true), Some(0));
     }
 }

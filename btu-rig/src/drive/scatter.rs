@@ -75,11 +75,14 @@ impl Spread {
     }
 }
 
-/// Refuses spreads that leave their range, each in a line: its key, the least and the greatest value permitted.
+/// Refuses spreads that leave their range, each in a line: its key, the least and the greatest value permitted. Every field
+/// of the type has its line.
 macro_rules! check_spreads {
-    ($of:expr; $($key:ident: $low:expr, $high:expr;)+) => {
-        $($of.$key.check(stringify!($key), $low, $high)?;)+
-    };
+    ($type:ident = $of:expr; $($key:ident: $low:expr, $high:expr;)+) => {{
+        let $type { $($key),+ } = $of;
+        let checked = [$($key.check(stringify!($key), $low, $high)),+];
+        checked.into_iter().collect::<Result<(), ConfigError>>()
+    }};
 }
 pub(crate) use check_spreads;
 
@@ -127,7 +130,7 @@ impl Scatter {
     }
 
     pub(crate) fn check(&self) -> Result<(), ConfigError> {
-        check_spreads! { self;
+        check_spreads! { Scatter = self;
             load_kg: 0.0, 1e6;
             gradient_offset_permille: -50.0, 50.0;
             adhesion: 0.02, 0.6;
@@ -136,7 +139,6 @@ impl Scatter {
             wheel_factor: 0.8, 1.2;
             marker_offset_m: -5.0, 5.0;
         }
-        Ok(())
     }
 
     /// Draws a run's train and day; the same for the same `seed`.

@@ -137,17 +137,18 @@ impl MeasurementRun {
         broken_off: bool,
     ) -> (Measurement, Option<Finding>) {
         let without_value = || measured(measure, None, None, scan.captured);
-        let measurement = match self.item {
-            _ if broken_off => without_value(),
-            _ if self.left_out => Measurement {
+        let measurement = if broken_off {
+            without_value()
+        } else if self.left_out {
+            Measurement {
                 verdict: Verdict::Skipped,
                 ..without_value()
-            },
-            Some(item) => of_item(measure, &item),
-            None => {
-                self.take_last(measure, scan);
-                measured(measure, self.value, self.uncertainty, scan.captured)
             }
+        } else if let Some(item) = self.item {
+            of_item(measure, &item)
+        } else {
+            self.take_last(measure, scan);
+            measured(measure, self.value, self.uncertainty, scan.captured)
         };
         let found = self.found(measure, &measurement);
         (measurement, found)

@@ -240,7 +240,11 @@ impl What {
                 to.for_each_signal(f);
             }
             Self::At { when, .. } => when.for_each_signal(f),
-            _ => {}
+            Self::Value(_)
+            | Self::Maximum(_)
+            | Self::Minimum(_)
+            | Self::Change(_)
+            | Self::SelfTest { .. } => {}
         }
     }
 

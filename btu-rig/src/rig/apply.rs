@@ -11,7 +11,7 @@ use super::session::{Request, test_signals};
 use super::wayside::Track;
 use crate::stimulus::ranges::{U16_MAX, in_range, positive};
 
-/// Fastest wheel, km/h: the catalogue's range.
+/// Fastest wheel, km/h: the range of the signals `speed` and `train_speed`.
 const MAX_SPEED_KMH: f64 = 200.0;
 /// Hardest acceleration of a wheel, m/s²: far beyond any train, for tests of plausibility.
 const MAX_ACCEL_MPS2: f64 = 100.0;
@@ -42,6 +42,7 @@ impl Rig {
             self.rest_quiescent();
         }
         self.quiescent = false;
+        // What the unit refused or did not answer before this stimulus is told no longer.
         self.tester.exchange.failure = None;
         match *stimulus {
             Stimulus::Code(signal) => {
@@ -176,7 +177,7 @@ impl Rig {
         Ok(())
     }
 
-    /// Stimuli that go through the unit's TEST board.
+    /// Stimuli by the tester at the maintenance port, most of them through the unit's TEST board.
     fn apply_ptu(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal> {
         let session = self.tester.session;
         let request = match *stimulus {
@@ -209,8 +210,8 @@ impl Rig {
         self.tester.request(request)
     }
 
-    /// The last thing begun that takes its time is done: a ramp or travel, or else everything asked
-    /// of the unit. A ramp may run on while requests are answered, so only the later one counts.
+    /// Whether every request to the unit has its outcome, and a ramp or travel begun after the last request is done. A
+    /// ramp begun before that request may run on.
     ///
     /// # Errors
     /// What the unit refused or did not answer, until the next stimulus.
@@ -278,7 +279,7 @@ impl Rig {
         Ok(place)
     }
 
-    /// Hands the train what is wrong with its equipment, injected or made.
+    /// Hands the train what is wrong with its equipment: injected faults, and failures made by stimuli.
     pub(super) fn fail_equipment(&mut self) {
         self.train
             .set_faults(self.faults.equipment.with(&self.made));

@@ -7,7 +7,8 @@ use crate::procedure::plan::Connection;
 use crate::procedure::{Finding, Procedure};
 
 impl Rig {
-    /// Says whether the harness is connected; without this it is. To be said before the first scan.
+    /// Takes what the user says about the harness; a new rig takes the harness to be connected. To be called before the
+    /// first scan.
     pub fn set_harness(&mut self, asked: Harness) {
         self.harness = HarnessWatch::new(asked);
         self.latest = LatestSample::default();
@@ -32,8 +33,8 @@ impl Rig {
         self.harness.found.is_some() && self.subscription.settled()
     }
 
-    /// Why a procedure cannot be run on this connection, if so: it needs the harness, or what this unit does not
-    /// tell.
+    /// Why a procedure cannot be run on this connection, if so: it needs the harness, or signals that this unit does
+    /// not report.
     pub fn cannot_run(&self, procedure: &Procedure) -> Option<Finding> {
         let connection = self.connection()?;
         if let Some(why) = procedure.needs.lacks(connection) {

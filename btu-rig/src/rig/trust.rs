@@ -14,8 +14,8 @@ impl Rig {
         &self.latest.sample
     }
 
-    /// New entries of the unit's log in the order of their indices, each once, and of TCMS's. Indices
-    /// of the unit begin from the start when it is started again.
+    /// New entries of the unit's log in the order of their indices, each once, then new events of TCMS. The indices
+    /// begin from the start when the unit is started again.
     pub fn take_events(&mut self) -> Vec<UnitEvent> {
         let mut events = self.tester.log.take();
         events.append(&mut self.tcms_events);
@@ -33,7 +33,7 @@ impl Rig {
         self.tester.log.up_to_date()
     }
 
-    /// Log entries that were overwritten or cleared in the unit before they could be read, and those of
+    /// Number of log entries that were overwritten or cleared in the unit before they could be read, and of events of
     /// TCMS that were not taken in time.
     pub fn events_overwritten(&self) -> u64 {
         self.tester.log.overwritten + self.tcms_dropped + u64::from(self.tcms.events_lost())

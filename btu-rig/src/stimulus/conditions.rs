@@ -27,11 +27,11 @@ pub enum TachoCondition {
 #[serde(rename_all = "snake_case")]
 pub enum WaysideCondition {
     /// Sends nothing.
-    Silent,
+    Silent = 0,
     /// Sends sound frames every 250 ms.
-    Good,
+    Good = 1,
     /// Sends frames with bit errors.
-    Corrupt,
+    Corrupt = 2,
 }
 
 protocol::labelled! {

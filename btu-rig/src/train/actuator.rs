@@ -5,13 +5,13 @@ use crate::conditions::MAX_DELAY_FACTOR;
 
 /// Longest dead time or time constant, s.
 pub(super) const MAX_TIME_S: f64 = 5.0;
-/// Longest dead time that a checked train on a checked day can have, s: bounds what is kept.
+/// Longest dead time that a checked train on a checked day can have, s: bounds the number of demands that are kept.
 const MAX_DEAD_S: f64 = MAX_TIME_S * MAX_DELAY_FACTOR;
 
 /// Times of an actuator, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Times {
-    /// Before anything follows.
+    /// Time before the effort begins to follow its demand.
     pub dead_s: f64,
     /// Time constant while effort rises.
     pub rise_s: f64,

@@ -177,7 +177,7 @@ impl WheelSets {
             let slip_mps = self.rim_mps[i] - rolling.velocity_mps;
             let sense = if slip_mps == 0.0 { rail_n } else { slip_mps };
             let friction_n = self.data.sliding_share * limit_n * direction(sense);
-            // Friction is the work of whichever effort turns the wheel away from the train.
+            // Friction counts for the effort that turns the wheel away from the train: of two brakes for the greater.
             if friction_n * rolling.reverser > 0.0 {
                 rails.traction_n += friction_n.abs();
             } else if electric_n > air_n {
@@ -191,7 +191,8 @@ impl WheelSets {
         rails
     }
 
-    /// Turns the wheels that slip or slide through a step that ended at this speed of the train.
+    /// Turns the wheels that slip or slide through a step that ended at this speed of the train. The protection takes
+    /// effort off them, or gives effort back.
     pub fn turn(&mut self, dt_s: f64, before_mps: f64, velocity_mps: f64) {
         if !self.disturbed {
             return;

@@ -1,7 +1,7 @@
 //! Automatic fault isolation: which procedure to start, when to leave it, when to stop.
 //!
-//! The caller runs the procedure that [`Strategy::begin`] names from its first step, passes every step's
-//! result to [`Strategy::saw`], and leaves the procedure when that says so.
+//! The caller runs the procedure that [`Strategy::begin`] names from its first step, passes every step's result to
+//! [`Strategy::saw`], and leaves the procedure when [`Strategy::saw`] returns false.
 
 use std::collections::BTreeSet;
 
@@ -15,8 +15,9 @@ use super::observation::{CheckName, Observation, ObservedStep};
 
 /// Isolates a fault, check by check.
 ///
-/// A unit is not called healthy before the checks were made that show each mode which can leave the train less protected. The
-/// whole run takes no longer than all allowed checks made once.
+/// A unit that seems healthy is checked further, for each mode that can leave the train less protected and that no
+/// check so far would have shown. No check is begun that would make the run longer than all allowed procedures take on
+/// a good unit, each run once.
 #[derive(Debug)]
 pub struct Strategy<'m, 'd> {
     belief: Belief<'m, 'd>,
@@ -79,7 +80,7 @@ impl<'m, 'd> Strategy<'m, 'd> {
         self.target.as_ref().is_some_and(here)
     }
 
-    /// The procedure has ended; checks in it that were not reached cannot be run.
+    /// The procedure has run to its end: none of its checks is asked for again, not even those that were not reached.
     pub fn ended(&mut self, procedure: &str) {
         let checks = &self.belief.model.dictionary.checks;
         let of_procedure = checks.iter().filter(|check| check.procedure == procedure);

@@ -1,4 +1,4 @@
-//! Fault dictionaries stored in the file; none is ever deleted, the newest comes first.
+//! Fault dictionaries stored in the file; none is ever deleted.
 
 use crate::backend::values;
 use crate::error::StoreError;

@@ -79,9 +79,12 @@ pub(crate) fn seal_as_found(
         return Ok(());
     };
     let payload = match kind {
-        Covered::Run => run::payload(backend, row, found)?.text(),
+        Covered::Run => Some(run::payload(backend, row, found)?.text()),
         Covered::Event => EventPayload::found(backend, row, found)?,
-        Covered::Note => serde_json::json!({ "found": found }).to_string(),
+        Covered::Note => Some(serde_json::json!({ "found": found }).to_string()),
+    };
+    let Some(payload) = payload else {
+        return Ok(());
     };
     let digest = kind.digest(backend, row, &payload)?;
     append(backend, kind.word(), id, &payload, &digest)

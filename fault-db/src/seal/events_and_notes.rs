@@ -26,8 +26,8 @@ impl EventPayload {
         serde_json::from_str(text).ok()
     }
 
-    /// The payload of a stored event that is sealed as found, as text.
-    pub fn found(backend: &Backend, event: i64, found: &str) -> SqlResult<String> {
+    /// The payload of a stored event that is sealed as found, as text; `None` of an event without a fault.
+    pub fn found(backend: &Backend, event: i64, found: &str) -> SqlResult<Option<String>> {
         let sql = "SELECT f.id, e.seen FROM fault_event e JOIN fault f ON f.seq = e.fault WHERE e.seq = ?1";
         let payload = backend.first(sql, &values![event], |row| {
             Ok(Self {
@@ -36,7 +36,7 @@ impl EventPayload {
                 found: Some(found.to_owned()),
             })
         })?;
-        Ok(payload.map(|payload| payload.text()).unwrap_or_default())
+        Ok(payload.map(|payload| payload.text()))
     }
 
     fn text(&self) -> String {

@@ -1,5 +1,7 @@
 //! Traces and recordings of a run, held against the payload of the run's seal.
 
+use std::collections::BTreeSet;
+
 use sha2::{Digest as _, Sha256};
 
 use super::run::RunPayload;
@@ -13,7 +15,7 @@ pub(crate) struct SamplesHeld {
     /// Changed or added ones.
     pub changed: Vec<Damage>,
     /// Those that are not there: a trace by its id, a recording by its run and number.
-    pub missing: Vec<(Id, Option<i64>)>,
+    pub missing: BTreeSet<(Id, Option<i64>)>,
 }
 
 /// Holds the traces and recordings of a run against the payload of a seal.
@@ -22,7 +24,7 @@ pub(crate) fn hold(
     (id, run): (Id, i64),
     payload: &RunPayload,
 ) -> SqlResult<SamplesHeld> {
-    let (mut changed, mut missing) = (Vec::new(), Vec::new());
+    let (mut changed, mut missing) = (Vec::new(), BTreeSet::new());
     let traces = backend.select(
         "SELECT seq, id, recording FROM trace WHERE run = ?1",
         &values![run],
@@ -40,7 +42,7 @@ pub(crate) fn hold(
                 // Two laptops that read the same record of a unit: the seal of the other's run covers it.
                 let elsewhere = "SELECT 1 FROM trace WHERE id = ?1";
                 if !backend.has(elsewhere, &values![of])? {
-                    missing.push((of, None));
+                    missing.insert((of, None));
                 }
             }
             Some((seq, _, recording)) => {
@@ -61,7 +63,7 @@ pub(crate) fn hold(
     for said in &payload.recordings {
         let ordinal = said.ordinal;
         if !recordings.contains(&ordinal) {
-            missing.push((id, Some(ordinal)));
+            missing.insert((id, Some(ordinal)));
         } else if hex(&trace::recording_digest(backend, run, ordinal)?) != said.sha256 {
             changed.push(Damage::RecordingChanged(ordinal, id));
         }

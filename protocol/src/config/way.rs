@@ -13,7 +13,8 @@ pub struct TachoConfig {
     /// Amount by which a diameter keyed in may be smaller than the configured one, mm: a wheel worn to its limit.
     #[serde(default = "thousandths::<80_000>")]
     pub worn_mm: f64,
-    /// Amount by which a diameter keyed in may be greater, mm: as wheels are measured.
+    /// Amount by which a diameter keyed in may be greater than the configured one, mm: the error of measuring a new
+    /// wheel.
     #[serde(default = "thousandths::<5000>")]
     pub over_mm: f64,
     /// Averaging time of the speed measurement, ms.
@@ -24,18 +25,19 @@ pub struct TachoConfig {
     pub difference_ms: u32,
     /// Greatest believable acceleration of a wheel, m/s².
     pub plausible_accel_mps2: f64,
-    /// Adhesion on a dry rail: a wheel whose speed changes faster than it gives the train spins or slides.
+    /// Coefficient of adhesion on a dry rail: a wheel spins or slides if its speed changes faster than adhesion lets
+    /// the speed of a train change.
     #[serde(default = "thousandths::<350>")]
     pub adhesion: f64,
-    /// Speed, km/h, by which both tachometers must have fallen faster than adhesion lets a train slow, where they then
-    /// give no pulses, so that they are not believed.
+    /// Speed, km/h, by which the measured speed must have fallen below the lowest speed that adhesion allows. If
+    /// neither tachometer gives pulses then, both are not believed.
     #[serde(default = "thousandths::<2000>")]
     pub fall_kmh: f64,
     /// How long that must last, ms.
     #[serde(default = "whole::<100>")]
     pub fall_ms: u32,
-    /// Deceleration that the emergency brake has at the least, m/s²: a train whose speed is not believed stands after
-    /// a stop at it.
+    /// Deceleration that the emergency brake has at the least, m/s². A train whose measured speed is not believed
+    /// counts as stopped when a stop at this deceleration would be over, unless TCMS says that the train moves.
     #[serde(default = "thousandths::<800>")]
     pub least_brake_mps2: f64,
     /// Time for which power may be asked for before a tachometer gives a pulse, ms.
@@ -74,7 +76,8 @@ pub struct MarkerConfig {
     /// Distance from its place at which a marker is believed right after the section's start, where
     /// trains do not stand to the metre, m.
     pub start_window_m: f64,
-    /// What is added per way run since the last marker or the start: wheels and sliding, share.
+    /// Greatest share of the way run since the last marker or the start by which the window widens, because wheels may
+    /// differ from the configured diameter.
     pub window_share: f64,
     /// Scatter of markers around their places, m (1σ).
     pub scatter_m: f64,
@@ -85,7 +88,8 @@ pub struct MarkerConfig {
     /// Time within which the same marker again is the same edge, ms.
     #[serde(default = "whole::<100>")]
     pub debounce_ms: u32,
-    /// Time within which the same marker again is TRA's, and no marker of the track, ms.
+    /// Time within which a further pulse of the same marker comes from TRA's contact, and not from a marker of the
+    /// track, ms.
     #[serde(default = "whole::<500>")]
     pub bounce_ms: u32,
     /// Tones of PSM1 to PSM4 behind the marker antenna, Hz.

@@ -63,6 +63,46 @@ fn allowed(place: Place) -> &'static [Allowed] {
         | Place::CabInput => &[DEAD, STUCK_ON, STUCK_OFF],
         Place::ModeInput | Place::ControllerInput => &[DEAD, STUCK_OFF],
         Place::MarkerAntenna => &[DEAD, BIT_ERRORS, ("deaf", 1.0, 4.0)],
+        Place::TestBoard | Place::Regeneration | Place::BrakeUnit => &[DEAD],
+        Place::StopGuard
+        | Place::ReleaseGuard
+        | Place::MarkerDebounce
+        | Place::JogGuard
+        | Place::CodeConfirmation
+        | Place::CodeSeparation
+        | Place::LineGuard
+        | Place::NeutralGuard
+        | Place::SpeedGuard
+        | Place::ReleaseStandstill
+        | Place::MarkerGuard
+        | Place::EnableLatch
+        | Place::LoopPlaces
+        | Place::SpeedSensors
+        | Place::ArmStandstill
+        | Place::ArmBrakes
+        | Place::MotionGuard
+        | Place::CodeGuard
+        | Place::ModeGuard
+        | Place::KeyGuard
+        | Place::BrakeHold
+        | Place::TractionBar
+        | Place::StartBar
+        | Place::DoorBar
+        | Place::DoorGuard
+        | Place::DoorClosing
+        | Place::DoorReopening
+        | Place::DepartureGuard
+        | Place::SlowRunning
+        | Place::TrainGuard
+        | Place::OrderGuard
+        | Place::CabEntries
+        | Place::WheelGuard
+        | Place::HandOverBrake
+        | Place::PutAwayBrake
+        | Place::WakeUpTest
+        | Place::TcmsCabs
+        | Place::StationGuard
+        | Place::SideGuard => &[DEAD],
         Place::TwcDoorSide | Place::DoorOrder => &[("offset", -3.0, 3.0)],
         Place::TwcAnswer => &[STUCK_ON],
         Place::Jog => &[DEAD, STUCK_OFF],
@@ -109,8 +149,7 @@ fn allowed(place: Place) -> &'static [Allowed] {
         Place::BenchSpeed => &[GAIN],
         Place::WireDoors | Place::WireHcr | Place::BenchDoors => &[STUCK_OFF],
         Place::BenchEb | Place::BenchFsb => &[STUCK_ON, STUCK_OFF],
-        // A guard and any other part that works or does not.
-        _ => &[DEAD],
+        Place::WireSpeed1 | Place::BenchMarker | Place::BenchTwc => &[DEAD],
     }
 }
 

@@ -42,7 +42,7 @@ pub use test_board::{TestCode, TestMarker, TestRelease, TestSignals, TestSpeed, 
 pub use train_state::{Subscribe, TrainState};
 pub use twc::{TwcOrders, TwcReport, TwcTrain, TwcTrainBits, TwcWayside};
 
-/// The four channels of the wire.
+/// The four channels of the wire, in the order of their numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Channel {

@@ -32,8 +32,8 @@ pub struct Departure {
 }
 
 impl Departure {
-    /// Of a run in which departure tests were due. The test is valid if the run was of departure tests alone, whole, on a real
-    /// unit without injected faults, passed and signed.
+    /// What a run is worth in which departure tests were due; `None` of any other run. The run holds if it made departure
+    /// tests alone, all of them, on a real unit without injected faults, and if it passed and is signed.
     pub fn of(run: &RunDetail) -> Option<Self> {
         let is_departure = |path: &str| path.starts_with(DEPARTURE);
         if !run.scripts.iter().any(|script| is_departure(&script.path)) {

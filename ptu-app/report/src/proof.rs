@@ -33,7 +33,7 @@ pub fn proof_text(proofs: &[RepairProof], words: &Words) -> String {
             ],
         ))
     };
-    // Of the last group the fault does not show in runs of this kind, however many there are.
+    // The last sentence is for faults that do not show in runs of this kind, however many runs there are.
     let sentences = [
         sentence(report.repair_proven, |more| more == Some(0)),
         sentence(report.repair_claimed, |more| {

@@ -16,7 +16,7 @@ use crate::run::FaultSeen;
 pub const DEPARTURE: &str = "departure/";
 
 /// Record of a run that this process makes of a unit with this configuration, begun then, µs UTC; `source` says where the
-/// unit is.
+/// unit is, or what was read or repeated in its place.
 pub(crate) fn new_run(
     serial: String,
     config_name: String,
@@ -34,7 +34,18 @@ pub(crate) fn new_run(
         started_at_us,
         app_version: env!("CARGO_PKG_VERSION").into(),
         owner: platform::this_process(),
-        ..RunRecord::default()
+        line: String::new(),
+        train: String::new(),
+        seed: 0,
+        operator: String::new(),
+        connection: None,
+        symptom: None,
+        evidence: None,
+        scripts_sha256: String::new(),
+        unit_config_sha256: String::new(),
+        injected: None,
+        scripts: Vec::new(),
+        continues: None,
     }
 }
 

@@ -34,6 +34,13 @@ fn promised() -> BTreeMap<String, Value> {
         let keys = event["properties"].as_object().expect("keys");
         let required: Vec<_> = list(&event["required"]).iter().map(text).collect();
         assert!(keys.keys().eq(required), "{event}");
+        for common in ["seq", "event", "procedure"] {
+            assert!(keys.contains_key(common), "{common} of {event}");
+        }
+        let is_told = |(key, meaning): (&String, &Value)| {
+            key == "event" || !text(&meaning["description"]).is_empty()
+        };
+        assert!(keys.iter().all(is_told), "{event}");
         let name = text(&event["title"]).to_owned();
         assert_eq!(keys["event"]["const"], name);
         (name, event["properties"].clone())

@@ -57,7 +57,7 @@ fn asked(folder: &Path, questions: &[String]) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// Rows of an answer without the order of those that a question gives none.
+/// Rows of an answer, sorted, because some questions give their rows no order.
 fn sorted(answer: &Value) -> Vec<String> {
     let mut rows: Vec<_> = list(answer).iter().map(Value::to_string).collect();
     rows.sort();
@@ -85,8 +85,8 @@ fn bytes_below(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// Goal: DuckDB answers the documented questions from the partitions as SQLite does from the file; what has not changed is
-/// not written again, and an export that goes on is the export of all.
+/// Goal: DuckDB answers the documented questions from the partitions as SQLite does from the file. What has not changed
+/// is not written again, and an export in steps makes the same files as an export of all at once.
 #[test]
 #[ignore = "long suite: readers of other makers"]
 fn partitions_answer_as_the_file_does_and_grow_with_it() {

@@ -10,7 +10,7 @@ use ptu_runs::unit_log::{Entry, Source, import};
 use super::made_plans::Chance;
 use super::made_runs::PARTS;
 
-/// Events of the parts that made faults name, in their order.
+/// Events whose suspects are `PARTS`, in the order of `PARTS`.
 static EVENTS: [Event; 4] = [
     Event::EbRelayWelded,
     Event::TraFailed,
@@ -41,11 +41,11 @@ pub struct Read {
     pub verdict: &'static str,
     /// Parts of its faults.
     pub parts: Vec<&'static str>,
-    /// Runs of the unit.
+    /// Steps of the run: one for each run of the unit's record.
     pub steps: usize,
 }
 
-/// A run of a log or of a record.
+/// Stores a run that was read of a unit: of its log, or of its own record of runs.
 pub fn read_of_a_unit(store: &Store, seed: u64, is_log: bool, chance: &mut Chance) -> Read {
     let (broken_off, count) = (chance.one_in(3), 1 + chance.below(EVENTS.len()));
     let source = source(seed, broken_off);

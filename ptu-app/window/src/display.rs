@@ -8,13 +8,13 @@ use super::app::{App, Options};
 use ptu_runs::bench_worker::Wake;
 use ptu_runs::failure::{Asked, Failure};
 
-/// Smallest window in which every page can be used, and the first one's size.
+/// Smallest window in which every page can be used, and the size of a window for which the settings have none.
 const SMALLEST: [f32; 2] = [900.0, 600.0];
 const USUAL: [f32; 2] = [1280.0, 800.0];
 /// Repaints asked for from other threads are this far apart at least.
 const REPAINT: Duration = Duration::from_millis(16);
 
-/// Time in which a frame comes after it is asked for.
+/// Time after which a frame that was asked for is drawn.
 const SOON: Duration = Duration::from_millis(1);
 
 /// Opens the window and stays until it is closed.
@@ -60,7 +60,7 @@ fn waker(context: &eframe::egui::Context) -> std::io::Result<Wake> {
         .name("waker".into())
         .spawn(move || {
             while receiver.recv().is_ok() {
-                // At once would be two frames each time.
+                // A repaint without a delay would draw two frames each time.
                 context.request_repaint_after(SOON);
                 std::thread::sleep(REPAINT);
             }

@@ -4,10 +4,10 @@ use protocol::CYCLE;
 
 use super::ControllerInput;
 
-/// Difference between asked and granted that is only rounding, m/s²: a few steps of the 10 bits.
+/// Difference between asked and granted that is only rounding, m/s²: a few steps of the 10 bits of an effort.
 const ROUNDING_MPS2: f64 = 0.005;
 
-/// The integral, in the unit of its law.
+/// The integral, in the unit of the law that it is part of: N or m/s².
 ///
 /// It rests while REG withholds force (clipped, jerk limited, powering cut) and the error asks for
 /// still more of it; an error the other way takes it down at once.

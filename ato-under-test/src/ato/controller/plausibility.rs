@@ -11,7 +11,7 @@ const HARDEST_MPS2: f64 = 1e3;
 /// Masses a unit configuration may have, kg.
 const MASSES_KG: core::ops::RangeInclusive<f64> = 1e3..=1e7;
 
-/// Full braking of the configured train.
+/// Plausibility check, with full braking of the configured train as its answer to an implausible input.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlausibilityCheck {
     decel_mps2: f64,
@@ -26,8 +26,8 @@ impl PlausibilityCheck {
         }
     }
 
-    /// The brake, if anything in the situation is no number or absurd. The caller's state is to stay
-    /// as it was, so that one bad cycle leaves no trace.
+    /// The brake, if mass, a speed, an acceleration, the force granted or a distance of the input is no number or
+    /// absurd. The caller's state is to stay as it was, so that one bad cycle leaves no trace.
     pub(super) fn brake(&self, input: &ControllerInput) -> Option<Demand> {
         let mass = MASSES_KG.contains(&input.mass_kg);
         let sound = mass

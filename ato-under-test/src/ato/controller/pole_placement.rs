@@ -95,8 +95,8 @@ mod tests {
         }
     }
 
-    /// Method: the closed loop's own recursion from an error of 1 m/s, against the poles: it decays as
-    /// the slowest of them and ends at nothing, for any mass.
+    /// Method: the closed loop's own recursion, from standstill to a target of 1 m/s: after 30 s the speed is the
+    /// target, and it never rose above 1.6 m/s, for each mass.
     #[test]
     fn the_closed_loop_settles_for_any_mass() {
         for mass_kg in [200_000.0, 296_368.0, 456_368.0] {

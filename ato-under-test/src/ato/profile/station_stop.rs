@@ -32,7 +32,8 @@ impl MarkerApproach {
         }
     }
 
-    /// Greatest speed from which it asks for no more than `most_mps2`: 1.6·(v − v_end)/t_a.
+    /// Greatest speed from which the approach asks for no more than `most_mps2`; its greatest rate is
+    /// 1.6·(v − v_end)/t_a.
     pub fn fastest_mps(to_mps: f64, distance_m: f64, most_mps2: f64) -> f64 {
         // 1.6·(v − e)·(0.55·e + 0.45·v) = a·distance, solved for v.
         let (square, linear) = (0.45, (0.55 - 0.45) * to_mps);
@@ -57,8 +58,8 @@ impl MarkerApproach {
     }
 }
 
-/// W of eq. (2), dW/dx and its integral from 0, at x = t/t_a in 0..=1. (The OCR's first branch squares the
-/// wrong difference and the second ends in −1/5; only these are continuous.)
+/// W of eq. (2), dW/dx and the integral of W from 0, at x = t/t_a in 0..=1. (In the scanned text of S0 the first branch
+/// squares the wrong difference and the second ends in −1/5; only the branches here are continuous.)
 fn share(x: f64) -> (f64, f64, f64) {
     if x < 0.25 {
         (16.0 / 5.0 * x * x, 32.0 / 5.0 * x, 16.0 / 15.0 * x * x * x)
@@ -86,7 +87,8 @@ pub struct FinalStop {
     rates: FinalStopLimits,
 }
 
-/// Distance to the stop point within which the rate stays as it is, m: a share of nothing is no rate.
+/// Distance to the stop point within which the rate stays as it is, or is `rest_mps2` if that is more, m:
+/// v²/(2·distance) means nothing at distance 0.
 const HOLD_M: f64 = 0.1;
 
 /// Bounds of the last metres.
@@ -108,7 +110,8 @@ impl FinalStop {
         }
     }
 
-    /// Distance before PSM4 at which to begin, m, so that building up the rate is half done there.
+    /// Distance before PSM4 at which to begin, m, so that the rate is half built up at PSM4, which lies `from_m`
+    /// before the stop point.
     pub fn begins_before_m(speed_mps: f64, from_m: f64, jerk_mps3: f64) -> f64 {
         let rate = speed_mps * speed_mps / (2.0 * from_m);
         speed_mps * rate / jerk_mps3 / 2.0
@@ -168,8 +171,8 @@ mod tests {
         assert!((peak - 0.57).abs() < 0.005, "{peak}");
     }
 
-    /// A train on the reference from PSM4 on: it stops at the stop point, at the rate of eq. (3) made
-    /// exact, 1.5²/(2·3.5) = 0.321 m/s², also when it is told half a metre later that it is further.
+    /// A train that follows the setpoint from where the final stop begins: it stops at the stop point, at the rate of
+    /// eq. (3) made exact, 1.5²/(2·3.5) = 0.321 m/s², also when its distance is corrected by 10 cm after a second.
     #[test]
     fn the_last_metres_end_at_the_stop_point() {
         for correction in [0.0, -0.1, 0.1] {

@@ -82,7 +82,7 @@ fn a_code_counts_when_it_was_steady_and_is_lost_after_the_hold_time() {
     assert_eq!(receiver.hear(CODE_55, 500), [(400, Code::Known(4))]);
 }
 
-/// A code that was not there for long enough within the hold time is lost, and detected again.
+/// Goal: a code that is back after one long silence is lost and detected again, and no flicker is logged.
 #[test]
 fn one_long_silence_is_no_flicker() {
     let mut receiver = Receiver::new();
@@ -151,7 +151,7 @@ fn codes_that_alternate_are_this_table() {
             "{what:?}: {settled:?}"
         );
         let told = receiver.events().iter().any(|(event, _)| *event == 202);
-        // Each is detected for itself where it stays for 450 ms of 900.
+        // Where each code stays for 450 ms, each is detected by itself, and no flicker is logged.
         assert_eq!(told, code != known_75 && one_ms != 450, "{what:?}");
     }
 }

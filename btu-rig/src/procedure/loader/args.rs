@@ -86,6 +86,12 @@ impl Args<'_> {
         }
     }
 
+    /// A whole number that may be left out.
+    pub(super) fn given_int<T: TryFrom<i64>>(&self, name: &str) -> Result<Option<T>, String> {
+        let given = self.get(name).is_some();
+        given.then(|| self.int(name)).transpose()
+    }
+
     pub(super) fn flag(&self, name: &str, default: bool) -> bool {
         match self.get(name) {
             Some(Item::Bool(on)) => *on,

@@ -187,8 +187,10 @@ fn resolve_step(step: &mut Step, known: &[NamedMeasurement]) -> Result<(), Strin
     for measure in &mut step.measures {
         resolve_measure(measure, known)?;
     }
-    let mut when = step.when.iter_mut();
-    when.try_for_each(|when| resolve_condition(when, known))
+    match &mut step.when {
+        Some(when) => resolve_condition(when, known),
+        None => Ok(()),
+    }
 }
 
 fn resolve_measure(measure: &mut Measure, known: &[NamedMeasurement]) -> Result<(), String> {
@@ -204,7 +206,11 @@ fn resolve_measure(measure: &mut Measure, known: &[NamedMeasurement]) -> Result<
             resolve_condition(to, known)
         }
         What::At { when, .. } => resolve_condition(when, known),
-        _ => Ok(()),
+        What::Value(_)
+        | What::Maximum(_)
+        | What::Minimum(_)
+        | What::Change(_)
+        | What::SelfTest { .. } => Ok(()),
     }
 }
 

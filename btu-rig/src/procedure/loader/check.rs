@@ -20,7 +20,7 @@ use super::error::LoadError;
 use super::item::Item;
 use super::suggest::{hint, near};
 
-/// Expressions and blocks nested deeper than this are refused: no person can read them, and walking
+/// Expressions nested deeper than this, and blocks nested deeper than this, are refused: no person can read them, and walking
 /// them would need an endless stack.
 const DEEPEST: usize = 100;
 
@@ -42,7 +42,9 @@ pub(super) fn check(
     };
     let script = ast.statement();
     checker.collect_stmt(script);
-    script.visit_expr(|expr| checker.collect_expr(expr));
+    if !checker.too_deep {
+        script.visit_expr(|expr| checker.collect_expr(expr));
+    }
     if !checker.too_deep {
         script.visit_expr(|expr| _ = checker.expr(expr));
     }

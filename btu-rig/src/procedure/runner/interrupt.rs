@@ -40,7 +40,11 @@ impl Runner {
                 self.phase = Phase::steps_from(0);
                 self.skip_rest(now, &why.not_run());
             }
-            _ => {}
+            Phase::NotStarted
+            | Phase::CleanUp { .. }
+            | Phase::MakeSafe { .. }
+            | Phase::ReadLog { .. }
+            | Phase::Done => {}
         }
     }
 

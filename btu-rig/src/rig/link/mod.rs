@@ -1,5 +1,5 @@
-//! Data from the unit: at a harness or on a train, how well the line carries it, and the latest value of each
-//! signal.
+//! Data from the unit: whether they come by the bench harness, how well the line carries them, and the latest value
+//! of each signal.
 
 mod clock_rate;
 mod harness;

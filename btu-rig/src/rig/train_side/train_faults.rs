@@ -14,7 +14,7 @@ use super::bench_faults::BenchFaults;
 pub struct CabDeskFaults {
     /// State that all door lines show, whatever the doors do.
     pub doors: Option<bool>,
-    /// State that the closed contacts of the left and of the right show, whatever the doors do.
+    /// State that the contacts which prove the left doors and the right doors closed show, whatever the doors do.
     pub side_doors: [Option<bool>; 2],
     /// State of a failed head control relay, independent of its command.
     pub hcr: Option<bool>,
@@ -26,9 +26,9 @@ pub struct CabDeskFaults {
     pub main_reservoir_low: Option<bool>,
 }
 
-/// Sets the generators of faults apart from all others of the bench.
+/// Changes the seed, so that the random generators of faults differ from all others of the bench.
 const FAULT_SEED: u64 = 0xFA01_75ED;
-/// Voltage of a broken potentiometer, V: its supply or nothing.
+/// Supply voltage of the potentiometer, V: a broken one shows this voltage or 0.
 const SUPPLY_V: f64 = 10.0;
 
 /// All faults around the unit that act.
@@ -147,10 +147,10 @@ pub enum Misplaced {
     },
 }
 
-/// Whether the train has what these faults are faults of.
+/// Checks that the train has the car that each fault mode names, with an inverter where the fault is on one.
 ///
 /// # Errors
-/// The first that it has not.
+/// The first fault mode that the train has no place for.
 pub fn check_places(modes: &[FaultMode], train: &TrainData) -> Result<(), Misplaced> {
     for mode in modes {
         let Some(car) = mode.car else { continue };
@@ -175,7 +175,7 @@ fn place_from_car(car: u8) -> Option<usize> {
     usize::from(car).checked_sub(1)
 }
 
-/// The catalogue lets only these effects happen at these places.
+/// Adds a fault mode around the unit; the catalogue lets only these effects happen at these places.
 fn add(mode: &FaultMode, effect: Effect, faults: &mut TrainFaults) {
     let place = mode.car.and_then(place_from_car);
     let car = place.map_or(CarSet::NONE, CarSet::one);

@@ -85,7 +85,7 @@ impl Stand {
     }
 }
 
-/// The first scan after a train is put on the track again gets what it gets of a new train.
+/// The equipment of a train that is put on the track again reports what that of a new train reports.
 #[test]
 fn a_train_put_anew_reports_nothing_of_its_last_drive() {
     for data in [TrainData::line6(), TrainData::ideal()] {
@@ -109,8 +109,8 @@ fn a_train_put_anew_reports_nothing_of_its_last_drive() {
     }
 }
 
-/// Off the track in full power, back on 35 ‰ under the holding brake: it holds from the first scan on.
-/// The train comes without effort, and rolls back by what it does until its brake has built up.
+/// Off the track in full power, back on 35 ‰ under the holding brake, which is on from the first scan. The train comes
+/// without effort, and rolls back, by less than 15 cm, until its brake has built up.
 #[test]
 fn the_last_drives_traction_releases_no_holding_brake() {
     for train in [TrainData::line6(), TrainData::ideal()] {
@@ -128,7 +128,7 @@ fn the_last_drives_traction_releases_no_holding_brake() {
             stand.run(10);
             assert_eq!(stand.value(Signal::TcmsHolding), 1.0);
         }
-        // Released by ATO, nothing pulls: still.
+        // ATO asks for the holding brake no more, but no motor car pulls: the brake stays on.
         stand.order = order(AtcToTcmsBits::empty(), 0);
         stand.run(3000);
         assert_eq!(stand.value(Signal::TcmsHolding), 1.0);
@@ -171,7 +171,8 @@ fn the_last_drives_cut_outs_are_no_events() {
     assert!(stand.events.is_empty(), "{:?}", stand.events);
 }
 
-/// A holding brake the last procedure left, the unit asking for it a little longer than the bench.
+/// The bench is made safe with the holding brake on, and the unit asks for the brake 200 ms longer: the brake is off
+/// when the unit does not ask any more.
 #[test]
 fn making_safe_leaves_no_holding_brake_behind() {
     let mut stand = Stand::new(TrainData::line6());
@@ -183,7 +184,7 @@ fn making_safe_leaves_no_holding_brake_behind() {
     stand.order = AtcToTcms::default();
     stand.run(500);
     assert_eq!(stand.value(Signal::TcmsHolding), 0.0);
-    // By hand a standstill alone holds nothing, a brake that lasts does.
+    // With a driver, standstill alone puts no holding brake on; a brake by the lever that lasts does.
     stand.apply(Stimulus::TrainDriven { on: true });
     stand.run(3000);
     assert_eq!(stand.value(Signal::TcmsHolding), 0.0);

@@ -96,7 +96,7 @@ fn equal_values_are_a_process_without_scatter() {
     assert!(process.signs.is_empty(), "{:?}", process.signs);
 }
 
-/// Against the table of Abramowitz and Stegun, and the normal quantile.
+/// Goal: `student` gives the quantiles in the table of Abramowitz and Stegun, and with very many values the normal one.
 #[test]
 fn the_fewer_values_the_more_standard_errors_are_likely() {
     for (free, expected) in [
@@ -134,8 +134,9 @@ fn three_values_are_too_few_to_be_certain() {
 }
 
 /// Goal: each mean is judged by the limits for means of as many values.
-/// Method: sigma is 1. A single value may be 2.5 off among days of many values, and a mean of 99 not 0.4
-/// among days of few; limits for the average number of values a day would say the reverse of both.
+/// Method: sigma is 1. Among days of many values a single value may lie 2.5 from the mean. Among days of few values a
+/// mean of 99 values may not lie 0.4 from the mean of all, which it has moved by 0.1. Limits for the average number of
+/// values a day would say the reverse of both.
 #[test]
 fn each_day_is_judged_by_the_limits_of_as_many_values() {
     let day = |day: i64, n: u32, value: f64| Sample {

@@ -54,7 +54,7 @@ pub struct MergeCounts {
     pub refused: Refusals,
 }
 
-/// Relation of a copy to the other file.
+/// How the other file, which is a copy, relates to the file whose chain of seals is known here.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CopyOf {
     /// The file id that both have.
@@ -78,7 +78,7 @@ struct Merge<'a> {
     refused_runs: BTreeSet<i64>,
     /// What became here of each fault of the other file.
     faults_here: BTreeMap<i64, LocalFault>,
-    /// Ids of their runs, events and notes that are left out.
+    /// Ids of the other file's runs, events, notes and traces that are left out.
     left_out: BTreeSet<Vec<u8>>,
     /// Runs that are finished here and differ there.
     different_runs: BTreeSet<Id>,
@@ -249,8 +249,8 @@ impl<'a> Merge<'a> {
         Ok(())
     }
 
-    /// Reads an event, note or trace. One that is here already stays as it is, and the other file's seal of
-    /// it is compared with it; another one must fit its seal there.
+    /// Reads an event, note or trace. An entry that is here already stays as it is; `seals` compares the other file's
+    /// seal of an event or note with it. An entry that is new here must fit its seal in the other file.
     fn take_sealed(
         &mut self,
         set: &mut ChangeSet,
@@ -270,7 +270,7 @@ impl<'a> Merge<'a> {
         })
     }
 
-    /// Applies the other ids that a fault has there.
+    /// Applies the other ids that the other file has for faults that are here.
     fn aliases(&mut self) -> SqlResult<()> {
         let faults = "SELECT DISTINCT fault FROM fault_alias ORDER BY fault";
         for fault in self.theirs.select(faults, &[], |row| row.get(0))? {
@@ -352,8 +352,9 @@ fn fits(theirs: &Backend, set: &ChangeSet, of: TableId, entry: &Entry) -> SqlRes
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum LocalFault {
     Known,
-    /// Taken with its events.
+    /// No occurrence shows the fault; it is taken with its events.
     SeenByNobody,
-    /// Only refused runs saw it, or it contradicts the runs that are finished here.
+    /// Not here, although runs of the other file saw the fault: each was refused, or is finished here without the
+    /// fault. Or the row of the fault was refused.
     LeftOut,
 }

@@ -7,7 +7,7 @@ use rusqlite::Connection;
 
 use super::derived::faults_that_differ;
 use super::{Damage, Derived, Findings};
-use crate::backend::{Backend, SqlResult};
+use crate::backend::{SqlError, SqlResult};
 use crate::error::StoreError;
 use crate::history::event_graph::recompute_fault;
 use crate::schema::{DERIVED, WORDS};
@@ -82,7 +82,8 @@ pub(super) fn in_snapshot(
         conn.execute_batch("BEGIN")?;
         let done = work();
         let ended = conn.execute_batch("ROLLBACK");
-        done.and(Ok(ended?))
+        // SQLite rolls back by itself where a statement is interrupted: the error of the work is the one to tell.
+        done.and(ended.map_err(SqlError::from))
     })
 }
 
@@ -112,13 +113,15 @@ pub(super) fn rebuild(store: &Store, at_us: i64) -> Result<Vec<String>, StoreErr
     const DOING: &str = "filling the derived tables again";
     let conn = store.file()?;
     let id = store.mint()?;
-    let rebuild = |file: &Backend| {
+    let file = &store.backend;
+    let rebuild = || {
         let mut differed = Vec::new();
         compare(conn, |detail| differed.push(detail.to_string()))?;
         for (table, _) in TABLES {
             conn.execute_batch(&format!("DROP TABLE temp.{table}"))?;
         }
-        let faults = faults_that_differ(file)?;
+        let mut faults = Vec::new();
+        faults_that_differ(file, |fault, id| faults.push((fault, id)))?;
         if let Some((_, id)) = faults.first() {
             let count = faults.len();
             differed.push(format!(
@@ -137,12 +140,11 @@ pub(super) fn rebuild(store: &Store, at_us: i64) -> Result<Vec<String>, StoreErr
         conn.execute_batch(WORDS)?;
         Ok(differed)
     };
-    let sorting = |_: &Backend| {
-        with_sorting_on_disk(conn, || {
-            Ok(store.write(DOING, |_| store.ask(DOING, rebuild)))
-        })
-    };
-    store.ask(DOING, sorting)?
+    let failed = |error| store.failed(DOING, error);
+    let written = with_sorting_on_disk(conn, || {
+        Ok(store.write(DOING, |_| rebuild().map_err(failed)))
+    });
+    written.map_err(failed)?
 }
 
 /// Lets SQLite sort on disk: a whole history does not fit in memory.

@@ -24,26 +24,33 @@ const CONTRADICTS: [(Contradiction, &str); 4] = [
 pub(super) fn check(file: &Backend, problems: &mut Vec<Problem>) -> SqlResult<()> {
     let mut found = Findings::new(problems, ProblemKind::Fault, Advice::Altered);
     for (damage, sql) in CONTRADICTS {
-        found.add_all(file.select(sql, &[], |row| Ok(damage(row.get(0)?)))?);
+        file.each(sql, &[], |row| {
+            found.add(damage(row.get(0)?));
+            Ok(())
+        })?;
     }
     drop(found);
     let mut found = Findings::new(problems, ProblemKind::Count, Advice::Rebuild);
-    let differ = faults_that_differ(file)?.into_iter();
-    found.add_all(differ.map(|(_, id)| Damage::FaultDerived(id)));
-    Ok(())
+    faults_that_differ(file, |_, id| found.add(Damage::FaultDerived(id)))
 }
 
-/// The row number and id of each fault whose derived columns are wrong. An unqualified name means the temporary
+/// Passes the row number and id of each fault whose derived columns are wrong. An unqualified name means the temporary
 /// table: the file itself is only read.
-pub(super) fn faults_that_differ(file: &Backend) -> SqlResult<Vec<(i64, String)>> {
+pub(super) fn faults_that_differ(
+    file: &Backend,
+    mut take: impl FnMut(i64, String),
+) -> SqlResult<()> {
     file.execute("CREATE TEMP TABLE fault AS SELECT * FROM main.fault", &[])?;
     file.execute(RECOMPUTE_FAULT, &[])?;
-    let differ = file.select(
+    file.each(
         "SELECT seq, lower(hex(id)) FROM (SELECT * FROM main.fault EXCEPT SELECT * FROM temp.fault)
          ORDER BY seq",
         &[],
-        |row| Ok((row.get(0)?, row.get(1)?)),
+        |row| {
+            take(row.get(0)?, row.get(1)?);
+            Ok(())
+        },
     )?;
     file.execute("DROP TABLE temp.fault", &[])?;
-    Ok(differ)
+    Ok(())
 }

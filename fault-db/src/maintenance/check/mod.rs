@@ -148,9 +148,12 @@ impl Store {
 
         let mut found = Findings::new(problems, ProblemKind::ForeignKey, Advice::FromBackup);
         let orphans = "SELECT rowid, \"table\", parent FROM pragma_foreign_key_check";
-        found.add_all(self.select(DOING, orphans, &[], |row| {
-            Ok(Damage::NoParent(row.get(0)?, row.get(1)?, row.get(2)?))
-        })?);
+        self.ask(DOING, |file| {
+            file.each(orphans, &[], |row| {
+                found.add(Damage::NoParent(row.get(0)?, row.get(1)?, row.get(2)?));
+                Ok(())
+            })
+        })?;
         drop(found);
 
         let mut found = Findings::new(problems, ProblemKind::Trace, Advice::Lost);

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::seal_entry::{Seal, clock_error, seals_of};
-use super::{Damage, Samples};
+use super::{Advice, Damage, Findings, ProblemKind, Samples};
 use crate::backend::{Backend, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
@@ -149,8 +149,10 @@ impl<'a> Look<'a> {
 
     fn traces(&mut self, payload: &run::RunPayload) -> SqlResult<()> {
         let held = samples::hold(self.backend, (self.id, self.run), payload)?;
-        for damage in held.changed {
-            self.change(damage.to_string());
+        let mut problems = Vec::new();
+        Findings::new(&mut problems, ProblemKind::Seal, Advice::Altered).add_all(held.changed);
+        for problem in problems {
+            self.change(problem.detail.to_string());
         }
         for missing in held.missing {
             let of = Samples::from(missing);

@@ -54,12 +54,16 @@ pub(super) fn answer(
             let is_last = some.len() < at_once as usize;
             at_once = (at_once * 2).min(ROWS_AT_ONCE);
             for row in &some {
+                truncated = rows.len() == bounds.rows;
+                if truncated {
+                    break;
+                }
                 let values = values(path, row, &columns)?;
                 bytes += values.iter().map(SqlValue::bytes).sum::<usize>();
                 if bytes > MOST_RESULT_BYTES && rows.is_empty() {
                     return Err(exceeds(QueryLimit::Row));
                 }
-                truncated = rows.len() == bounds.rows || bytes > MOST_RESULT_BYTES;
+                truncated = bytes > MOST_RESULT_BYTES;
                 if truncated {
                     break;
                 }

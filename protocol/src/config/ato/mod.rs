@@ -36,7 +36,7 @@ impl ControllerKind {
     }
 }
 
-/// What the unit knows of the train it drives: REG turns force into a share of what is there, the
+/// What the unit knows of the train it drives: REG turns force into a share of what motors and brakes can give, the
 /// controllers scale their gains by mass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -49,7 +49,7 @@ pub struct AtoTrainConfig {
     pub length_m: f64,
     /// Acceleration at full powering effort up to the base speed, km/h/s [S1, S3: 3.0].
     pub power_kmh_per_s: f64,
-    /// Speed up to which it is there, km/h; constant power beyond [S1, S3: 40].
+    /// Speed up to which this acceleration is there, km/h; constant power beyond [S1, S3: 40].
     pub base_speed_kmh: f64,
     /// Deceleration at full braking effort, km/h/s [S3: 3.5].
     pub brake_kmh_per_s: f64,
@@ -65,7 +65,7 @@ pub struct AtoTrainConfig {
     pub air_lag_ms: f64,
     /// Speed below which the electric brake hands over to air, km/h [S3: 15].
     pub air_from_kmh: f64,
-    /// Speed below which air brakes alone, km/h.
+    /// Speed below which the air brake works alone, km/h.
     pub air_alone_kmh: f64,
     /// Speed-proportional resistance, 1/s [S0: r = 0.001].
     pub drag_per_s: f64,
@@ -79,9 +79,10 @@ pub struct AtoTrainConfig {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AtoWatchConfig {
-    /// Speed error that is not following, km/h.
+    /// Difference, km/h, between the change of speed and what the efforts should have made of it: with a greater one
+    /// the train does not follow.
     pub following_kmh: f64,
-    /// How long it must last, ms.
+    /// Time with which this difference fades, and for which a speed must stay exactly the same to count as frozen, ms.
     pub following_ms: u32,
     /// Distance past the stop point that is an overrun, m.
     pub overrun_m: f64,
@@ -132,7 +133,7 @@ pub struct AtoConfig {
     pub accel_kmh_per_s: f64,
     /// Deceleration that ATO asks for at most, km/h/s [S0 §4: 3.5].
     pub decel_kmh_per_s: f64,
-    /// Acceleration at which a train is moved up from beyond PSM2 at most, m/s².
+    /// Acceleration that ATO asks for at most where the stop point is nearer than from PSM2, m/s².
     pub gently_mps2: f64,
     /// What the unit knows of its train.
     pub train: AtoTrainConfig,

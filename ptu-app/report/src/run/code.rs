@@ -1,10 +1,11 @@
-//! The code on a sheet by which paper leads to the run in the history and to its certificate: run and content in a QR code.
+//! The QR code on a sheet: the run's id and its seal's digest. By it the paper leads to the run in the history, and to
+//! its certificate.
 
 use fault_db::RunDetail;
 use maud::{Markup, html as markup};
 use qrcode::{Color, EcLevel, QrCode};
 
-/// Free around the code, in its dots, as scanners want it.
+/// Width of the light margin around the code, in dots, as scanners want it.
 const QUIET: usize = 4;
 
 /// A QR code.
@@ -12,7 +13,7 @@ const QUIET: usize = 4;
 pub struct Code {
     /// Text for a scanner, as `ptu verify` takes it.
     pub text: String,
-    /// Dots of an edge, with what is free around it.
+    /// Dots along an edge, with the margin on both sides.
     pub width: usize,
     /// Dark stretches: from the left, from above, and their length, in dots.
     pub dark: Vec<(usize, usize, usize)>,

@@ -41,9 +41,10 @@ use ptu_runs::run_diagnosis::Answer;
 pub struct Sheet {
     /// The run with its steps and faults.
     pub run: RunDetail,
-    /// Traces of failures first, then of other faults; at most [`Sheet::MOST_TRACES`].
+    /// Traces of failed steps first, then of other faults, then of passed steps that had failed before a repair; at
+    /// most [`Sheet::MOST_TRACES`].
     pub traces: Vec<SheetTrace>,
-    /// Traces of the run beyond those.
+    /// Number of further traces, which the sheet does not show.
     pub more_traces: usize,
     /// Diagnosis of the unit's parts, or why there is none.
     pub diagnosis: Result<Answer, Trouble>,
@@ -57,7 +58,7 @@ pub struct SheetTrace {
     pub steps: Vec<u32>,
     /// Names of the faults it shows.
     pub faults: Vec<String>,
-    /// The samples of what is drawn, or why there are none.
+    /// The samples of the signals that are drawn, or why there are none.
     pub samples: Result<TraceData, Trouble>,
 }
 

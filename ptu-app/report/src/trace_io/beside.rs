@@ -11,13 +11,14 @@ use super::times::Columns;
 use ptu_runs::failure::{Asked, Failure, Unknown, did_you_mean};
 use ptu_runs::replay::{Rule, rule_between};
 
-/// Names that are told of a file that has none of the trace's signals.
+/// Most names of a file's signals that are told where the file has none of the trace's signals.
 const SHOWN_NAMES: usize = 10;
 
 /// Reads a file, as was `asked`, and lays it `shift_us` later beside the trace `id`, whose samples are `came`.
 ///
 /// # Errors
-/// The file cannot be read, or has no signal or no time in common with the trace.
+/// The file cannot be read, or has no signal or no time in common with the trace; `asked` names a signal that the trace
+/// has not, or a column that the file has not; or the database fails.
 pub fn beside(
     store: &Store,
     (id, came): (Id, TraceData),

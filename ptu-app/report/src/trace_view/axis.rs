@@ -89,7 +89,7 @@ impl Axis {
         })
     }
 
-    /// An axis on which each row lies at its own place.
+    /// An axis on which each row lies at its own place, or a sample of a live plot at its own time.
     pub fn places(at_m: Vec<f64>) -> Self {
         Self::Distance {
             at_m,

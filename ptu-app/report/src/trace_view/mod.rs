@@ -2,7 +2,7 @@
 //! show, in time that depends on the pixels and not on the rows behind them.
 //!
 //! * [`Column`]: a quantity, least and greatest value per column of pixels; [`Span`]: a choice or bit, a stretch of one value;
-//! * [`samples`]: both of a plot that moves;
+//! * [`samples`]: columns and spans of a live plot, whose samples come one by one;
 //! * [`TraceView`]: a trace with every signal summarised once ([`MinMaxIndex`], [`Runs`]);
 //! * [`Axis`]: time or distance; [`VisibleRange`]: the part of it in view;
 //! * [`statistics`], [`value`], [`csv`](mod@csv): what is said and written of it;

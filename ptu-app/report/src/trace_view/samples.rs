@@ -25,7 +25,7 @@ pub fn spans(
     Runs::of(&values).spans(&axis, window, &edges, spans);
 }
 
-/// The samples on an axis of their own times, which need not be as far apart as each other.
+/// The samples on an axis of their own times, which need not be equally far apart.
 fn along(
     samples: impl Iterator<Item = (f64, f64)>,
     window: Window,

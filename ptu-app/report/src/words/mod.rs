@@ -212,7 +212,7 @@ impl Words {
 mod tests {
     use super::*;
 
-    /// Parts that only readers of a command line see.
+    /// Parts that tell readers of a command line what to type. Of `verify`, sheets take some that do not.
     const OF_TERMINAL: [&str; 4] = ["terminal", "counts", "doctor", "verify"];
 
     /// All wordings of the catalogue, and those of refusals.

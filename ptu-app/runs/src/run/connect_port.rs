@@ -36,8 +36,8 @@ const CLOCK_DOUBTED: Duration = Duration::from_ms(10_000);
 const LOG_WITHIN: Duration = Duration::from_ms(10_000);
 
 impl BenchSetup {
-    /// Reaches the unit on its port, identifies it and brings it to a known state. Faults that TCMS finds meanwhile, and the
-    /// unit in its own self-test, are those of [`Connected::Port`].
+    /// Reaches the unit on its port, identifies it and brings it to a known state. Faults that TCMS finds meanwhile, and
+    /// those that the unit finds in its own self-test, are in [`Connected::Port`].
     ///
     /// # Errors
     /// The unit cannot be reached, is another one, or has another configuration.

@@ -6,7 +6,7 @@ use fault_db::{Channel, ChannelKind, FreezeSample, TraceData};
 use protocol::CYCLE;
 use protocol::signal::{Kind, Sample, Signal};
 
-/// The rows as a trace; `t0_us` is left for the edge to fill in.
+/// The rows as a trace. The date `t0_us` is 0: a caller that has a clock fills it in.
 pub fn trace_data(cut: &RecordedWindow) -> TraceData {
     let rows = &cut.rows;
     let column = |signal: &Signal| {

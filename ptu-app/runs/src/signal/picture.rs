@@ -31,7 +31,7 @@ const BITS: usize = 11;
 /// Curves of the eye at most; half of them go when there are more.
 const MOST_CURVES: usize = 200;
 
-/// Values in columns of equal length; a column sums up the values that it covers.
+/// Values in columns of equal length; one value stands for all that its column covers.
 #[derive(Clone, Debug)]
 pub struct Columns<T> {
     /// Values in each column.
@@ -44,7 +44,7 @@ pub struct Columns<T> {
 
 /// A column that can be merged with its neighbour when there are too many columns.
 pub trait Merge: Clone {
-    /// Adds the values of the next column to this one.
+    /// Makes this column stand for the values of the next column, too.
     fn merge(&mut self, other: &Self);
 }
 

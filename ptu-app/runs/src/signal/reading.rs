@@ -39,7 +39,7 @@ pub struct Reading {
     pub levels: Vec<Level>,
     /// Signals, in order of their beginning.
     pub sources: Vec<Source>,
-    /// Parts of the recording that are loud and that no receiver understood.
+    /// Parts of the recording that no receiver understood or that could not be read, each with the reason.
     pub not_understood: Vec<NotUnderstood>,
 }
 

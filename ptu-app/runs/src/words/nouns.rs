@@ -1,8 +1,8 @@
-//! Words of this program that sentences are about.
+//! Korean words for the things, events and states that sentences name.
 
 use fault_db::FaultState;
 
-/// A thing by its name, in Korean; what has none stays, as a table or an option.
+/// The Korean noun for an English one; a name without a Korean noun, as that of a table or an option, stays as it is.
 pub fn noun(english: &str) -> &str {
     match english {
         "run" => "시험",

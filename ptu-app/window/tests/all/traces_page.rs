@@ -122,14 +122,14 @@ fn over_distance_cursors_keep_their_rows_and_differences_are_told() {
     window.wait_for("0.00 s trigger");
     window.click("Zoom in");
     window.click("Zoom in");
-    // A click puts A where it is, here in the middle.
+    // A click puts cursor A where the pointer is, here in the middle.
     window.click("lanes");
     window.key(Key::ArrowRight);
     window.key(Key::ArrowRight);
     window.click("Cursor B");
     let (a, b) = (told_place(&window, "A"), told_place(&window, "B"));
     assert!(b > a, "{a} {b}");
-    // The last text is that of the traces; the page called Statistics stands before it.
+    // The last "Statistics" is this page's own; the one before it is the name of another page.
     window.click_last("Statistics");
     window.wait_for(&format!("between the cursors: {:.2} s", b - a));
 
@@ -366,8 +366,8 @@ fn a_dropped_file_is_laid_behind_the_trace() {
     }
 }
 
-/// Goal: what a technician saw in a trace is found by whoever looks at it next. Method: a note at cursor A, read back in the
-/// window, by the commands, in an exported file and on the run's sheet.
+/// Goal: what a technician saw in a trace is found by whoever looks at it next. Method: a note at cursor A, read back
+/// in the window, by `trace show` and `runs show`, and in the file beside an exported one.
 #[test]
 fn a_note_at_the_cursor_is_kept_with_its_place() {
     let mut window = window(Settings {

@@ -7,8 +7,8 @@
 //! * the force scales with the load, as in [`super::Pi`];
 //! * the profile's acceleration is asked for outright: a law without integral follows a ramp only with
 //!   an error, here about half a metre per second. `profile.feed_forward = false` leaves it to
-//!   the station stop and gives the printed law everywhere else. S1's finding, fuzzy better than PI, is one of
-//!   the printed laws: with feed-forward both are left with what the disturbance does by itself;
+//!   the station stop and gives the printed law everywhere else. S1's finding that fuzzy is better than PI holds for
+//!   the printed laws: with feed-forward both controllers have only the disturbance left to correct;
 //! * the change is the difference of the profile's acceleration and the train's estimated one: the
 //!   difference of two measured speeds 50 ms apart is mostly the tachometer's pulse;
 //! * the station stop ([`super::super::profile`]).

@@ -38,8 +38,8 @@ pub(super) static VERBS: &[Verb] = &[
             takes("cab", ParamType::Int(1, 2))
         ],
         |args| Stimulus::Switch {
-            switch: match args.int("cab") {
-                Ok(2) => TrainSwitch::Button2,
+            switch: match args.given_int("cab")? {
+                Some(2) => TrainSwitch::Button2,
                 _ => TrainSwitch::Button1,
             },
             on: args.flag("on", true),

@@ -109,7 +109,7 @@ fn step(args: &Args<'_>) -> Result<Item, String> {
         provokes: args.events("provokes")?,
         when: args.condition("when").ok(),
         lacks: args.text("lacks").map(str::to_owned),
-        repeat: args.int("repeat").unwrap_or(1),
+        repeat: args.given_int("repeat")?.unwrap_or(1),
         on_fail: match args.text("on_fail") {
             Some("stop") => OnFail::Stop,
             _ => OnFail::Continue,

@@ -125,12 +125,13 @@ fn limit(args: &Args<'_>, name: &str, measure: &Measure) -> Result<Option<Operan
     let Some(item) = args.get(name) else {
         return Ok(None);
     };
-    let limit = match measure.what.signal() {
-        Some(signal) => operand(signal, item).map_err(|error| format!("`{name}`: {error}"))?,
-        None => amount("ms", item).map_err(|()| {
+    let limit = match (measure.what.signal(), &measure.what) {
+        (Some(signal), _) => operand(signal, item).map_err(|error| format!("`{name}`: {error}"))?,
+        (None, What::Time { .. }) => amount("ms", item).map_err(|()| {
             let (wanted, found) = (Dimension::Time.wanted(), item.found());
             format!("`{name}` wants {wanted}, found {found}")
         })?,
+        (None, _) => return Ok(None),
     };
     Ok(Some(limit))
 }

@@ -40,3 +40,17 @@ fn quantity(args: &Args<'_>) -> Result<Item, String> {
     let origin = args.stated(Origin::lacking());
     Ok(Item::Quantity(Quantity::new(dimension, value, origin)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_verb_is_a_unit_and_each_unit_has_a_verb() {
+        let mut verbs: Vec<_> = VERBS.iter().map(|verb| verb.name).collect();
+        let mut units = UNITS.map(|(name, ..)| name);
+        verbs.sort_unstable();
+        units.sort_unstable();
+        assert_eq!(verbs, units);
+    }
+}

@@ -11,7 +11,7 @@ use ptu_runs::failure::{Failure, FileTrouble, Why};
 pub struct FontMetrics {
     face: Face<'static>,
     per_em: f32,
-    /// The letters that most texts are made of, looked up once.
+    /// Glyph number and width of each ASCII letter, looked up once: most texts are made of these letters.
     ascii: [(u32, f32); 128],
 }
 
@@ -44,7 +44,7 @@ impl FontMetrics {
         self.em(text) * size
     }
 
-    /// The text as glyphs side by side; what cannot be seen is a space.
+    /// The text as glyphs side by side; a control character is a space.
     pub fn glyphs(&self, text: &str) -> Vec<KrillaGlyph> {
         let glyph = |(at, letter): (usize, char)| {
             let (id, advance) = self.letter(letter);
@@ -54,7 +54,7 @@ impl FontMetrics {
         text.char_indices().map(glyph).collect()
     }
 
-    /// The text with its letters that the font lacks as codes, if there are any.
+    /// The text with a code in place of each letter that the font lacks; `None` if the font has all its letters.
     pub fn coded(&self, text: &str) -> Option<String> {
         let written = |letter: char| match self.lacks(letter) {
             true => code(letter),

@@ -10,7 +10,7 @@ use protocol::{Instant, SCAN};
 use super::{BENCH, METER, PULSES, RELAYS, opened, with_peers};
 use crate::places::Placed;
 
-/// Scans until `done` with these inputs; the unit's side of each.
+/// Scans with these inputs until `done`, which gets the message that reached the unit and the one that reached the rig.
 fn scans(
     placed: &mut Placed,
     input: IoInput,
@@ -23,7 +23,7 @@ fn scans(
         now += SCAN;
         let (mut sent, mut answered) = (Vec::new(), Vec::new());
         let (mut to_unit, mut to_rig) = (Vec::new(), Vec::new());
-        // Now and then a little more, so that there is something to do.
+        // Level and marker edges rise every 20 scans, so that the instruments have something to do.
         let level_mv = input.level_mv + scan / 20;
         let marker_edges = (scan / 20) as u8;
         let input = IoInput {
@@ -96,8 +96,9 @@ fn what_has_a_place_leaves_the_frames() {
     }
 }
 
-/// Goal: a fault of an instrument is told as the bench's, by name, and all outputs are off then. Method: a bench that works,
-/// one peer of which misbehaves after it was opened.
+/// Goal: a fault of an instrument is told as the bench's, by name, and all outputs are off then. Method: a bench one
+/// peer of which misbehaves after it was opened, or is not the instrument of the bench file; then a level too
+/// high for the generator.
 #[test]
 fn each_fault_of_an_instrument_is_named() {
     for (of_module, of_generator, name, word) in [
@@ -240,7 +241,8 @@ fn a_check_that_fails_switches_outputs_off() {
     );
 }
 
-/// Goal: an instrument that does not answer has all its outputs off. Method: a pulse generator of two channels is mute.
+/// Goal: an instrument that does not answer is told to switch all its outputs off. Method: a pulse generator of two
+/// channels is mute.
 #[test]
 fn a_mute_instrument_is_told_every_command_that_switches_off() {
     let (places, log) = with_peers(PULSES, "", "pulses");
@@ -250,7 +252,8 @@ fn a_mute_instrument_is_told_every_command_that_switches_off() {
     assert_eq!(log.take(), ["PULS1:FREQ 0", "PULS2:FREQ 0"]);
 }
 
-/// Goal: a module that nothing is read of keeps its relays, and is seen to be there.
+/// Goal: a module that nothing is read of does not drop its relays, and is seen to be there. Method: the order of its
+/// coils comes again and again.
 #[test]
 fn relays_without_inputs_are_ordered_again() {
     let (places, log) = with_peers(RELAYS, "", "");

@@ -1,4 +1,4 @@
-//! Hard limits of this process, and of one that ran into them.
+//! Limits of memory and time of this process, and whether another process was ended by the limit of time.
 
 use std::io::Result;
 use std::os::unix::process::ExitStatusExt as _;
@@ -6,8 +6,8 @@ use std::process::{Command, ExitStatus};
 
 use rustix::process::{Resource, Rlimit, Signal, setrlimit};
 
-/// This process gets no more memory than so many bytes, and leaves no image of it behind. A system other than Linux may
-/// refuse the first, because libraries alone may take more.
+/// This process gets no more memory than so many bytes, and leaves no core dump. A system other than Linux may refuse
+/// the limit of memory, because libraries alone may take more.
 pub fn limit_memory(bytes: u64) -> Result<()> {
     let limited = limit(Resource::As, bytes, bytes);
     if cfg!(target_os = "linux") {
@@ -16,8 +16,8 @@ pub fn limit_memory(bytes: u64) -> Result<()> {
     limit(Resource::Core, 0, 0)
 }
 
-/// This process gets no more processor time than so many seconds: the signal that tells what it was comes first,
-/// and one that cannot be ignored a second later.
+/// This process gets no more processor time than so many seconds: SIGXCPU, by which [`ended_by_time`] knows the cause,
+/// comes first, and SIGKILL, which cannot be ignored, a second later.
 pub fn limit_time(seconds: u64) -> Result<()> {
     limit(Resource::Cpu, seconds, seconds + 1)
 }
@@ -27,7 +27,7 @@ pub fn ended_by_time(status: ExitStatus) -> bool {
     status.signal() == Some(Signal::XCPU.as_raw())
 }
 
-/// Starts without a window of its own, as every program here.
+/// Leaves the command as it is: here every program starts without a console. Windows needs more.
 pub fn without_window(command: &mut Command) -> &mut Command {
     command
 }

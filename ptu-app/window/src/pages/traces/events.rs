@@ -13,11 +13,11 @@ use ptu_report::trace_view::listing::Event;
 use ptu_report::trace_view::{Cursor, TracePlot};
 use ptu_report::words::Words;
 
-/// Height of the strip above the lanes.
-pub const STRIP: f32 = 34.0;
 /// Size of a flag, points.
 pub const FLAG: f32 = 14.0;
-/// Rows of names in it.
+/// Height of the strip above the lanes.
+pub const STRIP: f32 = 34.0;
+/// Rows of names in the strip.
 const ROWS: usize = 2;
 /// Links shown at most; a fault that comes every second would fill the page.
 const LINKS: usize = 40;
