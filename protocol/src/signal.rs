@@ -318,7 +318,7 @@ impl Sample {
 
     /// Sets a bit.
     pub fn set_bit(&mut self, signal: Signal, on: bool) {
-        self.set(signal, f64::from(u8::from(on)));
+        self.set(signal, f64::from(on));
     }
 
     /// Makes a signal unknown.

@@ -6,7 +6,7 @@ crate::labelled! {
     /// Outcome of a step, a measurement, a procedure or a run. Files, JSON and the command line have its
     /// [`label`](Verdict::label).
     ///
-    /// The database has a column type of the same five words: `fault-db` names no other crate, and
+    /// The database has a column type of the same words: `fault-db` names no other crate, and
     /// `ptu_runs::stored` converts.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]

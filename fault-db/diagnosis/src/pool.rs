@@ -85,7 +85,7 @@ fn scores(belief: &Belief<'_, '_>, seen: &Observation, posterior: &[f64]) -> Vec
             + pool.deviates * made
             + pool.signs * named(&signs)
             + pool.suspects * named(&suspects)
-            + pool.near * f64::from(u8::from(is_near))
+            + pool.near * f64::from(is_near)
     };
     model.parts().iter().zip(posterior).map(score).collect()
 }

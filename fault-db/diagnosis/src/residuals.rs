@@ -55,7 +55,7 @@ impl Residuals {
         let even = vec![1.0 / signals.len().max(1) as f64; signals.len()];
         let of_any = counted_beside(columns().filter_map(shares), &even);
         let of_part = |part: &&LruId| {
-            let makes = |signal: &String| f64::from(u8::from(relations.makes(part, signal)));
+            let makes = |signal: &String| f64::from(relations.makes(part, signal));
             let made: Vec<f64> = signals.keys().map(makes).collect();
             let of_ways: f64 = made.iter().sum();
             let assumed = made.iter().zip(&of_any).map(|(made, any)| match of_ways {

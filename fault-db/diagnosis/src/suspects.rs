@@ -73,7 +73,7 @@ impl Suspects {
         normalise(&mut of_all);
         let of_part = |part: &&LruId| {
             let assumed = of_all.iter().map(|(suspect, share)| {
-                let own = f64::from(u8::from(suspect.as_ref() == Some(part)));
+                let own = f64::from(suspect.as_ref() == Some(part));
                 (suspect.clone(), ASSUMED_MODES * (share + own) / 2.0)
             });
             let mut counts: BTreeMap<_, f64> = assumed.collect();

@@ -89,12 +89,12 @@ fn matrix(size: usize, shape: Shape) -> Matrix {
     let cells = (0..size * size)
         .map(|cell| {
             let (state, test) = (cell / size, cell % size);
-            let bit = |p: f64, dice: &mut dyn FnMut() -> f64| f64::from(u8::from(dice() < p));
+            let bit = |p: f64, dice: &mut dyn FnMut() -> f64| f64::from(dice() < p);
             match shape {
                 Shape::Random => bit(0.5, &mut dice),
                 Shape::Sparse => bit(0.1, &mut dice),
-                Shape::Single => f64::from(u8::from(state == test)),
-                Shape::Chain => f64::from(u8::from(state <= test)),
+                Shape::Single => f64::from(state == test),
+                Shape::Chain => f64::from(state <= test),
                 Shape::SomeNoise if dice() < 0.05 => dice(),
                 Shape::SomeNoise => bit(0.5, &mut dice),
                 Shape::AllNoise => 0.05 + 0.85 * bit(0.5, &mut dice),

@@ -338,7 +338,7 @@ mod tests {
                 cost: 1.0 + 9.0 * dice(),
             })
             .collect();
-        let cells = (0..24 * 24).map(|_| f64::from(u8::from(dice() < 0.3)));
+        let cells = (0..24 * 24).map(|_| f64::from(dice() < 0.3));
         let cells = cells.collect();
         Matrix::new((0..24).map(state).collect(), tests, cells).expect("a valid matrix")
     }

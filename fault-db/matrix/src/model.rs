@@ -135,7 +135,7 @@ impl Matrix {
     /// Probability of an outcome of a test where its cell is `cell`.
     pub(super) fn likelihood(&self, test: usize, outcome: usize, cell: f64) -> f64 {
         match outcome {
-            _ if !self.words(test).is_empty() => f64::from(u8::from(cell == outcome as f64)),
+            _ if !self.words(test).is_empty() => f64::from(cell == outcome as f64),
             0 => 1.0 - cell,
             _ => cell,
         }

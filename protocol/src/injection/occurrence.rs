@@ -109,7 +109,7 @@ impl OccurrenceState {
 }
 
 fn whole(acts: bool) -> f64 {
-    f64::from(u8::from(acts))
+    f64::from(acts)
 }
 
 /// Exponentially distributed time of this mean.

@@ -109,7 +109,7 @@ pub fn trace(rows: usize) -> TraceData {
             column(&|row| (row % 2049) as f64 - 1024.0),
             // 7 has no word.
             column(&|row| [0.0, 1.0, -2.0, 7.0][row / 50 % 4]),
-            column(&|row| f64::from(u8::from(row >= 200))),
+            column(&|row| f64::from(row >= 200)),
             vec![f64::NAN; rows],
         ],
     }

@@ -272,9 +272,7 @@ fn trace(rows: usize) -> TraceData {
             (0..rows)
                 .map(|row| (row as f64 / 7.0).sin() * 80.0)
                 .collect(),
-            (0..rows)
-                .map(|row| f64::from(u8::from(row % 9 == 0)))
-                .collect(),
+            (0..rows).map(|row| f64::from(row % 9 == 0)).collect(),
             (0..rows)
                 .map(|row| if row % 5 == 0 { f64::NAN } else { 1.0 })
                 .collect(),

@@ -35,7 +35,7 @@ fn overall(outcome: &Outcome) -> Verdict {
 fn standing_still(at_ms: &'static [u32]) -> impl FnMut(&mut World) {
     move |world| {
         let braked = at_ms.contains(&world.ms());
-        world.sample.set(Signal::Eb, f64::from(u8::from(braked)));
+        world.sample.set(Signal::Eb, f64::from(braked));
         if braked {
             world.runner.stood_still(Duration::from_ms(300));
             world.log(Event::InputsLost);
@@ -170,7 +170,7 @@ fn clean_up_is_begun_again() {
     let script = "procedure(title = 'x', cleanup = [cab.key(False), wait(s(1)), until(eb, 'released', within = s(2))])\nlook('a', do = wait(s(1)))";
     let outcome = run(script, |world| {
         let braked = (1100..4500).contains(&world.ms());
-        world.sample.set(Signal::Eb, f64::from(u8::from(braked)));
+        world.sample.set(Signal::Eb, f64::from(braked));
         if world.ms() == 2900 {
             world.runner.stood_still(Duration::from_ms(300));
         }

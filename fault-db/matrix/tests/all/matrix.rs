@@ -101,7 +101,7 @@ fn random_words(dice: &mut Dice, states: usize, tests: usize, noisy_in_ten: u64)
 fn chance(matrix: &Matrix, state: usize, test: usize, outcome: usize) -> f64 {
     let cell = matrix.row(state)[test];
     match outcome {
-        _ if !matrix.words(test).is_empty() => f64::from(u8::from(cell == outcome as f64)),
+        _ if !matrix.words(test).is_empty() => f64::from(cell == outcome as f64),
         0 => 1.0 - cell,
         _ => cell,
     }

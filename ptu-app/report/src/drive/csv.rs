@@ -28,7 +28,7 @@ const COLUMNS: [Column; 15] = [
     ("electric_brake_n", |r| r.value(Signal::ElectricBrake)),
     ("air_brake_n", |r| r.value(Signal::AirBrake)),
     ("power_w", |r| r.power_w),
-    ("sliding", |r| f64::from(u8::from(r.sliding))),
+    ("sliding", |r| f64::from(r.sliding)),
 ];
 
 pub fn csv(results: &Results) -> String {

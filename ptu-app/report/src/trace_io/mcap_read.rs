@@ -298,7 +298,7 @@ impl Topic {
                 return;
             }
             Value::Number(number) => number.as_f64().unwrap_or(f64::NAN),
-            Value::Bool(bit) => f64::from(u8::from(*bit)),
+            Value::Bool(bit) => f64::from(*bit),
             Value::Null => f64::NAN,
             Value::String(word) => {
                 let signal = signal(&self.name, path, known);

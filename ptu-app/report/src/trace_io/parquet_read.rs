@@ -217,9 +217,7 @@ fn samples(
         ColumnReader::FloatColumnReader(column) => numbers(column, rows, |n| Ok(f64::from(*n))),
         ColumnReader::Int32ColumnReader(column) => numbers(column, rows, |n| Ok(values.of_32(*n))),
         ColumnReader::Int64ColumnReader(column) => numbers(column, rows, |n| Ok(values.of_64(*n))),
-        ColumnReader::BoolColumnReader(column) => {
-            numbers(column, rows, |n| Ok(f64::from(u8::from(*n))))
-        }
+        ColumnReader::BoolColumnReader(column) => numbers(column, rows, |n| Ok(f64::from(*n))),
         ColumnReader::FixedLenByteArrayColumnReader(column) => {
             numbers(column, rows, |bytes| values.of_bytes(bytes.data()))
         }

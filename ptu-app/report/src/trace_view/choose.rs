@@ -74,9 +74,7 @@ mod tests {
 
     #[test]
     fn signals_that_changed_near_the_trigger_come_first_and_missing_ones_are_left_out() {
-        let step: Vec<f64> = (0..200)
-            .map(|row| f64::from(u8::from(row >= 100)))
-            .collect();
+        let step: Vec<f64> = (0..200).map(|row| f64::from(row >= 100)).collect();
         let ramp: Vec<f64> = (0..200).map(f64::from).collect();
         let mut data = trace(&[
             ("speed", &ramp),

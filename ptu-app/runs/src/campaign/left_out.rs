@@ -159,7 +159,7 @@ impl UnseenFigures {
         };
         let squared = runs.iter().map(|run| {
             let errors = run.ranked.iter().map(|part| {
-                let true_ = f64::from(u8::from(part.lru == run.lru));
+                let true_ = f64::from(part.lru == run.lru);
                 (part.probability - true_).powi(2)
             });
             errors.sum::<f64>()

@@ -109,7 +109,7 @@ pub fn state(of: &str, label: &str) -> Option<String> {
     let signal = Signal::from_name(of)?;
     let operand = match signal.definition().kind {
         Kind::Enum(labels) => labels.iter().position(|known| *known == label)? as f64,
-        Kind::Bit => f64::from(u8::from(label == "on")),
+        Kind::Bit => f64::from(label == "on"),
         Kind::Number { .. } if label == "none" => 0.0,
         Kind::Number { .. } => {
             let one = |name: &str| {
