@@ -8,7 +8,7 @@ use crate::train::TrainData;
 
 use super::Rig;
 use super::session::{Request, test_signals};
-use super::wayside::Track;
+use super::wayside::{Track, in_antenna};
 use crate::stimulus::ranges::{U16_MAX, in_range, positive};
 
 /// Fastest wheel, km/h: the range of the signals `speed` and `train_speed`.
@@ -46,11 +46,11 @@ impl Rig {
         self.tester.exchange.failure = None;
         match *stimulus {
             Stimulus::Code(signal) => {
-                self.antenna.set(signal.in_antenna()?);
+                self.antenna.set(in_antenna(signal)?);
                 self.codes_along = false;
             }
             Stimulus::Crosstalk(signal) => {
-                self.antenna.set_second(self.now, signal.in_antenna()?);
+                self.antenna.set_second(self.now, in_antenna(signal)?);
             }
             Stimulus::CodeDrift {
                 rate_hz_per_s,

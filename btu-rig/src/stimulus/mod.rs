@@ -14,7 +14,7 @@ pub use conditions::{
     WaysideCondition,
 };
 pub use orders::OrderData;
-pub use signal::{CodeSignal, MAX_RATE_HZ};
+pub use signal::CodeSignal;
 pub use station::StationData;
 pub use table::{Stimulus, Way};
 pub use text::number;

@@ -4,12 +4,6 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::ranges::{U16_MAX, in_range};
-use crate::procedure::Refusal;
-
-/// Highest code rate, Hz: the catalogue's range, just below what 0.01 Hz in 16 bits can say.
-pub const MAX_RATE_HZ: f64 = 655.0;
-
 /// Carrier with a code; by default none. Rate 0 = unmodulated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CodeSignal {
@@ -28,14 +22,6 @@ impl CodeSignal {
             rate_hz,
             level_mv,
         }
-    }
-
-    /// The signal, if the antenna can have it.
-    pub(crate) fn in_antenna(self) -> Result<Self, Refusal> {
-        in_range("carrier", self.carrier_hz, 0.0, U16_MAX, "Hz")?;
-        in_range("code rate", self.rate_hz, 0.0, MAX_RATE_HZ, "Hz")?;
-        in_range("level", self.level_mv, 0.0, U16_MAX, "mV")?;
-        Ok(self)
     }
 }
 

@@ -5,9 +5,13 @@ use protocol::{Duration, Instant, Random, SCAN};
 
 use crate::conditions::Sensors;
 
+use crate::procedure::Refusal;
 use crate::random::normal;
-use crate::stimulus::ranges::U16_MAX;
-use crate::stimulus::{CodeSignal, MAX_RATE_HZ};
+use crate::stimulus::CodeSignal;
+use crate::stimulus::ranges::{U16_MAX, in_range};
+
+/// Highest code rate, Hz: the catalogue's range, just below what 0.01 Hz in 16 bits can say.
+const MAX_RATE_HZ: f64 = 655.0;
 
 /// Time from one frame that tells of a second code to the next.
 const CROSSTALK_PERIOD: Duration = Duration::from_ms(50);
@@ -150,6 +154,14 @@ impl Antenna {
         let factor = self.sensors.level_factor * (1.0 + self.level_noise);
         (level_mv * factor).round() as u16
     }
+}
+
+/// The signal, if the antenna can have it.
+pub fn in_antenna(signal: CodeSignal) -> Result<CodeSignal, Refusal> {
+    in_range("carrier", signal.carrier_hz, 0.0, U16_MAX, "Hz")?;
+    in_range("code rate", signal.rate_hz, 0.0, MAX_RATE_HZ, "Hz")?;
+    in_range("level", signal.level_mv, 0.0, U16_MAX, "mV")?;
+    Ok(signal)
 }
 
 /// A frequency with its offset; a frequency of 0, that is no signal, stays 0.

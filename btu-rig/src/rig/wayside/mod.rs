@@ -7,7 +7,7 @@ mod step_profile;
 mod track;
 mod twc;
 
-pub use antenna::Antenna;
+pub use antenna::{Antenna, in_antenna};
 pub use markers::Markers;
 pub use track::Track;
 pub use twc::{Wayside, wire_data};
