@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, FileTrouble};
 
-/// Where they stand in the scripts directory.
+/// Path of the proofs' file in the scripts directory.
 pub const FILE: &str = "clauses.toml";
 
 /// A clause.
@@ -50,7 +50,7 @@ pub struct ClauseProof {
     pub text_ko: String,
     /// Steps that prove the clause, `procedure: step`.
     pub steps: Vec<String>,
-    /// Fault modes that made one of them fail.
+    /// Fault modes that made one of these steps fail.
     pub faults: Vec<String>,
     /// Steps that no fault mode made fail: nothing has shown that they can.
     pub unproved: Vec<String>,
@@ -74,7 +74,7 @@ pub struct Matrix {
 /// The clauses of a scripts directory, in the order of their file.
 ///
 /// # Errors
-/// The file cannot be read, or is wrong: a name given twice, a pattern that is none.
+/// The file cannot be read, or is wrong: a name given twice, or a glob that is not one.
 pub fn load(directory: &ScriptsDirectory) -> Result<Vec<Clause>, Failure> {
     let wrong = |error: String| Failure::usage(FileTrouble::wrong(directory.shown(FILE), error));
     let written: Written =
@@ -133,7 +133,7 @@ pub fn matrix(clauses: &[Clause], dictionary: &Dictionary) -> Matrix {
     }
 }
 
-/// Fault modes under which a step failed where it passes on a sound unit.
+/// Fault modes under which a step failed in one run at least.
 fn faults_that_fail(dictionary: &Dictionary, place: usize) -> BTreeSet<&str> {
     let fails = |mode: &&Mode| {
         let mut cells = mode

@@ -7,7 +7,7 @@ use fault_db::{RunDetail, RunSummary, StepCounts, Verdict};
 use crate::run::Evidence;
 use crate::stored::findings;
 
-/// The one count of a stored run: what its steps came to, of all that were due.
+/// The counts of a stored run: its steps by verdict, and all that were due.
 pub fn counts_of(run: &RunSummary) -> StepCounts {
     let evidence = run.evidence.as_deref().and_then(Evidence::of);
     let due = evidence.map_or(0, |evidence| evidence.planned);
@@ -24,7 +24,7 @@ pub struct Coverage {
     pub steps: StepCounts,
     /// Steps skipped because they need the bench harness.
     pub need_bench: u32,
-    /// Folders of the procedures that do.
+    /// Folders of the procedures with such steps.
     pub on_bench: BTreeSet<String>,
 }
 

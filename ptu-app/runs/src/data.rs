@@ -23,16 +23,16 @@ use crate::whole_file::{LONGEST_FILE, cannot_read, read};
 const UNITS: &str = "units";
 /// Folder of drivers of instruments.
 const INSTRUMENTS: &str = "instruments";
-/// The fault catalogue's name there.
+/// Name of the fault catalogue in folder [`UNITS`].
 const FAULTS: &str = "faults";
-/// The name of the structure there.
+/// Name of the structure in folder [`UNITS`].
 const STRUCTURE: &str = "structure";
-/// Longest all scripts together, bytes.
+/// Most bytes of all scripts together.
 const LONGEST_SCRIPTS: usize = 64 << 20;
 /// File of the scripts directory that says how good units, trains and benches differ.
 pub const BENCH_SCATTER: &str = "bench_scatter.toml";
 
-/// Where all data files are; those that are meant by their name, `units/sg100.toml`.
+/// Places of all data files; a file is named by its path in a place, `units/sg100.toml`.
 #[derive(Clone, Debug)]
 pub struct ScriptsDirectory(ScriptFiles);
 
@@ -44,7 +44,7 @@ pub struct DataFile<T> {
     pub settings: Vec<String>,
     /// The checked content.
     pub content: T,
-    /// CRC-32 of the text, as the unit reports it; a line's leaves its own `checksum` line out.
+    /// CRC-32 of the text, as the unit reports it; of a railway line's file without its `checksum` line.
     pub crc: u32,
     /// SHA-256 of the text, in hex.
     pub sha256: String,
@@ -59,7 +59,7 @@ impl ScriptsDirectory {
         Ok(Self(ScriptFiles::find(given)?))
     }
 
-    /// The places it is found in, the first of which wins.
+    /// The places of data files; of a file that is in several, the first place counts.
     pub fn places(&self) -> &[Layer] {
         self.0.places()
     }
@@ -131,7 +131,7 @@ impl ScriptsDirectory {
         Ok(texts)
     }
 
-    /// Own files that stand in place of other ones further down, as they are shown.
+    /// Own files, as they are shown, that replace different files of their names in places further down.
     ///
     /// # Errors
     /// A file or folder cannot be read.
@@ -172,7 +172,7 @@ impl ScriptsDirectory {
         Ok(DataFile { crc, ..file })
     }
 
-    /// The train called `name` in `trains/`, or of a file.
+    /// The train called `name` in `trains/`, or in a file ending in .toml.
     ///
     /// # Errors
     /// There is none, or it is wrong.
@@ -232,7 +232,7 @@ impl ScriptsDirectory {
         catalogue.ok_or_else(|| Failure::usage(FileTrouble::NoCatalogue))
     }
 
-    /// Reads every data file, used or not: how many there are.
+    /// Reads every data file, used or not, and counts them.
     ///
     /// # Errors
     /// The first that is wrong.
@@ -315,7 +315,7 @@ impl ScriptsDirectory {
         self.names("trains")
     }
 
-    /// Names of what `folder` holds; fault catalogue and structure, among unit configurations, are none of them.
+    /// Names of the data files in `folder`; fault catalogue and structure, beside unit configurations, do not count.
     fn names(&self, folder: &str) -> Vec<String> {
         let names = self.0.names(folder, "toml").into_iter();
         names
@@ -323,7 +323,7 @@ impl ScriptsDirectory {
             .collect()
     }
 
-    /// The file `FOLDER/NAME.toml` as `parse` reads it; `what` it is called.
+    /// The file `FOLDER/NAME.toml` as `parse` reads it; `what` = the word for such a file in messages.
     ///
     /// # Errors
     /// There is none of that name, or it is wrong.

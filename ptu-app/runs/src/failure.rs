@@ -38,7 +38,7 @@ impl From<Verdict> for Exit {
         match verdict {
             Verdict::Passed | Verdict::Skipped => Self::Passed,
             Verdict::Failed => Self::Failed,
-            // Not all that a verdict on the unit takes was run.
+            // Not all steps that a verdict on the unit takes were run.
             Verdict::Error | Verdict::Inconclusive => Self::Bench,
             Verdict::Aborted => Self::Aborted,
         }
@@ -65,11 +65,11 @@ pub enum Trouble {
         error: Arc<StoreError>,
         rest: PathBuf,
     },
-    /// The link to a unit that was there.
+    /// The link to a unit that had been reached.
     Link(LinkTrouble),
     /// Trouble with sentences in the tables of words.
     Refused(Box<Refusal>),
-    /// The first one because of the second.
+    /// The option, file or entry at which it happened, and what happened: said in this order.
     Because(Box<[Self; 2]>),
     /// Several at once.
     All(Vec<Self>),
@@ -77,7 +77,7 @@ pub enum Trouble {
 }
 
 impl Trouble {
-    /// The instrument of the bench that does not do its part.
+    /// What is wrong with an instrument of the bench, if that is the trouble.
     pub fn of_the_bench(&self) -> Option<&LinkTrouble> {
         match self {
             Self::Refused(what) => match &**what {
@@ -234,14 +234,14 @@ impl Failure {
 }
 
 impl Failure {
-    /// This failure, caused by `what`.
+    /// This failure, said after `what`: the option, file or entry at which it happened.
     #[must_use]
     pub fn because_of(self, what: impl Into<Trouble>) -> Self {
         let message = Trouble::Because(Box::new([what.into(), self.message]));
         Self { message, ..self }
     }
 
-    /// All that failed as one, which says each; what is to be done is done, whichever fails.
+    /// All failures as one, which says each: for what is all to be done, whichever fails.
     ///
     /// # Errors
     /// At least one failed.

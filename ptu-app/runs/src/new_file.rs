@@ -10,17 +10,17 @@ use fault_db::{AtomicFile, is_of_database, open_regular_file};
 use crate::failure::{Failure, FileTrouble, Why};
 use crate::platform;
 
-/// Names tried beside one that is taken.
+/// Numbers tried for a free name beside one that is taken.
 const BESIDE: u32 = 1000;
 
 /// Bytes that tell what a file is.
 const HEAD: u64 = 64;
 
-/// Beginnings of a file of a kind, spaces aside. A file of this kind replaces such a file or an empty one, and no
-/// other.
+/// Beginnings by which a file of one kind is known, spaces left out. A file of this kind replaces only a file that
+/// begins so, or an empty one.
 pub type Kind<'a> = &'a [&'a str];
 
-/// The kinds of files that are written by their endings.
+/// The kinds of files that the program writes.
 pub mod kind {
     use super::Kind;
 
@@ -64,7 +64,7 @@ pub mod kind {
     pub const OWN: Kind<'_> = &[""];
 }
 
-/// Beginning of a text, as far as it tells the kind of file: a byte-order mark does not.
+/// Beginning of a text, by which the kind of file is known: without byte-order mark and spaces.
 pub fn head(text: &[u8]) -> String {
     let text = String::from_utf8_lossy(&text[..text.len().min(HEAD as usize)]);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
@@ -76,7 +76,7 @@ pub fn head(text: &[u8]) -> String {
 #[derive(Debug)]
 pub struct NewFile {
     file: BufWriter<File>,
-    /// The part of the file that is written; none once the file has its name.
+    /// The temporary file; `None` once it has its own name.
     part: Option<AtomicFile>,
     place: PathBuf,
     heads: Vec<String>,
@@ -163,7 +163,7 @@ impl NewFile {
             .map_err(|error| cannot_write(&self.place, &error))
     }
 
-    /// Holds what was written so far to be on the disk: nothing but its name is missing then.
+    /// Makes sure that what was written so far is on the disk: only the file's name is missing then.
     ///
     /// # Errors
     /// The disk is full or gone.
@@ -244,7 +244,7 @@ impl Seek for NewFile {
     }
 }
 
-/// Finds out whether what stands there, if anything, may be replaced by a file that begins so.
+/// Finds out whether the file at `place`, if there is one, may be replaced by a file of the kind with these beginnings.
 fn may_replace(place: &Path, heads: &[String]) -> Result<(), Why> {
     if is_of_database(place) {
         return Err(Why::History);
@@ -261,7 +261,8 @@ fn may_replace(place: &Path, heads: &[String]) -> Result<(), Why> {
     }
 }
 
-/// A name that is free: this one, or with a number as [`NewFile::finish_beside`] has it, for what is written as it comes.
+/// A free name: `place`, or `place` with a number as in [`NewFile::finish_beside`], for a file that appears while it is
+/// written.
 pub fn free_beside(place: &Path) -> PathBuf {
     let beside = (2..BESIDE).map(|number| numbered(place, number));
     let mut names = std::iter::once(place.to_path_buf()).chain(beside);

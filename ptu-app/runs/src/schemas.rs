@@ -18,11 +18,10 @@ pub struct FileSchema {
     pub files: &'static [&'static str],
     /// Paths among `files` that have another schema.
     pub except: &'static [&'static str],
-    /// The schema.
     pub schema: Schema,
 }
 
-/// Every one.
+/// All schemas.
 pub fn all() -> Vec<FileSchema> {
     let file = |name, files, schema| FileSchema {
         name,

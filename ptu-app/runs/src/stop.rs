@@ -24,13 +24,13 @@ impl Stop {
         self.0.count.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Pressed, if it was not: a second press would cut clean-up short.
+    /// Presses stop, if it was not pressed: a second press would cut clean-up short.
     pub fn press_once(&self) {
         let (count, relaxed) = (&self.0.count, Ordering::Relaxed);
         let _ = count.compare_exchange(0, 1, relaxed, relaxed);
     }
 
-    /// Pressed by the tester itself, which cannot go on, unless somebody has pressed: a second press would cut
+    /// Presses stop for the tester itself, which cannot go on, unless somebody has pressed: a second press would cut
     /// clean-up short.
     pub fn press_because(&self, reason: Finding) {
         // The reason first: who sees the press asks for it.

@@ -15,8 +15,8 @@ use crate::run::FaultSeen;
 /// Folder of the departure tests.
 pub const DEPARTURE: &str = "departure/";
 
-/// Record of a run that this process makes of a unit with this configuration, begun then, µs UTC; `source` says where the
-/// unit is, or what was read or repeated in its place.
+/// Record of a run that this process makes of a unit with this configuration, begun at `started_at_us`, µs UTC;
+/// `source` says where the unit is, or what was read or repeated in its place.
 pub(crate) fn new_run(
     serial: String,
     config_name: String,
@@ -73,8 +73,8 @@ pub fn from_stored(verdict: fault_db::Verdict) -> Verdict {
     }
 }
 
-/// A step of a procedure as the database stores it, begun then on the bench's clock; its place in the run is the
-/// caller's to say.
+/// A step of a procedure as the database stores it, begun at `started_bench_us` on the bench's clock. The caller sets
+/// its index in the run.
 pub fn step_record(procedure: &str, result: StepResult, started_bench_us: i64) -> StepRecord {
     StepRecord {
         index: 0,
@@ -152,7 +152,7 @@ pub fn findings(stored: &Option<String>) -> Findings {
     read.unwrap_or_default()
 }
 
-/// The procedure of an entry that is of the run as a whole.
+/// Id of the procedure in entries about the run as a whole.
 pub const WHOLE_RUN: &str = "run";
 
 /// Stand-in for the run as a whole among its procedures: it has no steps.
@@ -203,14 +203,14 @@ pub fn kind(kind: ResultKind) -> StepKind {
     }
 }
 
-/// Where this failed, if it is no step of a script.
+/// Place of a failure outside steps; `None` for the record of a step.
 pub fn outside_of(step: &StepRecord) -> Option<Outside> {
     let is_outside = step.kind == StepKind::Outside;
     is_outside.then(|| Outside::from_name(&step.name).unwrap_or(Outside::Whole))
 }
 
-/// The verdict of a procedure by its records, in a run with this verdict. One that was broken off is an error, as its
-/// run is; in any other run a check that failed is said before one that could not be made.
+/// The verdict of a procedure by its records, in a run with the verdict `run`. If the run is an error, an error of the
+/// procedure counts before a failure; in any other run a check that failed counts before one that could not be made.
 pub fn of_procedure<'a>(
     records: impl Iterator<Item = &'a StepRecord> + Clone,
     run: Option<fault_db::Verdict>,
@@ -224,7 +224,7 @@ pub fn of_procedure<'a>(
     order.into_iter().find(is_there).unwrap_or(Skipped)
 }
 
-/// Records by procedure, in the order in which each was run first: a search runs one more than once.
+/// Records by procedure, in the order in which each was run first: an adaptive run does one more than once.
 pub fn by_procedure(steps: &[StepRecord]) -> Vec<(&str, Vec<&StepRecord>)> {
     let mut all: Vec<(&str, Vec<&StepRecord>)> = Vec::new();
     for step in steps {
@@ -239,7 +239,7 @@ pub fn by_procedure(steps: &[StepRecord]) -> Vec<(&str, Vec<&StepRecord>)> {
     all
 }
 
-/// Results of steps that stand, without attempts that were made again.
+/// Results of steps that count: without attempts that were made again.
 pub fn standing(steps: &[StepRecord]) -> impl Iterator<Item = &StepRecord> {
     steps.iter().filter(|step| step.kind != StepKind::Attempt)
 }

@@ -1,9 +1,9 @@
 //! The structure of a unit and its train (`scripts/units/structure.toml`): the parts that each signal comes through, from
 //! the sensors on, and so the parts on the way of what a step judges.
 //!
-//! A fault dictionary is held against it: the first step of a procedure that fails under a mode has the mode's part on its
-//! way. Steps after it may fail because it did, and what the unit logs fails any step. All else is a finding, about the
-//! file or about the unit; the file lists those that are understood.
+//! A fault dictionary is checked against the structure: the first step of a procedure that fails under a mode must have
+//! the mode's part on its way. Later steps may fail because the first did, and an event that the unit logs fails any
+//! step. Any exception is a finding, about the file or about the unit; the file lists those that are understood.
 
 mod chain;
 mod link;
@@ -25,10 +25,10 @@ use crate::failure::{Failure, FileTrouble};
 use link::WayStep;
 pub use link::{Chain, Link, LinkOutput};
 
-/// Where it stands in the scripts directory.
+/// Path of the structure's file in the scripts directory.
 pub const FILE: &str = "units/structure.toml";
 
-/// A mode fails a step that more than this share of its runs does not pass, at one of its levels.
+/// A mode fails a step if, at one of its levels, more than this share of the runs does not pass the step.
 const FAILS: f64 = 0.5;
 
 /// The file as it is written.
@@ -39,7 +39,7 @@ pub(crate) struct Written {
     everywhere: Vec<LruId>,
     /// Procedures in which the bench has no part.
     without_bench: Vec<String>,
-    /// Parts beside them in procedures that a laptop runs.
+    /// Further parts on the way of every step, in procedures that a laptop runs.
     on_the_train: Vec<LruId>,
     ways: Vec<WrittenWay>,
     groups: Vec<WrittenGroup>,
@@ -52,13 +52,13 @@ pub(crate) struct Written {
 struct WrittenWay {
     #[serde(default)]
     signals: Vec<String>,
-    /// Events that the unit logs for the same reasons.
+    /// Events that come through the same parts, from the same signals.
     #[serde(default)]
     events: Vec<String>,
-    /// Signals that these are made of.
+    /// Signals that `signals` and `events` are made of.
     #[serde(default)]
     from: Vec<String>,
-    /// Parts that make them.
+    /// Parts that make `signals` and `events`.
     #[serde(default)]
     parts: Vec<LruId>,
 }
@@ -68,7 +68,7 @@ struct WrittenWay {
 #[serde(deny_unknown_fields)]
 struct WrittenGroup {
     parts: Vec<LruId>,
-    /// Measure that tells which has failed, after "to tell which, ".
+    /// Measure that tells which part has failed, worded to follow "to tell which, ".
     measure: String,
     /// The measure in Korean.
     measure_ko: String,
@@ -88,7 +88,7 @@ struct WrittenShared {
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct KnownOffWay {
-    /// Their names.
+    /// Names of the fault modes.
     pub faults: Vec<String>,
     /// The step, `procedure: step`.
     pub step: String,
@@ -115,7 +115,7 @@ pub struct Structure {
     on_the_train: Vec<LruId>,
     /// Parts that checks do not always tell apart, and what several parts share.
     pub relations: Relations,
-    /// What fails off the way, and why.
+    /// Fault modes that are known to fail a step off the way of their part, and why.
     pub known_off_way: Vec<KnownOffWay>,
 }
 
@@ -208,7 +208,8 @@ impl Structure {
         signals.map(|signal| (signal, self.way(LinkOutput::Signal(signal))))
     }
 
-    /// All parts up to the sensors, whatever turns the ways take, and those that are everywhere; none without a way.
+    /// All parts from `last` back to the sensors, by whatever ways, and those that are everywhere; none if `last` has
+    /// no way.
     fn way(&self, last: LinkOutput) -> BTreeSet<LruId> {
         let Some(step) = self.steps.get(&last) else {
             return BTreeSet::new();
@@ -309,7 +310,7 @@ impl From<WrittenShared> for Shared {
     }
 }
 
-/// Whether a mode fails a step by what the step judges: what the unit logs meanwhile fails any step.
+/// Whether a mode fails a step by what the step judges: events logged meanwhile fail any step, and do not count.
 fn fails(mode: &Mode, place: usize) -> bool {
     let fails = |cell: &Cell| {
         let failed = cell

@@ -1,4 +1,4 @@
-//! What is wrong with a unit as who brings it says (`scripts/symptoms.toml`): a weak sign of the parts that it may come from.
+//! Symptoms that are reported with a unit (`scripts/symptoms.toml`): weak signs of the parts that they may come from.
 
 use protocol::LruId;
 use protocol::injection::Lru;
@@ -7,7 +7,7 @@ use serde::Deserialize;
 use crate::data::ScriptsDirectory;
 use crate::failure::{Failure, FileTrouble, Unknown, did_you_mean};
 
-/// Where it stands in the scripts directory.
+/// Path of the symptoms' file in the scripts directory.
 pub const FILE: &str = "symptoms.toml";
 
 /// A symptom.

@@ -6,11 +6,11 @@ use crate::terminal::{Style, Terminal};
 use protocol::display_text;
 use unicode_width::{UnicodeWidthChar as _, UnicodeWidthStr as _};
 
-/// Widest cell, in columns; of the last column, which nothing stands behind, as wide as the longest note.
+/// Widest cell, in terminal columns; in the last column, with nothing behind it, as wide as the longest note.
 const WIDEST: usize = 200;
 const WIDEST_LAST: usize = 2 * fault_db::limits::MOST_TEXT;
 
-/// What has more words or is longer is a sentence, of which a narrow terminal shows so much at least.
+/// A cell with more words, or a longer one, is a sentence; a narrow terminal shows at least so much of it.
 const WORDS_OF_NAME: usize = 3;
 const LONGEST_NAME: usize = 40;
 const LEAST_OF_SENTENCE: usize = 24;
@@ -164,7 +164,7 @@ fn total(columns: &[(usize, usize)]) -> usize {
     widths.saturating_sub(2)
 }
 
-/// The width that a cell keeps: a name all of its own, a sentence that of its beginning.
+/// The width that a cell keeps: a name its own, a sentence that of its beginning.
 fn least_width(cell: &str) -> usize {
     match cell.width() {
         width @ ..=LONGEST_NAME if cell.split(' ').count() <= WORDS_OF_NAME => width,

@@ -24,7 +24,7 @@ impl Terminal {
         TERMINAL.get().copied().unwrap_or_default()
     }
 
-    /// Sets it, once for the program.
+    /// Sets the terminal, once for the program.
     pub fn set(self) {
         let _ = TERMINAL.set(self);
     }

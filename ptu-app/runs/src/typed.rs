@@ -1,5 +1,5 @@
-//! Lines of standard input, read on a thread of their own, so that train and bench keep their time. Their end ends
-//! nothing: a train may run under a supervisor.
+//! Lines of standard input, read on a thread of their own, so that train and bench keep their time. An end of input
+//! ends nothing: a train may run under a supervisor.
 
 use std::io::{BufRead, IsTerminal, Read, stdin};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -12,9 +12,9 @@ use crate::stdio;
 const WAITING: usize = 16;
 /// Longest line, bytes; what is longer is no order, whatever it begins with.
 const LONGEST: u64 = 200;
-/// Behind what is heard of a line that is too long.
+/// Stands behind the beginning of a line that is too long.
 const CUT: char = '…';
-/// From an end of input at a terminal (Ctrl-D) until it is read again.
+/// Pause from an end of input at a terminal (Ctrl-D) until it is read again.
 const AFTER_END: Duration = Duration::from_millis(100);
 
 /// Lines as they come.
@@ -41,12 +41,13 @@ impl Typed {
     }
 }
 
-/// Somebody at a terminal can be asked: its lines come here, and what is asked is shown there.
+/// Whether somebody at a terminal can be asked: lines come from there, and questions are shown there.
 pub fn somebody_is_there() -> bool {
     stdin().is_terminal() && in_foreground() && stdio::draws()
 }
 
-/// Sends lines until nobody takes them or the input ends, which `goes_on` where it is a terminal.
+/// Sends lines until nobody takes them or the input ends; after its end, input that `goes_on` (a terminal) is read
+/// again.
 pub(crate) fn read(mut input: impl BufRead, goes_on: impl Fn() -> bool, send: &SyncSender<String>) {
     let mut bytes = Vec::new();
     loop {

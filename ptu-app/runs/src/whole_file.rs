@@ -12,7 +12,7 @@ use crate::platform;
 
 /// Longest script, data file or other text that is read, bytes.
 pub const LONGEST_FILE: u64 = 4 << 20;
-/// Letters with which texts of one kind begin.
+/// Letters at its beginning by which the kind of a text is known.
 const TEXT_HEAD: usize = 5;
 
 /// Reads a file, or says which one could not be read.
@@ -55,7 +55,7 @@ pub fn write(file: &Path, kind: Kind<'_>, content: impl AsRef<[u8]>) -> Result<(
     new.finish()
 }
 
-/// Writes a text whole, over none that begins otherwise; the folder is made if need be.
+/// Writes a text whole, never over a file that begins otherwise; the folder is made if need be.
 ///
 /// # Errors
 /// The file or its folder cannot be written.

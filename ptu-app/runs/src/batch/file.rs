@@ -40,7 +40,7 @@ impl RunsFile {
     ) -> Result<(BTreeMap<String, R>, Self), Failure> {
         let wrong = |why| Failure::usage(KeepTrouble::Unusable(path.display().to_string(), why));
         if path.exists() {
-            // No device or pipe.
+            // Refuses a device or pipe.
             open_regular_file(path).map_err(|error| wrong(Why::of(error)))?;
         }
         let mut options = OpenOptions::new();
@@ -60,7 +60,7 @@ impl RunsFile {
             return Err(wrong(Why::MoreBytes(MOST_BYTES)));
         }
         let first = head_record(head);
-        // Killed while it wrote its first record.
+        // A program was killed while it wrote its first record.
         let is_new = bytes.len() < first.len() && first.starts_with(&bytes);
         let found = match is_new {
             true => None,

@@ -65,7 +65,7 @@ impl Read {
         })
     }
 
-    /// Refuses a file whose runs are of other ones than the first file's.
+    /// Refuses a file whose runs are of another maker or plan than the first file's.
     fn check(&self, first: &Path, head: &Head) -> Result<(), Failure> {
         let own = &self.found.head;
         let why = match head.other_maker(own) {
@@ -82,7 +82,7 @@ impl Read {
     }
 }
 
-/// Reads all files, whose runs have to be of one plan and made by the same.
+/// Reads all files, whose runs have to be of one maker and plan.
 fn read_all(files: &[PathBuf]) -> Result<(Head, Vec<Read>), Failure> {
     let mut all: Vec<Read> = Vec::with_capacity(files.len());
     for path in files {

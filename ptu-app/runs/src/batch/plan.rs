@@ -13,7 +13,7 @@ pub struct Head {
     /// SHA-256 of program, scripts and data: of all that decides a run beside its name.
     pub made_by: String,
     pub plan: Plan,
-    /// The part of them that the file is for; none = all.
+    /// The part of the plan that the file is for; none = all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<Shard>,
 }

@@ -1,5 +1,5 @@
 //! The format of a file of runs: a row of records, first a head, then one for each run, appended when the run is over,
-//! and another head where the file was gone on with by another plan.
+//! and another head where another plan went on with the file.
 //!
 //! A record is [`MARK`], the length of its content (4 bytes, least first), CRC-32 over length and content (4 bytes),
 //! and its content, JSON compressed with zstd. A damaged record is left out and reported by its number; the next one is
@@ -78,7 +78,7 @@ fn unpacked<T: DeserializeOwned>(packed: &[u8]) -> Option<T> {
 
 #[derive(Debug)]
 pub(super) struct Found<R> {
-    /// The last head; the runs of all heads were made by the same.
+    /// The last head; what the runs were made by is equal in all heads.
     pub head: Head,
     /// Each run, and where its record is.
     pub runs: BTreeMap<String, (R, Range<usize>)>,
@@ -149,7 +149,7 @@ impl<R: DeserializeOwned> Found<R> {
     }
 }
 
-/// A file with one head and the runs in order, of their records as they are.
+/// A file with one head and the runs in order, their records unchanged.
 pub(super) fn in_order<'a>(
     head: &Head,
     records: impl Iterator<Item = (&'a String, &'a [u8])>,

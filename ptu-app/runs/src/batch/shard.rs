@@ -90,7 +90,7 @@ fn from_scheduler(
         let most = number("SLURM_ARRAY_TASK_MAX")?;
         let count = number("SLURM_ARRAY_TASK_COUNT")?
             .ok_or("SLURM_ARRAY_TASK_COUNT is not set; write --shard auto/64")?;
-        // Some tasks of an array that were submitted again are not all parts there are.
+        // An array of which only some tasks were submitted again does not tell how many parts there are.
         if most.is_some_and(|most| u64::from(most) + 1 != u64::from(least) + u64::from(count)) {
             return Err(format!(
                 "the array has {count} tasks with gaps between their numbers, so that it does not say how many \

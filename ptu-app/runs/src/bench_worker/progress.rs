@@ -16,19 +16,19 @@ use crate::coverage::Coverage;
 use crate::run::{FaultSeen, Outcome, RunPlan, SessionEvent, different_steps, steps_of};
 use crate::stored::{WHOLE_RUN, stored, whole_run};
 
-/// Results and faults kept to be looked at: of a longer run those that did not pass, and all in the
-/// database.
+/// Most results, and most faults, kept to be looked at: of a longer run only results that did not pass are added. The
+/// database has all.
 const KEPT: usize = 5_000;
 
 /// A run's procedures, steps, measurements and faults so far.
 #[derive(Debug)]
 pub struct Progress {
     pub unit: String,
-    /// SHA-256 over the scripts it is of.
+    /// SHA-256 over the scripts of the run.
     pub scripts_sha256: String,
     /// Procedures in order, and last what was said of the run as a whole.
     pub procedures: Vec<ProcedureProgress>,
-    /// Steps in all, repetitions counted: how long it takes.
+    /// Steps in all, repetitions counted: the length of the run.
     steps: usize,
     /// Steps that are over, repetitions counted.
     done: usize,
@@ -53,7 +53,7 @@ pub struct Progress {
 #[derive(Debug)]
 pub struct ProcedureProgress {
     pub procedure: Arc<Procedure>,
-    /// Steps chosen of it.
+    /// Places of its steps that are to run.
     pub chosen: Vec<usize>,
     /// Results of its steps, in the order in which they ran, and what failed outside them: [`outside_place`].
     pub results: Vec<StepResult>,
@@ -78,7 +78,7 @@ pub struct RunPosition {
     pub waiting: Option<Waiting<Action>>,
     /// Question to the operator, and until when.
     pub prompt: Option<Waiting<String>>,
-    /// Paused, before this step.
+    /// Name of the step before which the run is paused.
     pub paused: Option<String>,
     /// Measurements of the step so far.
     pub measured: Vec<Measurement>,
@@ -88,9 +88,9 @@ pub struct RunPosition {
 #[derive(Clone, Debug)]
 pub struct Waiting<T> {
     pub what: T,
-    /// How long it might still take when it was said.
+    /// Longest time that it could still take at `said`.
     pub left: Duration,
-    /// When it was said.
+    /// When it was reported.
     pub said: time::Instant,
 }
 
@@ -222,7 +222,7 @@ impl Progress {
         self.began.elapsed().as_secs_f64()
     }
 
-    /// The place of a procedure that is not over, as an adaptive run may do one twice; else of any.
+    /// The place of a procedure that is not over, as an adaptive run may do one twice; else of the first called `id`.
     fn place(&self, id: &str) -> Option<usize> {
         let named = |progress: &ProcedureProgress| progress.procedure.id == id;
         let open = |progress: &ProcedureProgress| named(progress) && progress.verdict.is_none();
@@ -328,12 +328,12 @@ impl Progress {
     }
 }
 
-/// Where this failed, if it is no step of the procedure.
+/// Where `result` failed, if it is not of a step of the procedure.
 pub fn outside_place(result: &StepResult) -> Option<Outside> {
     Outside::from_name(&result.name).filter(|_| result.index == OUTSIDE)
 }
 
-/// The place in the procedure of what is no step of it.
+/// Index of a result that is not of a step.
 const OUTSIDE: usize = usize::MAX;
 
 impl ProcedureProgress {

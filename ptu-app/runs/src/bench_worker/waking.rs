@@ -43,7 +43,7 @@ pub enum Watched {
 impl Watched {
     pub(super) const ALL: [Self; 3] = [Self::Bar, Self::Curves, Self::All];
 
-    /// The window is woken at most, and at least, this often.
+    /// Shortest and longest time between two wakings.
     fn often(self) -> (Duration, Duration) {
         match self {
             Self::Bar => (OFTEN, RARELY),
@@ -52,7 +52,7 @@ impl Watched {
         }
     }
 
-    /// Whether it shows that these values are not those.
+    /// Whether the window shows a difference between these values.
     fn differs(self, before: &Values, now: &Values) -> bool {
         let differs = |signal: &Signal| before[signal.index()] != now[signal.index()];
         if self == Self::Bar {
@@ -173,7 +173,7 @@ mod tests {
             );
             window.looks()
         };
-        // What the unit ends after power-up.
+        // Time for what the unit does after power-up.
         idle_s(&mut session, 5);
         let (at_rest, _) = idle_s(&mut session, 20);
         assert!((19..=22).contains(&at_rest), "{at_rest} times in 20 s");

@@ -1,4 +1,4 @@
-//! What adaptive runs come to: each held-out unit is tested by a real one, that chooses its checks by the dictionary.
+//! Figures of adaptive runs: each held-out unit is tested by one, which chooses its checks by the dictionary.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::drive::monte_carlo::percentile;
 use crate::pool;
 use crate::stop::Stop;
 
-/// What nine in ten runs keep to, a percentile.
+/// Percentile that nine in ten runs keep to.
 const MOST: f64 = 90.0;
 
 /// An adaptive run of a unit with a fault.
@@ -48,7 +48,7 @@ pub struct AdaptiveFigures {
     pub unsafe_detected: Share,
     /// Runs that end with the right part, alone or among few.
     pub named: Share,
-    /// Runs that end with a wrong one for certain.
+    /// Runs that name a wrong part for certain.
     pub wrong: Share,
     /// Unsafe modes whose runs passed.
     pub missed: Vec<String>,

@@ -24,7 +24,7 @@ pub struct Baseline {
 /// Nearest neighbours, and naive Bayes.
 pub type Baselines = [Baseline; 2];
 
-/// Adds what both say of each of these runs with a fault, by a dictionary.
+/// Adds the answers of both yardsticks to each of these runs with a fault, by a dictionary.
 pub(super) fn judge(sums: &mut Baselines, dictionary: &Dictionary, runs: &[(&Sample, &SuiteRun)]) {
     let columns: Vec<_> = dictionary
         .modes

@@ -10,10 +10,10 @@ use crate::drive::monte_carlo::percentile;
 
 /// Number of draws.
 const DRAWS: usize = 2000;
-/// The interval has 95 % of the draws, percentiles.
+/// Percentiles at the ends of the interval, which has 95 % of the draws.
 const ENDS: [f64; 2] = [2.5, 97.5];
 
-/// The interval of the share of runs that have something; none without runs.
+/// The interval of the share of runs for which `has` holds; none without runs.
 pub(super) fn interval(
     runs: &[&Assessment],
     has: impl Fn(&Assessment) -> bool,

@@ -23,7 +23,7 @@ pub struct Assessment {
     pub kind: &'static str,
     /// The mode can leave the train less protected.
     pub unsafe_: bool,
-    /// A laptop alone should find it.
+    /// A laptop alone should find the fault.
     pub reachable: bool,
     pub level: usize,
     pub seed: u64,
@@ -96,7 +96,7 @@ pub fn assess(
     assessed.filter_map(|(_, assessment)| assessment).collect()
 }
 
-/// What each good run did not pass.
+/// What did not pass, for each run of a good unit.
 pub fn not_passed(good: &[(&Sample, &SuiteRun)]) -> Vec<Vec<String>> {
     let good = good.iter().map(|(_, run)| match run.passed {
         true => Vec::new(),
@@ -124,7 +124,7 @@ pub(super) fn assess_one(model: &Model<'_>, sample: &Sample, run: &SuiteRun) -> 
     })
 }
 
-/// Share of runs, and how many there were.
+/// Runs with a property, out of all runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Share {
     /// Runs with the property.
@@ -159,7 +159,7 @@ impl Share {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shortfall {
     pub fault: String,
-    /// Runs that were good in this respect, of how many.
+    /// Runs in which the mode was detected, or isolated, out of all its runs.
     pub share: Share,
     /// Parts that the mode was taken for, or what the diagnosis said, the most frequent first.
     pub taken_for: Vec<String>,
@@ -185,7 +185,7 @@ pub struct Figures {
     pub isolated: [Share; MOST_PARTS],
     /// Runs in which diagnosis names one part or few for certain, and the right one is not among them.
     pub wrong: Share,
-    /// Runs in which it names the right part, alone or among few, of those detected.
+    /// Runs in which diagnosis names the right part, alone or among few, of those detected.
     pub named: Share,
     /// Modes that were not detected in some run.
     pub undetected: Vec<Shortfall>,
@@ -193,9 +193,9 @@ pub struct Figures {
     pub not_isolated: Vec<Shortfall>,
     /// Groups of parts that were not told apart in some run.
     pub ambiguous: Vec<Vec<String>>,
-    /// Good runs, and those that did not pass.
+    /// Runs of good units.
     pub good_runs: usize,
-    /// Good runs that did not pass.
+    /// Runs of good units that did not pass.
     pub false_alarms: usize,
 }
 

@@ -1,7 +1,7 @@
-//! What a dictionary is worth for faults that it does not know.
+//! How well a dictionary tells faults that it does not know.
 //!
 //! The same runs make dictionaries without some of the fault modes, and without a whole part at a time; the held-out
-//! runs of what was left out are diagnosed with them.
+//! runs of the modes left out are diagnosed with these dictionaries.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,7 +27,7 @@ pub struct LeftOut {
     pub parts: UnseenFigures,
 }
 
-/// Figures over all detected runs of what was left out.
+/// Figures over all detected runs with faults that the dictionary does not know.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnseenFigures {
     /// The right part is the likeliest.
@@ -52,7 +52,7 @@ pub struct UnseenFigures {
     pub brier: f64,
     /// Part that failed, part taken for it, and in how many runs.
     pub confused: Vec<(LruId, LruId, usize)>,
-    /// Modes whose part was not named and others were, with those.
+    /// Modes whose part was not named for certain though other parts were, with these parts.
     pub wrong_answers: Vec<(String, String)>,
     /// What nearest neighbours and naive Bayes say of the same runs.
     pub baselines: Baselines,
@@ -75,7 +75,7 @@ impl OtherFaults {
     }
 }
 
-/// All that a campaign's runs say about it.
+/// The runs of a campaign, and all that they were made with.
 pub(super) struct Evidence<'a> {
     pub basis: &'a Basis,
     pub suite: &'a Suite,
@@ -189,7 +189,7 @@ impl UnseenFigures {
     }
 }
 
-/// Diagnoses the held-out runs of these modes with a dictionary that does not know them.
+/// Diagnoses the held-out runs of the modes `left_out` with a dictionary that does not know them.
 fn assess_without(
     left_out: &BTreeSet<&str>,
     evidence: &Evidence<'_>,

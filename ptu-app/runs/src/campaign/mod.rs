@@ -1,5 +1,5 @@
-//! Campaigns: the suite against every fault mode, for the fault dictionary, and against fault modes and
-//! good units with other seeds, for what the dictionary is worth.
+//! Campaigns: the suite against every fault mode, for the fault dictionary, and against fault modes and good units with
+//! other seeds, to assess the dictionary.
 //!
 //! ```text
 //! catalogue → samples (modes, level, onset, seed) → suite runs → dictionary
@@ -46,19 +46,20 @@ pub struct Request {
     pub faults: Option<Pattern>,
     /// Seeds of each level of a mode, for the dictionary.
     pub seeds: u32,
-    /// Seeds of each level of a mode, to assess it.
+    /// Seeds of each level of a mode, to assess the dictionary.
     pub held_out: u32,
-    /// Runs of good units to assess it.
+    /// Runs of good units to assess the dictionary.
     pub good: u32,
-    /// One in so many modes of each part is left out at a time, to see what the others are worth for it.
+    /// One in so many modes of each part is left out of the dictionary at a time, to see whether the others find its
+    /// part.
     pub leave_out: Option<u32>,
-    /// Runs of units with two faults to assess it.
+    /// Runs of units with two faults to assess the dictionary.
     pub pairs: u32,
-    /// Runs of units with one cause at several parts to assess it.
+    /// Runs of units with one cause at several parts to assess the dictionary.
     pub common: u32,
     /// Which units: another number means other seeds for everything.
     pub units: u32,
-    /// Embedded units to test side by side.
+    /// Simulated units to test side by side.
     pub jobs: usize,
     /// Where the runs are kept, and which of them are made here.
     pub keep: Keep,
@@ -92,15 +93,15 @@ pub struct Outcome {
     pub dictionary: Dictionary,
     /// Held-out runs with a fault, each with its diagnosis.
     pub assessments: Vec<Assessment>,
-    /// What adaptive runs of those units come to; none where there are no such units.
+    /// Figures of adaptive runs on the units of `assessments`; `None` where there are no such units.
     pub adaptive: Option<AdaptiveFigures>,
-    /// What it is worth for two faults at once, if that was asked for.
+    /// How well the dictionary tells two faults at once, if that was asked for.
     pub pairs: Option<PairFigures>,
-    /// What it is worth for one cause at several parts, if that was asked for.
+    /// How well the dictionary tells one cause at several parts, if that was asked for.
     pub common: Option<OtherFaults>,
-    /// Good runs, and what did not pass in those that did not.
+    /// For each held-out run of a good unit, what did not pass.
     pub good: Vec<Vec<String>>,
-    /// What it is worth for faults that it does not know, if that was asked for.
+    /// How well the dictionary tells faults that it does not know, if that was asked for.
     pub left_out: Option<LeftOut>,
     /// Steps that a mode fails though its part is not on their way.
     pub off_way: Vec<OffWay>,
@@ -108,7 +109,7 @@ pub struct Outcome {
     pub runs: usize,
 }
 
-/// The fault modes that a dictionary knows of units reached so: a laptop alone has no bench that could be at fault.
+/// The fault modes in a dictionary for units on this connection: a laptop alone has no bench that could be at fault.
 pub fn known_on(
     catalogue: &FaultCatalogue,
     connection: Connection,
@@ -120,7 +121,7 @@ pub fn known_on(
 /// Fault modes that are asked for.
 ///
 /// # Errors
-/// There are none.
+/// No fault mode matches.
 pub fn chosen<'a>(suite: &'a Suite, asked: &Request) -> Result<Vec<&'a FaultMode>, Failure> {
     let all = || known_on(&suite.catalogue, suite.connection());
     let Some(pattern) = &asked.faults else {
@@ -137,10 +138,10 @@ pub fn chosen<'a>(suite: &'a Suite, asked: &Request) -> Result<Vec<&'a FaultMode
     Ok(chosen)
 }
 
-/// What came of a campaign.
+/// How a campaign ended.
 pub enum Ran {
     All(Box<Outcome>),
-    /// The runs of its shard are kept, so many; a dictionary is made of all.
+    /// The runs of one shard are kept, so many; a dictionary is made of the runs of all shards.
     Part(usize),
     Stopped,
 }

@@ -1,4 +1,4 @@
-//! What a dictionary is worth for two faults at once.
+//! How well a dictionary tells two faults at once.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use super::evaluate::Share;
 use super::samples::Sample;
 use super::suite::SuiteRun;
 
-/// The parts are looked for among so many.
+/// The two parts are looked for among so many parts, the likeliest.
 const AMONG: usize = 3;
 
 /// The figures over all detected runs of units with two faults of different parts.
@@ -17,7 +17,7 @@ const AMONG: usize = 3;
 pub struct PairFigures {
     /// Both parts are among the first three.
     pub both: Share,
-    /// At least one of them is.
+    /// At least one of both parts is among the first three.
     pub one: Share,
     /// Sound parts alone are named for certain.
     pub wrong: Share,

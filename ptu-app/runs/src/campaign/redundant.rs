@@ -16,7 +16,7 @@ pub struct Redundancy {
     pub needed: Vec<CheckName>,
     /// Steps that no fault mode of the catalogue fails.
     pub never_failed: Vec<CheckName>,
-    /// Steps besides.
+    /// All other steps.
     pub redundant: Vec<CheckName>,
 }
 

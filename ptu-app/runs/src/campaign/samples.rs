@@ -11,24 +11,23 @@ use serde_json::json;
 use super::Request;
 use crate::data::sha256;
 
-/// Good runs behind a dictionary for each seed of a mode: at five seeds enough that what one in twenty of
-/// them does is seen.
+/// Runs of good units for each seed of a mode: with five seeds enough to see what one good run in twenty does.
 const HEALTHY_RUNS_A_SEED: u32 = 12;
-/// Seeds for one of a mode that comes and goes: what it hits is another check each time.
+/// Seeds of an intermittent mode for each seed of another: what it hits is another check each time.
 const INTERMITTENT_SEEDS: u32 = 4;
 /// A fault is there from the beginning for every other seed; for the rest it sets in within this time after
 /// the first power-up of the run, s.
 const LATEST_ONSET_S: f64 = 20.0;
-/// Seeds of one purpose are this far from those of the next, so that none is ever used twice.
+/// Distance between the first seeds of two purposes, so that no seed is ever used twice.
 const APART: u64 = 100_000_000;
-/// Seeds of one level are this far from those of the next.
+/// Distance between the first seeds of two levels.
 const LEVEL: u64 = 10_000;
-/// Seeds of good units begin here, those of units with two faults there, beyond those of all levels.
+/// First seeds of good units, and of units with two faults (`PAIRS`): beyond the seeds of all levels.
 const GOOD: u64 = APART / 2;
 const PAIRS: u64 = APART / 4 * 3;
-/// Seeds of units with one cause at several parts.
+/// First seed of units with one cause at several parts.
 const COMMON: u64 = APART / 16 * 15;
-/// Two faults of different parts are found in far fewer tries than this.
+/// Most draws in search of two faults of different parts, which takes far fewer.
 const MOST_TRIES: u32 = 1000;
 
 /// What a run is for.
@@ -48,18 +47,18 @@ pub struct Sample {
     pub purpose: Purpose,
     /// The faults, each at its level: none in a good unit, most often one.
     pub faults: Vec<FaultMode>,
-    /// When they set in, s after the first power-up; what has set in is there at the next one.
+    /// When the faults set in, s after the first power-up; a fault that has set in is there at the next power-up.
     pub sets_in_s: f64,
-    /// The part to replace where the faults are one cause at other parts.
+    /// The shared part to replace, where all faults are effects of it at other parts.
     pub cause: Option<LruId>,
-    /// Which of its mode's levels a fault alone has, 0 = nominal.
+    /// Level of the fault's mode, 0 = nominal; 0 where there is not one fault alone.
     pub level: usize,
     /// Seed of everything random.
     pub seed: u64,
 }
 
 impl Sample {
-    /// Name of its run: SHA-256 of all that decides it beside program and scripts.
+    /// Name of the run: SHA-256 of all that decides its results, besides program and scripts.
     pub fn name(&self) -> String {
         let Self {
             faults,
@@ -80,13 +79,13 @@ impl Sample {
         }
     }
 
-    /// Names of the modes of all of its faults.
+    /// Names of the modes of all faults, in one text.
     pub fn modes(&self) -> String {
         let names: Vec<_> = self.faults.iter().map(|fault| fault.id.as_str()).collect();
         names.join(" and ")
     }
 
-    /// Name of the mode of the one fault.
+    /// Name of the fault's mode, in a run with one fault alone.
     pub fn mode(&self) -> Option<&str> {
         self.fault().map(|fault| fault.id.as_str())
     }
@@ -130,8 +129,8 @@ pub fn samples(modes: &[&FaultMode], shared: &[Shared], asked: &Request) -> Vec<
                         sets_in_s: sets_in(mode, i),
                         cause: None,
                         level,
-                        // Units of their own for each level: of the same few, what they have in common would
-                        // look like the fault's doing.
+                        // Each level has units of its own: what a few units have in common would look like an effect of
+                        // the fault.
                         seed: from + LEVEL * number + u64::from(i),
                     })
                 }));
@@ -166,15 +165,15 @@ fn pair(modes: &[&FaultMode], seed: u64) -> Option<Sample> {
     })
 }
 
-/// A unit with one cause at two to four of the parts that share it, drawn by its seed: a mode of each that a supply or a
-/// link may cause, all of which come and go alike. None where too few of them have modes.
+/// A unit with a shared part that acts at two to four of the parts it reaches, drawn by its seed: at each a mode that a
+/// supply or a link may cause, all with the same occurrence. `None` where too few of these parts have modes.
 fn common(modes: &[&FaultMode], shared: &[Shared], seed: u64) -> Option<Sample> {
     let mut random = Random::new(seed);
     let modes: Vec<_> = modes
         .iter()
         .filter(|mode| may_have_outer_cause(mode))
         .collect();
-    // What reaches more modes is drawn more often.
+    // A shared part that reaches more modes is drawn more often.
     let drawn = |random: &mut Random| {
         let part = &modes.get(random.below(modes.len()))?.lru;
         let all = shared.iter();
@@ -207,8 +206,8 @@ fn common(modes: &[&FaultMode], shared: &[Shared], seed: u64) -> Option<Sample> 
     })
 }
 
-/// Whether something outside the part may make it act so: nothing comes through, less, or something else. A guard that is
-/// lost in a part's own program is its own fault.
+/// Whether a cause outside the part may make the part act so: nothing, less, or something else comes through. A guard
+/// that is lost in a part's own program is that part's fault.
 fn may_have_outer_cause(mode: &FaultMode) -> bool {
     let outer = matches!(
         mode.effect,

@@ -83,7 +83,8 @@ impl Suite {
         self.connection
     }
 
-    /// What a dictionary of this suite has off the way of a fault's part, and the structure does not list.
+    /// Steps that fail in this suite's dictionary off the way of the fault's part, and that the structure does not
+    /// list.
     pub fn off_way(&self, dictionary: &Dictionary) -> Vec<OffWay> {
         let procedures: Vec<_> = self
             .tasks
@@ -110,7 +111,7 @@ impl Suite {
         self.tasks.iter().flat_map(of_task).collect()
     }
 
-    /// Runs it on units of one kind, each procedure on one that is powered up for it; none if it was stopped.
+    /// Runs the suite on the unit of a sample, which is powered up anew for each procedure; `None` if it was stopped.
     pub fn run(&self, sample: &Sample, stop: &Stop) -> Option<SuiteRun> {
         let mut unit = UnitUnderTest::new(self, sample, stop);
         for task in self.tasks.iter().take_while(|_| stop.may_begin()) {
@@ -119,7 +120,8 @@ impl Suite {
         (stop.presses() == 0).then_some(unit.run)
     }
 
-    /// Tests a unit in an adaptive run by this model; also the bench time that the run took, s.
+    /// Tests a unit in an adaptive run by this model; also the bench time that the run took, s. `None` if it was
+    /// stopped.
     pub fn run_adaptively(
         &self,
         sample: &Sample,
@@ -135,7 +137,7 @@ impl Suite {
     }
 }
 
-/// A unit with its faults, tested one procedure after the other, and what came of it.
+/// A unit with its faults, tested one procedure after the other, and the results.
 struct UnitUnderTest<'a> {
     setup: BenchSetup,
     /// When each fault sets in at the next power-up, s.
@@ -167,7 +169,7 @@ impl<'a> UnitUnderTest<'a> {
         }
     }
 
-    /// Powers it up and runs a procedure.
+    /// Powers the unit up and runs a procedure.
     fn perform(
         &mut self,
         task: &Task,

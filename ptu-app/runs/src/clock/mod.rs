@@ -133,7 +133,8 @@ fn utc_as(at_us: i64, format: &str) -> String {
     date(at_us).map_or_else(|| no_date(at_us), |at| at.format(format).to_string())
 }
 
-/// A damaged file may name any time. Where local time is of a year far from ours takes for ever to find out.
+/// `None` beyond the years 1 to 9999: a damaged file may name any time, and local time in a far year takes for ever to
+/// work out.
 fn date(at_us: i64) -> Option<DateTime<Utc>> {
     let at = DateTime::<Utc>::from_timestamp_micros(at_us)?;
     (1..=9999).contains(&at.year()).then_some(at)

@@ -107,7 +107,7 @@ impl Request {
         Ok(cases)
     }
 
-    /// The key would win over the option without a word.
+    /// Refuses a setting of the controller's key beside the option: the setting would win without a word.
     fn one_controller_setting(&self) -> Result<(), Failure> {
         let set = self
             .settings

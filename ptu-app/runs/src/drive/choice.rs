@@ -13,7 +13,7 @@ pub enum SectionChoice {
     /// Every section of the line.
     All,
     One(u16),
-    /// From one to another, both included.
+    /// From one section to another, both included.
     Range(u16, u16),
 }
 

@@ -50,12 +50,12 @@ struct KeptTrial {
 pub enum Ran {
     /// The results of each case; fewer than were asked for after a stop.
     All(Vec<MonteCarlo>),
-    /// The runs of a shard are kept, so many; the results are of all.
+    /// The runs of one shard are kept, so many; results are made of the runs of all shards.
     Part(usize),
 }
 
-/// Drives each case `count` times with seeds from its own on, or those of a shard. The tester is silent, which changes
-/// nothing but the time it takes.
+/// Drives each case `count` times, with seeds from the case's own on, or only the runs of a shard. The tester is
+/// silent, which changes nothing but the time it takes.
 ///
 /// # Errors
 /// The file that keeps the runs cannot be used.

@@ -10,9 +10,9 @@ use crate::failure::{DriveTrouble, Failure};
 
 /// Least and greatest mass of an ideal train, kg.
 const IDEAL_KG: (f64, f64) = (1e4, 2e6);
-/// Highest base speed a unit can be given, km/h: none at all.
+/// Highest base speed a unit can be given, km/h: for a train without one.
 const NO_BASE_SPEED_KMH: f64 = 130.0;
-/// Highest jerk a unit can be given, m/s³: none at all.
+/// Highest jerk a unit can be given, m/s³: for a train without a limit.
 const NO_JERK_LIMIT_MPS3: f64 = 100.0;
 
 /// Gives the train a total mass: an ideal train is built to it, a train of cars is loaded to it.
@@ -58,8 +58,8 @@ pub fn load(
     }
 }
 
-/// Settings by which the unit's configuration fits the train. A train of cars is the one the
-/// configuration is made for; the papers' ideal train is another, and their controller knew it.
+/// Settings by which the unit's configuration fits the train. The configuration is made for the train of cars; the
+/// papers' ideal train is another, and the papers' controller knew its parameters.
 pub fn told(train: &TrainData) -> Vec<Setting> {
     let TrainData::Ideal(ideal) = train else {
         return Vec::new();

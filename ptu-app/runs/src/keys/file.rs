@@ -31,7 +31,7 @@ pub struct NewKey<'a> {
     pub who: &'a str,
     /// `technician` or `bench`.
     pub kind: &'a str,
-    /// The first day on which it holds, and the first on which it holds no more.
+    /// The first day on which it holds.
     pub from: String,
     /// The first day on which it holds no more.
     pub until: Option<String>,
@@ -135,7 +135,7 @@ impl KeyFile {
         &self.entry
     }
 
-    /// Opens it with its PIN.
+    /// Opens the key with its PIN.
     ///
     /// # Errors
     /// The PIN is wrong, or the file was changed.

@@ -87,7 +87,7 @@ impl KeyList {
     /// Reads a file, or all `.pub` and `.keys` files of a folder. An end or revocation in any of them holds.
     ///
     /// # Errors
-    /// There is none, or one of them is wrong.
+    /// The file cannot be read, or an entry is wrong.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let mut list = Self::default();
         for file in Self::files(path)? {

@@ -24,8 +24,8 @@ pub fn own_folder() -> Result<PathBuf, Failure> {
         .ok_or_else(|| Failure::usage(FileTrouble::NoUserFolder("--keys")))
 }
 
-/// Where a file of keys is that a person names: a name without a folder is that of one in the current folder or, if there is
-/// none, of one in the folder of one's own keys.
+/// Path of a file of keys that a person names: a name without a folder is looked for in the current folder, then in the
+/// folder of one's own keys.
 pub fn located(named: &Path) -> PathBuf {
     let kept = own_of(named).filter(|kept| kept.exists() && !named.exists());
     kept.unwrap_or_else(|| named.to_path_buf())
@@ -69,7 +69,7 @@ pub fn signer(path: &Path, pin: &str) -> Result<Signer, Failure> {
     usable(path)?.open(pin)
 }
 
-/// The key files in this folder, and in whose name each signs: empty of one that cannot be read.
+/// The key files in this folder, and in whose name each signs; the name is empty if the file cannot be read.
 pub fn all_in(folder: &Path) -> Vec<(PathBuf, String)> {
     let files = folder.read_dir().ok();
     let paths = files

@@ -6,7 +6,7 @@ use btu_rig::bench_scatter::Timing;
 use btu_rig::rig::{LinkTrouble, UnitLink};
 use protocol::{Duration, Instant, Random, SCAN};
 
-/// A unit at the other end of such a wire.
+/// A unit at the other end of a wire that delays bytes.
 #[derive(Debug)]
 pub struct Delayed<L> {
     link: L,

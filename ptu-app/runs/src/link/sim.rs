@@ -8,8 +8,8 @@ use protocol::{Duration, Instant};
 /// Serial number of the embedded unit when none is asked for.
 pub const SIM_SERIAL: &str = "SIM-0001";
 
-/// Shortest time without supply: its capacitors empty, relays fall, and the train notices that the unit is silent
-/// and hears it again afterwards [default].
+/// Shortest time without supply: the unit's capacitors empty, relays fall, and the train notices that the unit is
+/// silent and hears it again afterwards [default].
 const LEAST_OFF: Duration = Duration::from_ms(1_500);
 
 /// A unit that is powered up at a chosen time, reached at its harness.
@@ -17,7 +17,7 @@ pub struct SimLink {
     setup: Setup,
     /// When the supply is switched on; `None` = it stays off.
     power_at: Option<Instant>,
-    /// Earliest time at which it comes back.
+    /// Earliest time at which the supply comes back.
     may_power_at: Instant,
     unit: Option<Unit>,
     /// Flash of the unit while the unit is without supply; `None` = a new one.
@@ -39,7 +39,7 @@ impl SimLink {
         }
     }
 
-    /// The flash that the unit had before; it must not be powered up yet.
+    /// Sets the flash that the unit had before; the unit must not be powered up yet.
     pub(crate) fn set_flash(&mut self, flash: Box<dyn BlockDevice>) {
         debug_assert!(self.unit.is_none(), "powered up");
         self.flash = Some(flash);
@@ -74,21 +74,21 @@ impl SimLink {
         }
     }
 
-    /// Appends what the last scan sent there.
+    /// Appends what the unit sent at the maintenance port in the last scan.
     pub(crate) fn take_maintenance(&mut self, out: &mut Vec<u8>) {
         if let Some(unit) = &mut self.unit {
             unit.take_maintenance(out);
         }
     }
 
-    /// Another tester is connected there from now on.
+    /// Another tester is connected at the maintenance port from now on.
     pub(crate) fn reset_maintenance(&mut self) {
         if let Some(unit) = &mut self.unit {
             unit.reset_connection(Port::Maintenance);
         }
     }
 
-    /// Frames accepted there since power-up.
+    /// Frames accepted at the maintenance port since power-up.
     pub(crate) fn maintenance_accepted(&self) -> u64 {
         let unit = self.unit.as_ref();
         unit.map_or(0, |unit| unit.frames_accepted(Port::Maintenance))
@@ -112,7 +112,7 @@ impl UnitLink for SimLink {
                 None => Unit::new(setup),
             };
             if let Some(seed) = self.challenges {
-                // Another one at each power-up.
+                // Other challenges at each power-up.
                 unit.draw_challenges(seed ^ power_at.as_us());
             }
             unit

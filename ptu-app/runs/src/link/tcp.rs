@@ -4,8 +4,8 @@ use std::io;
 use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;
 
-/// The first of these addresses at which somebody listens: a unit at 127.0.0.1 is at `localhost`, whose first address may
-/// be another.
+/// A connection to the first of these addresses at which somebody listens: a unit at 127.0.0.1 is at `localhost`, whose
+/// first address may be another.
 pub(crate) fn connect_to(
     addresses: impl Iterator<Item = SocketAddr>,
     within: Duration,

@@ -20,7 +20,7 @@ use crate::places::Placed;
 const BAUD: u32 = 115_200;
 /// Longest time a unit in lock step takes for a scan.
 const STEP: Duration = Duration::from_secs(10);
-/// Patience with a TCP connection.
+/// Longest time for a TCP connection.
 const CONNECT: Duration = Duration::from_secs(3);
 
 impl Endpoint {
@@ -89,7 +89,7 @@ pub struct WireLink {
     /// Time for which both ends stood still.
     pause: BenchDuration,
     placed: Option<Placed>,
-    /// Bytes sent and received, before instruments took and gave their part.
+    /// Bytes on the wire: sent, without what instruments take, and received, before instruments give their part.
     to_wire: Vec<u8>,
     from_wire: Vec<u8>,
 }

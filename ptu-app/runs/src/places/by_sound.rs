@@ -12,7 +12,6 @@ use crate::signal::FULL_SCALE_MV;
 use crate::sound::{Stream, record};
 use crate::stop::Stop;
 
-/// Duration of a scan.
 const SCAN: Duration = Duration::from_millis(10);
 /// Scans of a beep, and of the silence before and after, in which the beep before has faded.
 const BEEP: u32 = 5;
@@ -67,7 +66,7 @@ impl BySound {
         self.left_out = self.left_out.wrapping_add(1);
     }
 
-    /// The end of a scan.
+    /// Ends a scan: hands its samples to the card.
     pub fn play(&mut self) {
         self.stream.feed(&self.samples);
         self.samples.fill([0.0; 2]);

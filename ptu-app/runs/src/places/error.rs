@@ -21,7 +21,7 @@ pub enum PlacesError {
 }
 
 impl PlacesError {
-    /// Error in the part of the file's text that begins with this range.
+    /// Error in the line of the file's text in which this range begins.
     pub(super) fn at(text: &str, range: &Range<usize>, why: impl Into<String>) -> Self {
         Self::Wrong {
             line: 1 + text[..range.start].matches('\n').count(),

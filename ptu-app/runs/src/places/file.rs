@@ -165,7 +165,7 @@ pub struct Places {
     pub full_scale_mv: [f64; 2],
 }
 
-/// Signals that the unit's contacts and displays show, and the contact.
+/// Signals that the unit's contacts and displays show, each with its contact; a display has none.
 pub(super) const READINGS: [(Signal, Outputs); 17] = [
     (Signal::Eb, Outputs::EB_RELAY),
     (Signal::Fsb, Outputs::FSB),

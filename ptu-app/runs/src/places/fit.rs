@@ -184,7 +184,7 @@ impl Places {
         })
     }
 
-    /// What a person has to see, and in which time.
+    /// The condition that a person has to see, and the time for that, s.
     fn asked<'a>(&self, expected: &'a Expectation) -> Option<(&'a Condition, u64)> {
         let Expectation::Becomes { condition, .. } = expected else {
             return None;

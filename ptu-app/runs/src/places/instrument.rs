@@ -69,16 +69,16 @@ pub struct InstrumentEntry {
     pub unit: u8,
     /// Driver of a SCPI instrument, `instruments/NAME.toml`.
     pub model: Option<String>,
-    /// Serial number, by which it is registered.
+    /// Serial number by which the instrument is registered.
     pub serial: String,
     /// Time between two readings, ms.
     #[serde(default = "poll_ms")]
     pub poll_ms: u64,
-    /// How late it may act and read, ms: what limits are widened by.
+    /// How late the instrument may act and read, ms: limits are widened by this.
     pub uncertainty_ms: u64,
     /// Register into which a time in ms is written, after which the module drops its outputs by itself.
     pub watchdog: Option<Watchdog>,
-    /// Input at which a sound card is heard, for the time that sound takes.
+    /// Input at which the sound card is heard, to measure the time that sound takes.
     pub heard_at: Option<String>,
     /// What is to be switched off by hand if the program was killed.
     pub by_hand: Option<String>,
@@ -118,7 +118,7 @@ impl InstrumentEntry {
         Reach::of(at).unwrap_or_else(|| Reach::Tcp(at.to_owned()))
     }
 
-    /// Both instruments are at one address, and do not take turns there.
+    /// Whether both instruments are at one address, and do not take turns there.
     pub(super) fn is_in_the_way_of(&self, other: &Self) -> bool {
         let port = |reach: Reach| match reach {
             Reach::Serial(path, _) => path,

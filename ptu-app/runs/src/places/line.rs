@@ -27,7 +27,7 @@ pub(super) enum Line {
     Tcp(TcpStream),
     /// A serial port, its rate, and when the last byte on the line has passed.
     Serial(Box<dyn SerialPort>, u32, Instant),
-    /// What is written to the device is a message, and so is what is read.
+    /// Each write to the device is one message, and each read.
     Usb(File, Reading),
 }
 
@@ -54,7 +54,7 @@ impl Reading {
             None => begin(device.try_clone()?),
         };
         let Ok(came) = under_way.recv_timeout(self.within) else {
-            // What comes later is the answer to a later question.
+            // What still comes is taken by a later read.
             self.under_way = Some(under_way);
             return Err(ErrorKind::TimedOut.into());
         };
@@ -150,7 +150,7 @@ impl Line {
         }
     }
 
-    /// How long reading waits.
+    /// Sets how long reading waits.
     pub fn wait_for(&mut self, within: Duration) -> Result<()> {
         match self {
             Self::Tcp(stream) => stream.set_read_timeout(Some(within)),

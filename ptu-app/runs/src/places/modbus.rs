@@ -46,7 +46,7 @@ pub(super) struct Module {
 }
 
 impl Module {
-    /// Connects, starts the watchdog, and reads once.
+    /// Takes a module on its line, starts its watchdog, and switches its coils off.
     pub fn open(places: &Places, name: &str, line: SharedLine) -> Result<Self, InstrumentFault> {
         let entry = &places.instruments[name];
         let (stimuli, readings) = places.points_at(name);
@@ -120,7 +120,7 @@ impl Module {
         Ok((request, answer))
     }
 
-    /// The coils that are on now.
+    /// The coils that have to be on now.
     fn ordered(&mut self, wanted: &Wanted) -> Vec<bool> {
         let mut coils = vec![false; self.coils];
         for (name, point) in &self.stimuli {
@@ -152,7 +152,7 @@ impl Module {
         coils
     }
 
-    /// A relay that was ordered and is not proved in time is stuck.
+    /// Checks the proofs of relays: one that is not where it was ordered in time is stuck.
     fn prove(&mut self, ordered: &[bool], inputs: &[bool]) -> Result<(), InstrumentFault> {
         for (name, point) in &self.stimuli {
             let (Some(coil), Some(proof)) = (point.coils.first(), point.proved_by) else {

@@ -15,7 +15,7 @@ pub(super) type Values = BTreeMap<&'static str, f64>;
 #[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
-    /// What its answer to `*IDN?` holds.
+    /// Text that the instrument's answer to `*IDN?` holds.
     pub idn: String,
     /// The question for the next entry of its error queue, whose answer begins with a number, 0 for none.
     pub error: String,
@@ -25,14 +25,14 @@ pub struct Model {
     /// Commands that switch all its outputs off.
     #[serde(default)]
     pub off: Vec<String>,
-    /// What it does for stimuli.
+    /// Commands for stimuli, by act: `code`, `pulses` or `supply`.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Act>")]
     pub acts: BTreeMap<String, Spanned<Act>>,
     /// Questions of the instrument, by the names that readings give.
     #[serde(default)]
     pub reads: BTreeMap<String, Read>,
-    /// Least and greatest of values that it takes.
+    /// Least and greatest value that the instrument takes, by name of the value.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, [f64; 2]>")]
     pub ranges: BTreeMap<String, Spanned<[f64; 2]>>,
@@ -42,10 +42,10 @@ pub struct Model {
 #[derive(Clone, Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Act {
-    /// With these values.
+    /// Commands that make the stimulus with its values.
     #[schemars(with = "Vec<String>")]
     pub on: Vec<Spanned<String>>,
-    /// A carrier without a code rate; none: it cannot.
+    /// Commands for a carrier without a code rate; none: the instrument cannot make one.
     #[serde(default)]
     #[schemars(with = "Vec<String>")]
     pub unmodulated: Vec<Spanned<String>>,

@@ -106,8 +106,8 @@ impl Placed {
         Ok(placed)
     }
 
-    /// Tries each instrument by itself, in so many rounds. A relay that proves itself is switched in each, and the round is over
-    /// when it is proved; the slowest round counts, and the time until the next reading with it.
+    /// Tries each instrument by itself, in so many rounds. In each round a relay that has a proof is switched on, and
+    /// the round is over when it is proved. The slowest round counts, with the time until the next reading.
     pub fn check(places: &Places, rounds: u32) -> Vec<Checked> {
         let mut lines = match Lines::of(places) {
             Ok(lines) => lines,
@@ -240,7 +240,7 @@ impl Placed {
         self.workers.iter_mut().for_each(|worker| worker.end(each));
     }
 
-    /// Takes out of the inputs what has a place.
+    /// Takes the stimuli that have a place out of the inputs.
     fn place(&mut self, now: Instant, mut input: IoInput) -> IoInput {
         let placed = |input| self.places.stimuli.contains_key(&input);
         let mut want = |input, values: Values| {
@@ -362,7 +362,8 @@ impl PulseRate {
         match self.last {
             Some((before, at_us)) if before == count => {
                 let since_us = now_us.saturating_sub(at_us);
-                // A pulse that does not come says that the next is not sooner than now; two, that the wheel stands.
+                // While a pulse does not come, the frequency is at most one in the time since the last; after two
+                // periods, the wheel stands.
                 self.hz = match since_us > STANDS_AFTER * self.period_us {
                     true => 0.0,
                     false => self.hz.min(1e6 / since_us.max(1) as f64),

@@ -34,7 +34,7 @@ pub struct Point {
     pub channel: u8,
     /// Name of the driver's question for the reading.
     pub read: Option<String>,
-    /// Signal per unit of what is read.
+    /// Factor from what is read to the signal.
     pub scale: Option<f64>,
     /// Voltage of the unit's supply, V.
     pub volts: Option<f64>,
@@ -100,10 +100,10 @@ impl Point {
 
 /// Time a person has, s [default].
 const OPERATOR_S: u64 = 60;
-/// Greatest times that a bench file may state.
+/// Greatest times that a bench file may state: of a pulse, ms, and for a person, s.
 const MOST_MS: u64 = 60_000;
 const MOST_S: u64 = 3_600;
-/// As many coils as one request writes (Modbus application protocol 6.11), counted from 0.
+/// Last coil or input, counted from 0: as many coils as one request writes (Modbus application protocol 6.11).
 const LAST_TERMINAL: u16 = 1967;
 
 /// The instrument at which a point is, and its driver.
@@ -116,7 +116,7 @@ macro_rules! inputs {
         pub enum UnitInput { $(#[doc = $key] $name,)* }
 
         impl UnitInput {
-            /// All, in the order of the train lines first.
+            /// All inputs: train lines first, by their bits.
             pub const ALL: &[Self] = &[$(Self::$name,)*];
 
             /// Key of the input in a bench file.
@@ -142,7 +142,6 @@ impl UnitInput {
         Self::ALL.iter().copied().find(|known| known.name() == name)
     }
 
-    /// Train lines.
     pub(super) fn lines() -> impl Iterator<Item = (Self, TrainLines)> {
         let bits = (0..).map(|bit| TrainLines::from_bits_retain(1 << bit));
         let lines = Self::ALL.iter().copied();
@@ -161,7 +160,7 @@ impl UnitInput {
         }
     }
 
-    /// Relays that make it; 0 = relays cannot.
+    /// Number of relays that make this input; 0 = relays cannot.
     const fn coils(self) -> usize {
         match self {
             Self::ModeSwitch => ModeSwitch::ALL.len(),
@@ -172,7 +171,7 @@ impl UnitInput {
         }
     }
 
-    /// Frames to the unit carry it with the others of a scan.
+    /// Whether the frame with all inputs of a scan carries this input.
     pub(super) const fn is_in_inputs(self) -> bool {
         !matches!(
             self,
@@ -188,7 +187,7 @@ impl UnitInput {
         )
     }
 
-    /// What it has to state where it is.
+    /// Checks that a point states what this input needs at its place.
     pub(super) fn check(self, point: &Point, (entry, model): Named<'_>) -> Result<(), String> {
         let Place::Instrument(instrument) = point.place() else {
             return match point.place() {

@@ -25,7 +25,7 @@ const OVERLOAD: f64 = 9.9e37;
 /// An instrument whose model was checked, with the points of the bench file that it has.
 pub(super) struct Scpi {
     line: SharedLine,
-    /// Read, and not yet an answer.
+    /// Bytes that were read and are not a whole answer yet.
     came: Vec<u8>,
     model: Arc<Model>,
     stimuli: Vec<(UnitInput, Point)>,
@@ -210,7 +210,8 @@ impl Instrument for Scpi {
     fn off(&mut self) -> Result<(), InstrumentFault> {
         self.set.clear();
         let commands = self.model.off.clone();
-        // All are sent before one is asked for, so that no old error and no late answer keeps an output on.
+        // All commands are sent before the error queue is asked, so that no old error and no late answer keeps an
+        // output on.
         commands.iter().try_for_each(|command| self.say(command))?;
         match commands.is_empty() {
             true => Ok(()),

@@ -12,7 +12,7 @@ use super::points::{Place, Point};
 use super::teller::Teller;
 use crate::words::BenchNote;
 
-/// The action itself, without the word that it is for a bench or a train only.
+/// The action itself, without the mark that it is for a bench or a train only.
 pub(super) fn inner(action: &Action) -> &Action {
     match action {
         Action::OnBench(action) | Action::OnTrain(action) => action,
@@ -58,7 +58,8 @@ impl Places {
         late.max().unwrap_or(Duration::ZERO)
     }
 
-    /// Motion is what steps before left that this one continues, and becomes what this one leaves.
+    /// Widens the limits of a step. `motion` is what the steps that this one continues have left, and becomes what this
+    /// one leaves.
     pub(super) fn widen(&self, step: &mut Step, motion: &mut Motion, tell: &Teller<'_>) {
         let acts = self.acts_late();
         for action in &step.actions {
@@ -142,7 +143,8 @@ impl Places {
         }
     }
 
-    /// Gives what is waited for as much more time as instruments act and read late; whether there is any.
+    /// Gives each wait for a condition as much more time as instruments act and read late; whether there is such a
+    /// wait.
     pub(super) fn wait_longer(&self, actions: &mut [Action]) -> bool {
         let late = self.acts_late() + self.reads_late(&READ_ANY);
         let mut longer = false;

@@ -13,13 +13,13 @@ use super::model::Values;
 use super::points::UnitInput;
 use crate::pool::held;
 
-/// Longest time for an answer: less than what all have to become safe in.
+/// Longest time for an answer: less than all instruments together have to become safe.
 pub(super) const ANSWERS_WITHIN: Duration = Duration::from_millis(400);
 /// Time without a scan of the bench after which outputs are switched off, and what each further instrument waits longer,
 /// so that the order is kept.
 const UNFED: Duration = Duration::from_millis(500);
 const AFTER_EACH_OTHER: Duration = Duration::from_millis(50);
-/// An instrument that is late once may have waited for this computer; one that is so often in a row is slow.
+/// An instrument that is late once may have waited for this computer; one that is late so often in a row is slow.
 const SLOW_AFTER: u32 = 3;
 
 /// What is wanted of an instrument, by stimulus.
@@ -27,7 +27,7 @@ pub(super) type Wanted = BTreeMap<UnitInput, Values>;
 
 /// An instrument that is connected and has passed its self-check.
 pub(super) trait Instrument: Send {
-    /// Sets what differs from what was set, and reads; whether there was anything to do.
+    /// Sets what has changed, and reads; true if there was anything to do.
     fn cycle(
         &mut self,
         wanted: &Wanted,
@@ -49,14 +49,14 @@ struct State {
     fed: Option<Instant>,
     read: BTreeMap<Signal, f64>,
     has_read: bool,
-    /// Longest cycle beyond what the bench file states.
+    /// Greatest time by which a cycle was longer than the bench file states.
     late: Duration,
     fault: Option<InstrumentFault>,
     ends: bool,
     ended: bool,
 }
 
-/// The thread's other end.
+/// An instrument's thread, seen from outside.
 pub(super) struct Worker {
     pub name: String,
     shared: Arc<(Mutex<State>, Condvar)>,
@@ -97,7 +97,7 @@ impl Worker {
         }
     }
 
-    /// Wants this from now on.
+    /// Tells the thread what is wanted from now on.
     pub fn feed(&self, wanted: &Wanted) {
         let mut state = held(&self.shared.0);
         state.fed = Some(Instant::now());
@@ -107,7 +107,7 @@ impl Worker {
         }
     }
 
-    /// Tells each signal that the instrument read last.
+    /// Hands each signal that the instrument read last to `each`; its fault, if it has one.
     pub fn readings(&self, mut each: impl FnMut(Signal, f64)) -> Result<(), InstrumentFault> {
         let state = held(&self.shared.0);
         state
@@ -122,7 +122,7 @@ impl Worker {
         span(std::mem::take(&mut held(&self.shared.0).late))
     }
 
-    /// Waits until it has read for the first time.
+    /// Waits until the instrument has read for the first time.
     pub fn has_read(&self, within: Duration) -> Result<(), InstrumentFault> {
         let state = held(&self.shared.0);
         let waits = |state: &mut State| !state.has_read && state.fault.is_none();
@@ -135,7 +135,7 @@ impl Worker {
         }
     }
 
-    /// Switches its outputs off and waits for that, no longer than this.
+    /// Switches the instrument's outputs off and waits for that, no longer than `within`.
     pub fn end(&mut self, within: Duration) {
         let mut state = held(&self.shared.0);
         // The end of the thread was waited for once.
@@ -180,7 +180,7 @@ fn work(
         is_off = !fed;
         let wanted = if fed { &wanted } else { &nothing };
         let cycled = instrument.cycle(wanted, &mut read);
-        // What changed just after a reading is read by the next.
+        // A change just after a reading is seen by the next reading.
         let took = began.elapsed() + timing.poll;
         late = match took > timing.uncertainty {
             true => late + 1,
@@ -210,7 +210,7 @@ fn work(
     }
 }
 
-/// A panic as its text.
+/// Does the work; a panic becomes an error with the panic's text.
 fn kept<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);

@@ -19,11 +19,11 @@ use crate::failure::{Failure, RecordTrouble};
 const SPEED_KMH: f64 = 3.0;
 /// Number of rows from which on a greater difference is a failure [default: 1 s].
 const FOR_ROWS: usize = 20;
-/// Distance by which a late brake begins behind the sound unit's, m [default].
+/// A brake is late if it begins more than this behind the sound unit's, m [default].
 const LATE_M: f64 = 10.0;
 /// Efforts below this are braking.
 const BRAKES: f64 = -20.0;
-/// Below this speed nothing is compared, km/h: the last metre is the stop's.
+/// Below this speed nothing is compared, km/h: the last metre is judged as the stop.
 const SLOW_KMH: f64 = 3.0;
 /// Up to this speed a record that ends counts as one that ends at rest, km/h: the train goes 8 cm more at most. ATP
 /// takes the train out of Automatic Run, and the record ends, when ATO has arrived.
@@ -53,7 +53,7 @@ pub struct StopComparison {
     /// Place at rest less stop point, m, as the unit believed; above 0 = past it. None if the record does not end at
     /// rest.
     pub error_m: Option<f64>,
-    /// The sound unit's, as it believed.
+    /// Error of the sound unit's stop, as that unit believed.
     pub twin_error_m: Option<f64>,
     /// Stops within this count as aligned, m.
     pub aligned_m: f64,
@@ -66,11 +66,11 @@ pub struct RecordComparison {
     /// Where curves part, the first one first.
     pub partings: Vec<Parting>,
     pub stop: StopComparison,
-    /// Place where the brake for the stop begins, m: the run's and the sound unit's.
+    /// Place where the run's brake for the stop begins, m.
     pub brake_m: Option<f64>,
     /// The sound unit's.
     pub twin_brake_m: Option<f64>,
-    /// Time from departure to rest, s: the run's and the sound unit's.
+    /// Time of the run from departure to rest, s.
     pub run_time_s: Option<f64>,
     /// The sound unit's.
     pub twin_run_time_s: Option<f64>,
@@ -125,7 +125,8 @@ pub fn compare(
     let rows = outcome.rows.iter();
     let rows = rows.map(|row| SIGNALS.map(|signal| row.value(signal)));
     let twin = Curve::of(rows.collect(), CYCLE.as_secs()).unwrap_or_default();
-    // No controller is at its target at once: as far behind it as the sound unit is, it follows.
+    // No controller is at its target at once: a run that is as far from its target as the sound unit follows the
+    // target.
     let follows = |row: &Point| {
         let behind = twin
             .at(row.x_m)
@@ -200,7 +201,7 @@ impl RecordComparison {
             .is_some_and(|error_m| error_m.abs() > self.stop.aligned_m)
     }
 
-    /// Whether no curve parts, the stop is right and no brake is late.
+    /// Whether no curve parts, the stop is right, no brake is late and no marker is missed.
     pub fn is_as_expected(&self) -> bool {
         self.partings.is_empty()
             && !self.is_misaligned()
@@ -248,13 +249,13 @@ impl Curve {
         })
     }
 
-    /// The row nearest to a place; none beyond the ends.
+    /// The first row at or after a place; `None` beyond the ends.
     fn at(&self, x_m: f64) -> Option<&Point> {
         let after = self.rows.partition_point(|row| row.x_m < x_m);
         self.rows.get(after).filter(|_| after > 0)
     }
 
-    /// Where it rests in the end.
+    /// Place where the train rests at the end.
     fn rest_m(&self) -> Option<f64> {
         let last = self.rows.last()?;
         (last.speed_kmh <= RESTS_KMH).then_some(last.x_m)
@@ -286,7 +287,7 @@ impl Curve {
     }
 }
 
-/// Where a value is beside the one expected for longer than it may be.
+/// First place where a value differs from the expected one for longer than it may.
 fn parting(
     came: &Curve,
     (signal, against): (&'static str, &'static str),

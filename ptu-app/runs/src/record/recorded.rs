@@ -10,7 +10,7 @@ use protocol::{CYCLE, Speed};
 use crate::run::channel;
 use crate::unit_log::StoredRead;
 
-/// Rows of the longest trace, 30 min: what follows a longer stand is left out.
+/// Most rows of a trace, 30 min: later rows, as after a long stand, are left out.
 const MOST_ROWS: usize = 36_000;
 
 /// The signals that a row tells of.
@@ -31,7 +31,7 @@ pub struct RecordedRun {
     pub id: Id,
     /// Power-up in which the run was made.
     pub power_up: u32,
-    /// Run since that power-up.
+    /// Number of the run since that power-up.
     pub run: u16,
     /// Time since that power-up at its first row, ms.
     pub at_ms: u32,
@@ -117,7 +117,7 @@ fn run_of(serial: &str, read: &StoredRead, rows: &[StoredRow]) -> RecordedRun {
     }
 }
 
-/// From the unit and all of each row: every run of a unit whose memory is new begins with the same first row.
+/// Made from the unit and all of each row: with a new memory every run of a unit begins with the same first row.
 fn id_of(serial: &str, rows: &[StoredRow]) -> Id {
     let mut all = Vec::new();
     for row in rows {
@@ -126,7 +126,7 @@ fn id_of(serial: &str, rows: &[StoredRow]) -> Id {
     Id::of_content("unit run record", &[serial.as_bytes(), &all])
 }
 
-/// A row with what was counted until then.
+/// A row with the marker passed last and the number of markers until then.
 #[derive(Clone, Copy)]
 struct Shown {
     row: StoredRow,
@@ -135,7 +135,7 @@ struct Shown {
 }
 
 /// Rows at each cycle from the first to the last. The unit leaves out rows that would only repeat that the train
-/// stands; any other one that is missing is not known. True: what came after [`MOST_ROWS`] is left out.
+/// stands; any other row that is missing is not known. True if rows after [`MOST_ROWS`] are left out.
 fn on_grid(rows: &[StoredRow]) -> (Vec<Option<Shown>>, bool) {
     let cycle_ms = CYCLE.as_ms() as u32;
     let mut grid: Vec<Option<Shown>> = Vec::new();
@@ -167,7 +167,7 @@ fn on_grid(rows: &[StoredRow]) -> (Vec<Option<Shown>>, bool) {
             markers,
         };
         last = Some(shown);
-        // Two rows of one cycle, of a clock that jitters: the later one.
+        // Of two rows in one cycle, by a clock that jitters, the later one counts.
         grid.truncate(place);
         grid.push(last);
     }
@@ -255,7 +255,7 @@ pub(super) mod tests {
         assert_eq!(recorded_runs("SG-1", &earlier, Rest::Unread).len(), 2);
     }
 
-    /// Goal: any field of any row makes another run of it, as of another unit with the same name.
+    /// Goal: a change of any field in any row gives another id, as for another unit with the same name.
     #[test]
     fn each_row_counts_for_the_id() {
         let rows = vec![row(0, 1, 1, 1_000, 0), row(1, 1, 1, 1_050, 10)];

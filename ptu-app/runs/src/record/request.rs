@@ -23,7 +23,7 @@ pub struct CompareRequest {
     pub load: Option<Load>,
 }
 
-/// A comparison, and of what.
+/// A comparison, with the trace, unit, line and configuration compared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     pub trace: Id,

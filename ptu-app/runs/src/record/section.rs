@@ -13,7 +13,7 @@ const NEAR_M: f64 = 30.0;
 /// The number of the section of `line` whose markers and stop are where the run found them.
 ///
 /// # Errors
-/// None fits, or several do as well: which.
+/// No section fits, or several fit alike: which.
 pub fn find_section(line: &Line, trace: &TraceData) -> Result<u16, Failure> {
     let seen = places(trace);
     if seen.is_empty() {

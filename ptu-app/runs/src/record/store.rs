@@ -13,7 +13,7 @@ use crate::unit_log::{Source, UnitReading, run_record};
 pub struct Pulled {
     /// The run they are stored as; none when nothing is new.
     pub run: Option<fault_db::Id>,
-    /// New ones, in order.
+    /// New runs, in order.
     pub new: Vec<RecordedRun>,
     /// Number of runs that were stored before.
     pub known: usize,
@@ -38,7 +38,7 @@ pub fn pull(store: &Store, source: &Source, runs: Vec<RecordedRun>) -> Result<Pu
     let mut writer = RunWriter::begin(store, &run_record(source))?;
     for (index, run) in (0..).zip(&mut pulled.new) {
         if run.date.is_none() {
-            // Not later than it was read.
+            // The run is not later than the reading.
             run.trace.t0_us = source.from_us;
         }
         writer.recorded_trace(run.id, &run.trace)?;

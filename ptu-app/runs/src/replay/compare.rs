@@ -8,15 +8,15 @@ use fault_db::{Channel, ChannelKind, TraceData};
 use super::path;
 use crate::failure::{Failure, RecordTrouble, Unknown, did_you_mean};
 
-/// Signals without a unit that are quantities; all others are numbers of things, bits or codes, of which
-/// any other value is another thing.
+/// Quantities without a unit of measurement. All other such signals are numbers of things, bits or codes, in which any
+/// difference counts.
 const PLAIN_QUANTITIES: [&str; 2] = ["effort", "tcms_value"];
 
 /// Rows by which a value may come sooner or later where a unit runs by a clock of its own.
 const CLOCK_ROWS: usize = 2;
 
-/// Where a unit runs by a clock of its own, numbers may be so far apart, by their unit; what two runs of
-/// one good unit on a port differ by at most, doubled.
+/// Tolerances by unit of measurement, where a unit runs by a clock of its own: twice the largest difference between two
+/// runs of one good unit on a port.
 const CLOCK_TOLERANCES: [(&str, f64); 6] = [
     ("km/h", 1.0),
     ("m", 1.0),
@@ -25,30 +25,29 @@ const CLOCK_TOLERANCES: [(&str, f64); 6] = [
     ("mV", 2.0),
     ("%", 0.1),
 ];
-/// Units of signals that are left out where a unit runs by a clock of its own: efforts and their accelerations lag behind
-/// what the train was asked for
-/// before the procedure began, and jump with every frame that is late. What TCMS orders is compared.
+/// Units of measurement of signals that are left out where a unit runs by a clock of its own: efforts and accelerations
+/// lag behind what the train was asked for before the procedure began, and jump with every late frame. The orders of
+/// TCMS are compared.
 const CLOCK_LEFT_OUT: [&str; 3] = ["N", "m/s²", "m/s³"];
-/// Tolerance of quantities without a unit (efforts of 1 024), where a unit runs by a clock of its
-/// own.
+/// Tolerance of `PLAIN_QUANTITIES` (efforts of 1 024) where a unit runs by a clock of its own.
 const CLOCK_TOLERANCE_PLAIN: f64 = 30.0;
 
-/// Rows in which the state of the bench before the procedure shows.
+/// Rows at the beginning of a procedure in which the earlier state of the bench still shows.
 const LEFT_ROWS: i64 = 20;
 
-/// Signals that go on counting from power-up: what counts is what was added since the procedure began.
+/// Signals that go on counting from power-up: only what was added since the procedure began is compared.
 const COUNTERS: [&str; 3] = ["train_position", "position", "marker_count"];
 /// Counts of frames, which are left out where one of the units is on a wire: each end sends at its own
 /// times, and a busy line loses some.
 const FRAME_COUNTS: [&str; 4] = ["rejected_frames", "twc_received", "twc_answers", "twc_sent"];
 
-/// Rule of a comparison. Numbers deviate by more than their smallest step and the tolerance, words and
-/// bits by any difference, a known value from an unknown one always.
+/// Rule of a comparison. Numbers deviate if they differ by more than their smallest step and the tolerance, words and
+/// bits if they differ at all; a known value deviates from an unknown one always.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
     /// Rows by which a value may come sooner or later.
     slack_rows: usize,
-    /// Numbers have the tolerances of a clock of its own, and counters begin at 0 in the first row.
+    /// A unit runs by a clock of its own: numbers have its tolerances, and of counters only the increase is compared.
     wall_clock: bool,
     /// First row compared, from the trigger.
     from_row: i64,
@@ -60,14 +59,14 @@ pub struct Rule {
 pub struct Deviation {
     pub signal: String,
     pub channel: Channel,
-    /// Row of the first trace.
+    /// First row that differs, counted in the first trace.
     pub row: usize,
     pub first: Difference,
-    /// Largest difference: of a number by size, of a word the first.
+    /// Largest difference of a number; the first one of a word or bit.
     pub largest: Difference,
-    /// Rows that differ.
+    /// Number of rows that differ.
     pub rows: usize,
-    /// Stretches of the first trace in which those rows lie.
+    /// These rows, as ranges of rows of the first trace.
     pub stretches: Vec<Range<usize>>,
 }
 
@@ -114,7 +113,7 @@ impl Rule {
         }
     }
 
-    /// One of them paced by the wall clock.
+    /// Two benches, one of them paced by the wall clock.
     pub const fn wall_clock() -> Self {
         Self {
             slack_rows: CLOCK_ROWS,
@@ -124,8 +123,8 @@ impl Rule {
         }
     }
 
-    /// Rule for one trace paced by the wall clock, on a bench that had been in use: rows count from one
-    /// second after `began_row`, in which the procedure began, counted from the trigger.
+    /// Rule for one trace paced by the wall clock, on a bench that had been in use: rows are compared from one second
+    /// after `began_row`, in which the procedure began, counted from the trigger.
     pub const fn after_begin(began_row: i64) -> Self {
         Self {
             from_row: began_row.saturating_add(LEFT_ROWS),
@@ -156,13 +155,13 @@ impl Rule {
                 .find(|(unit, _)| *unit == channel.unit);
             known.map_or(0.0, |(_, tolerance)| *tolerance)
         };
-        // A crumb more, so that exactly one step apart is not apart.
+        // A little more, so that values exactly one step apart do not deviate.
         Some(lsb.max(tolerance) * 1.000_001)
     }
 }
 
-/// Compares what came with what was expected, aligned at their triggers; of `signals` only these, unless
-/// it is empty.
+/// Compares the trace `came` with the `expected` one, aligned at their triggers: the signals named in `signals`, or all
+/// if it is empty.
 ///
 /// # Errors
 /// Rows of another period, no row in common, or a signal in neither.
@@ -242,10 +241,10 @@ fn in_order(deviations: &mut [Deviation]) {
 /// Rows that both traces have, counted in the first.
 struct Rows {
     first: usize,
-    /// First row that is compared; those before it only say what came around it.
+    /// First row that is compared; rows before it only serve as neighbours, within the slack.
     from: usize,
     last: usize,
-    /// Rows of the second trace less rows of the first.
+    /// Row number in the second trace less row number in the first.
     shift: i64,
     trigger: i64,
     period_us: i64,
@@ -286,7 +285,7 @@ impl Rows {
         let came = came.get(self.first..=self.last)?;
         let expected = expected.get(shifted..=shifted + (self.last - self.first))?;
         let tolerance = rule.tolerance(channel);
-        // What is counted begins at the first row where both are known.
+        // A counter begins at the first row where both traces know it.
         let counts = rule.wall_clock && COUNTERS.contains(&channel.name.as_str());
         let begun = self.from - self.first;
         let both = came[begun..]
@@ -301,7 +300,7 @@ impl Rows {
             tolerance,
             slack: rule.slack_rows,
         };
-        // At the end of a trace nothing tells what came a little later.
+        // At the end of a trace nothing tells whether a value came a little later.
         let compared = begun..came.len().saturating_sub(rule.slack_rows);
         let mut apart = compared.filter(|row| pair.apart(*row)).peekable();
         let first = *apart.peek()?;
@@ -347,8 +346,8 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// Whether the values of a row deviate: the expected one did not come in the rows around, and the one that came was not
-    /// expected there.
+    /// Whether the values of a row deviate: in the rows around, the expected one did not come, or the one that came was
+    /// not expected.
     fn apart(&self, row: usize) -> bool {
         let same = |a: f64, b: f64| match self.tolerance {
             _ if a.is_nan() || b.is_nan() => a.is_nan() && b.is_nan(),
@@ -368,7 +367,7 @@ impl Pair<'_> {
             && near
                 .clone()
                 .any(|other| same(came(other), self.expected[row]));
-        // A value that moves fast passes between two rows.
+        // A signal that moves fast takes the value between two rows.
         let passes = |value: f64, column: &dyn Fn(usize) -> f64| {
             let (low, high) = near
                 .clone()

@@ -13,7 +13,7 @@ use crate::run::{BenchContents, Stimuli, Window};
 /// # Errors
 /// The database fails.
 pub fn rule_between(store: &Store, a: Id, b: Id) -> Result<Rule, Failure> {
-    // Not known where there is no recording.
+    // Not known without a recording: it counts as virtual time.
     let on_port = |trace| match store.recording(trace)? {
         Some(recording) => Ok::<_, Failure>(BenchContents::read(&recording)?.0.on_port()),
         None => Ok(false),
@@ -41,7 +41,8 @@ pub struct Original {
     t0_bench_us: i64,
 }
 
-/// A procedure takes minutes. One that is said to take longer than this would be done again for ever.
+/// Longest time that a recording may state, µs: a procedure takes minutes, and one of any length would be replayed for
+/// ever.
 const LONGEST_US: i64 = 24 * 3_600_000_000;
 
 /// Checks the times of a trace against the clock of its recording, because an imported file may name any.
@@ -60,7 +61,7 @@ fn check_times(trace: &TraceData, t0_bench_us: i64) -> Option<()> {
     let is_in = trace.period_us > 0 && trigger < trace.rows();
     row_us(0)?;
     row_us(trace.rows() - 1)?;
-    // What is said of it is said in the run's own time.
+    // A place in the trace is told in the run's bench time, which must not overflow.
     is_in
         .then(|| trace.t0_bench_us.checked_add(LONGEST_US))
         .flatten()
@@ -71,7 +72,7 @@ impl Original {
     /// Reads a trace with its recording.
     ///
     /// # Errors
-    /// There is no such trace, or none that can be had again.
+    /// There is no such trace, or its stimuli cannot be played again.
     pub fn read(store: &Store, id: Id) -> Result<Self, Failure> {
         let trace = store.trace(id)?;
         let recording = store
@@ -117,7 +118,7 @@ impl Original {
     pub fn began_row(&self) -> i64 {
         let began_us = i64::try_from(self.stimuli.began_us).unwrap_or(i64::MAX);
         let since_us = began_us - self.row_us(self.trigger_row());
-        // The first row at or after it.
+        // The first row at or after the beginning.
         -(-since_us).div_euclid(self.trace.period_us)
     }
 

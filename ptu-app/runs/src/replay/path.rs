@@ -20,8 +20,8 @@ pub const LEFT_OUT: [&str; 6] = [
     "identity_line",
 ];
 
-/// Told when they deviate, but never links of a chain: bulk of the train's equipment, and what only
-/// follows from it.
+/// Signals that are listed when they deviate, but are never links of a chain: bulk of the train's equipment, and what
+/// only follows from it.
 const BESIDE: [&str; 7] = [
     "lamps",
     "train_accel",

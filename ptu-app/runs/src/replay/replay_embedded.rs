@@ -18,7 +18,7 @@ pub(super) struct EmbeddedReplay {
     pub trace: TraceData,
     /// Rule for comparing the trace with the original.
     pub rule: Rule,
-    /// What was done, on the clock of this bench.
+    /// The stimuli that were played, on the clock of this bench.
     pub recorded: RecordedStimuli,
     /// Stimuli that this bench refused.
     pub refused: Vec<String>,
@@ -37,7 +37,7 @@ pub fn good_twin(
     Ok((again.trace, again.rule))
 }
 
-/// The recorded stimuli on the embedded unit of `setup`.
+/// Plays the recorded stimuli on the embedded unit of `setup`.
 pub(super) fn on_embedded(
     original: &Original,
     setup: &BenchSetup,
@@ -47,7 +47,7 @@ pub(super) fn on_embedded(
     if !original.made.on_port() {
         return play(original, &mut session, 0, Rule::exact());
     }
-    // The unit on the port had been running for who knows how long.
+    // The unit on the port had been running for an unknown time: the embedded one is made ready, too.
     let (ready, _) = session.judge_bring_up(SWITCHED_OFF + READY_WITHIN, settled());
     if !ready {
         return Err(Failure::bench(RecordTrouble::NotReady));
@@ -55,13 +55,13 @@ pub(super) fn on_embedded(
     from_here(original, &mut session)
 }
 
-/// The recorded stimuli on a bench whose unit is ready, from now on.
+/// Plays the recorded stimuli on a bench whose unit is ready, from now on.
 pub(super) fn from_here<L: UnitLink>(
     original: &Original,
     session: &mut Session<L>,
 ) -> Result<EmbeddedReplay, Failure> {
     let began_us = original.stimuli.began_us;
-    // Rows of both lie at whole cycles of their clocks.
+    // Rows of original and replay lie at whole cycles of their clocks.
     session.idle(
         CYCLE,
         |_, _, _| {},

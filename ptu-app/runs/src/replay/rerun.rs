@@ -1,5 +1,5 @@
-//! The recorded stimuli again, on the embedded unit or one on a port: the situation of a fault set up on
-//! the bench, and kept as a run of its own.
+//! Plays recorded stimuli again, on the embedded unit or one on a port: the situation of a fault is set up on the
+//! bench, and the replay is kept as a run of its own.
 
 use fault_db::{Id, RunEnd, RunRecord, RunWriter, StepRecord, Store, TraceData, Verdict};
 use protocol::Instant;
@@ -88,7 +88,7 @@ pub struct Rerun {
     pub from_twin: Comparison,
     /// Stimuli this bench refused.
     pub refused: Vec<String>,
-    /// Stopped before its end, or the bench could not be made safe.
+    /// Why the replay is not whole: stopped before its end, or the bench could not be made safe.
     pub cut_short: Option<String>,
     /// Exit code.
     pub exit: Exit,
@@ -170,8 +170,8 @@ fn likeness(from_original: &Comparison, from_twin: &Comparison) -> ReplayMatch {
     }
 }
 
-/// The signal that deviated first in the original, and whether the replay has it leave the good twin's
-/// again, whatever else came.
+/// The signal that deviated first in the original, and whether it deviates from the good twin in the replay, too,
+/// whatever else does.
 fn first_again(original: &Comparison, replay: &Comparison) -> Option<(String, bool)> {
     let first = &original.deviations.first()?.signal;
     let again = replay
@@ -243,7 +243,7 @@ fn run_record(
     }
 }
 
-/// One step that says what the replay is like, the trace, and what was done.
+/// Writes one step that says how the replay compares, the trace, and the stimuli that were played.
 fn write(
     writer: &mut RunWriter<'_>,
     original: &Original,

@@ -13,8 +13,8 @@ use crate::run::trace_data::trace_data;
 use crate::run::{BenchSetup, RecordedStimuli, Window};
 use crate::stop::Stop;
 
-/// The first signal of a window that leaves a sound unit's on the bench of `setup`, which is given the same stimuli; none
-/// where all are the same, or it was stopped.
+/// The first signal of a window that deviates from a sound unit's, on the bench of `setup` and under the same stimuli;
+/// none where no signal deviates, or after a stop.
 pub fn first_deviation(
     setup: &BenchSetup,
     procedure: &str,
@@ -50,7 +50,7 @@ pub fn first_traces(store: &Store, occurrences: &[RunOccurrence]) -> Vec<Origina
     traces.into_iter().filter_map(read).collect()
 }
 
-/// The first signal of each trace that leaves its good twin's, for those that leave it; after a stop no trace is begun.
+/// The first deviating signal of each trace that deviates from its good twin; after a stop no trace is begun.
 pub fn residuals(traces: &[Original], directory: &ScriptsDirectory, stop: &Stop) -> Vec<String> {
     let first_of = |i: usize| {
         let (twin, rule) = good_twin(&traces[i], directory).ok()?;

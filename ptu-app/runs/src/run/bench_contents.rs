@@ -28,7 +28,7 @@ pub struct BenchFile {
     /// Changes to the file by `--set`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub settings: Vec<String>,
-    /// SHA-256 of it with its changes, in hex; of a train, of its content.
+    /// SHA-256 of the file with its changes, in hex; of a train, of the train's content.
     pub sha256: String,
 }
 
@@ -53,7 +53,7 @@ pub struct BenchContents {
     pub line: BenchFile,
     /// Train around the unit.
     pub train: BenchFile,
-    /// Seed of the run; that of a procedure follows from its name.
+    /// Seed of the run; the seed of a procedure follows from it and the procedure's name.
     pub seed: u64,
     /// Scatter of units, trains and benches.
     pub scatter: Option<BenchScatter>,

@@ -26,10 +26,10 @@ use crate::link::{Delayed, Endpoint, Pace, SIM_SERIAL, SimLink, WireLink};
 use crate::places::Places;
 use crate::stop::Stop;
 
-/// Sets the scans whose frames are late apart from what else the same seed gives.
+/// Makes the draw of scans with late frames independent of all other draws by the same seed.
 const WIRE_SEQUENCE: u64 = 0x317E_5CA7_7E2D_1A7E;
 
-/// Sets the draws of what disturbs waveforms apart from what else the same seed gives.
+/// Makes the draws of what disturbs waveforms independent of all other draws by the same seed.
 const WAVEFORM_SEQUENCE: u64 = 0xC011_5A3B_1E5D_0A7E;
 
 /// Time an embedded unit is without power before a procedure, so that the signals before show in a trace of its
@@ -54,14 +54,14 @@ pub struct BenchSetup {
     pub seed: u64,
     /// Scatter of good units, trains and benches, drawn by the seed; none = all are nominal.
     pub scatter: Option<Arc<BenchScatter>>,
-    /// Codes, TWC, markers and pulses are waveforms that are disturbed so; none = numbers.
+    /// Codes, TWC, markers and pulses are waveforms, disturbed as this says; `None` = they are numbers.
     pub waveforms: Option<ChannelConfig>,
     pub serial: Option<String>,
     /// Identity that the unit should have.
     pub expected: ExpectedIdentity,
     /// Wall-clock pace also for the embedded unit.
     pub realtime: bool,
-    /// Times the bench is slower than the clock, where it goes by the clock.
+    /// Factor by which the bench is slower than the clock, where it goes by the clock.
     pub slower: u32,
     /// Every row is handed on as an event, not only those around faults.
     pub record_whole: bool,
@@ -71,7 +71,7 @@ pub struct BenchSetup {
     pub places: Option<Arc<Places>>,
 }
 
-/// The embedded unit where it is built in.
+/// The embedded unit with what is between it and the rig.
 pub enum SimUnit {
     /// The unit is on a bench, all of whose channels reach the unit.
     OnBench(Box<SimLink>),

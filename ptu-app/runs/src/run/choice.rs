@@ -62,7 +62,7 @@ pub struct BenchChoice {
     /// File of the scatter; none = `bench_scatter.toml` of the scripts directory.
     #[serde(skip)]
     pub scatter_file: Option<PathBuf>,
-    /// Times slower than the wall clock.
+    /// How many times slower than the wall clock the bench runs.
     #[serde(skip)]
     pub slower: u32,
     /// Bench file, `benches/NAME.toml`; empty = everything is in the frames.
@@ -124,7 +124,7 @@ impl BenchChoice {
         names(self) == names(other)
     }
 
-    /// The bench file, for a unit that goes by the clock.
+    /// The bench file, if one is named: for a unit that goes by the clock.
     fn bench(
         &self,
         directory: &ScriptsDirectory,
@@ -227,10 +227,10 @@ pub fn check_serial(serial: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Faults of the simulated bench act on numbers in frames between bench and unit, and on nothing where there are none.
+/// Checks that faults of the simulated bench have numbers in frames between bench and unit to act on.
 ///
 /// # Errors
-/// Such a fault where there are none.
+/// A fault of the bench, and no such numbers.
 pub fn check_bench_faults(faults: &[FaultMode], by_numbers: bool) -> Result<(), Failure> {
     match faults.iter().find(|fault| fault.place.on_bench()) {
         Some(fault) if !by_numbers => Err(Failure::usage(RunTrouble::BenchFault(fault.id.clone()))),

@@ -26,7 +26,7 @@ pub trait Listener {
         None
     }
 
-    /// Prints these lines.
+    /// What prints the lines of [`Listener::line`].
     fn line_printer(&self) -> Option<LinePrinter> {
         None
     }
@@ -44,9 +44,9 @@ pub struct Outcome {
     pub verdict: Verdict,
     /// Bench time of all procedures.
     pub bench_time: Duration,
-    /// Exit code that goes with it.
+    /// Exit code that goes with the verdict.
     pub exit: Exit,
-    /// The history does not hold the run: why, and where it is kept.
+    /// Why the history does not hold the run, and where the run is kept.
     pub lost: Option<Trouble>,
     /// Why nothing was begun.
     pub prevented: Option<Trouble>,
@@ -74,14 +74,14 @@ pub struct Collector<'a> {
     /// Failures outside the steps of the present procedure, stored after its last step, so that the places of
     /// steps stay.
     outside: Vec<OutsideStep>,
-    /// The present procedure has something recorded that did not pass.
+    /// A record of the present procedure did not pass, and so says why the procedure failed.
     says_why: bool,
     run_says_why: bool,
     /// Procedures that ran to their end.
     finished: u32,
     /// Different steps that are due.
     planned: usize,
-    /// The run searches for a fault: passing without all steps accepts nothing.
+    /// The run searches for a fault: if it passes without all steps, the unit is not accepted.
     search: bool,
     /// Steps by procedure and place in it.
     counter: StepCounter<(String, usize)>,
@@ -91,8 +91,8 @@ pub struct Collector<'a> {
 }
 
 impl<'a> Collector<'a> {
-    /// A collector that records in `store`, of a run in which so many different steps are due; `search` = as many of them as
-    /// a fault takes.
+    /// A collector that records in `store` a run in which `planned` different steps are due; `search` = only as many of
+    /// them as it takes to find a fault.
     pub fn new(
         store: RunStore,
         began: RunStart,
@@ -125,7 +125,7 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// The next stream is of this procedure, which may be one that was due and not begun: it says nothing.
+    /// The next stream is of this procedure; it is empty if the procedure was due and not begun.
     pub fn begin(&mut self, procedure: &std::sync::Arc<Procedure>) {
         self.procedure = Some(procedure.clone());
         self.ordinal += 1;
@@ -310,7 +310,7 @@ impl<'a> Collector<'a> {
             .map(|number| self.faults_before + number)
             .collect();
         let date = faults.first().and_then(|number| self.dates.get(*number));
-        // Without a fault it is dated by its end, which is now.
+        // Without a fault a trace is dated by its end, which is now.
         let length_us = trace.period_us * cut.rows.len() as i64;
         trace.t0_us = match date {
             Some((bench_us, at_us)) => at_us - (bench_us - trace.t0_bench_us),
@@ -328,11 +328,11 @@ impl<'a> Collector<'a> {
         }));
     }
 
-    /// The end of all streams; `stopped` = what that makes of what was still due: somebody pressed stop, or the
+    /// The end of all streams; `stopped` = verdict on the procedures that were still due: somebody pressed stop, or the
     /// tester itself could not go on.
     ///
-    /// What was still due is not tested then, so that what came before it is no verdict on the unit. A run
-    /// that was over when stop was pressed is none of that: nothing after a failure is due where that ends it.
+    /// These procedures were not tested, so that what came before them is no verdict on the unit. `stopped` does not
+    /// count in a run that was over by then: nothing is due after a failure that ends the run.
     pub fn finish(mut self, id: Id, stopped: Option<Verdict>) -> (RunStore, Outcome) {
         if let Some(verdict) = stopped
             && !self.is_finished()
@@ -363,7 +363,7 @@ impl<'a> Collector<'a> {
         if !is_passed(verdict) && !self.run_says_why {
             self.say_of_whole(verdict, Finding::NoStepRun);
         }
-        // Also what a procedure said that the program did not run to its end.
+        // Also what was found in a procedure that did not run to its end.
         self.store_outside(WHOLE_RUN);
         let outcome = Outcome {
             id,

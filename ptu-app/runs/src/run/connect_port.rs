@@ -80,9 +80,9 @@ impl BenchSetup {
         Ok(Connected::Port(Box::new(session), identity, found))
     }
 
-    /// How far the bench may lag behind the unit. The unit misses its inputs after a silence of `io_timeout_ms`, and the
-    /// last frame it received may already be a cycle old. On a train, which gives the inputs itself, it ends the
-    /// session after `tester_timeout_ms`; a keep-alive may be as old as half of that.
+    /// How far the bench may lag behind the unit. The unit misses its inputs after a silence of `io_timeout_ms`, and
+    /// the last frame it received may already be a cycle old. On a train, which gives the inputs itself, the unit ends
+    /// the session after `tester_timeout_ms`; a keep-alive may be as old as half of that.
     fn max_lag(&self, connection: Option<Connection>) -> Duration {
         let link = &self.config.content.link;
         if connection == Some(Connection::Ptu) {
@@ -92,9 +92,9 @@ impl BenchSetup {
         Duration::from_us(silence_us.saturating_sub(CYCLE.as_us()).max(CYCLE.as_us()))
     }
 
-    /// Contact, identity, a brake left from before acknowledged, the clocks compared, its log answered and its
-    /// self-test asked for. The unit's log has a history, which is not read; the train is this bench's, and
-    /// what TCMS finds goes to `found`.
+    /// Makes contact, identifies the unit, acknowledges a brake left from before, compares the clocks, and waits for
+    /// log and self-test. Entries that the unit's log had before are not read; the train is this bench's, and what TCMS
+    /// finds goes to `found`.
     fn bring_up(
         &self,
         session: &mut Session<WireLink>,

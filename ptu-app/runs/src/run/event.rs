@@ -17,7 +17,7 @@ pub enum SessionEvent {
     Fault(FaultSeen),
     /// The window around faults is complete.
     Trace(Box<RecordedWindow>),
-    /// Rows since those before, of a run that is recorded whole.
+    /// Rows since the last event of this kind, of a run that is recorded whole.
     Rows(Vec<Row>),
     /// Stimuli of a procedure whose traces came before.
     Recording(Box<RecordedStimuli>),

@@ -9,7 +9,7 @@ use super::bench_contents::BenchContents;
 use super::plan::MeasuringRules;
 use crate::clock::{ClockState, NOT_KNOWN_MS, local_day, now_us};
 
-/// Content of the bench, and accuracy of its clock.
+/// Content of the bench, and accuracy of the computer's clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
     /// Unit configuration, line, train and settings, by their content.
@@ -59,7 +59,7 @@ impl TryFrom<Value> for InstrumentEvidence {
 /// The computer's clock at the beginning of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClockEvidence {
-    /// The network has set it since the computer was started; none: the system does not say.
+    /// The network has set the clock since the computer was started; none: the system does not say.
     pub synchronised: Option<bool>,
     /// Greatest error of the clock's times, ms; none = unknown.
     pub uncertainty_ms: Option<u16>,
@@ -97,7 +97,7 @@ impl Evidence {
         }
     }
 
-    /// The instrument that values of this unit are measured with, if one is registered for it.
+    /// The instrument that values in this unit of measurement are measured with, if one is registered for it.
     pub fn instrument_for(&self, unit: &str) -> Option<&InstrumentEvidence> {
         let measures = |used: &&InstrumentEvidence| used.of.uncertainty.contains_key(unit);
         self.instruments.iter().find(measures)

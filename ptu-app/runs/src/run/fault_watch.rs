@@ -40,8 +40,8 @@ pub fn is_fault(entry: &UnitEvent) -> bool {
     Event::from_code(entry.code).is_none_or(|event| event.definition().severity > Severity::Info)
 }
 
-/// The event entry as a fault. An event that names no part leaves it open: the step under way need
-/// not have to do with it.
+/// The event entry as a fault. An event that names no part gives a fault without one: the step under way need not have
+/// to do with it.
 pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
     let event = Event::from_code(entry.code);
     let (name, severity) = match event.map(Event::definition) {
@@ -65,7 +65,7 @@ pub fn of_event(entry: &UnitEvent, at: Instant, sample: &Sample) -> FaultSeen {
     }
 }
 
-/// A unit that says its self-test failed, whenever that was.
+/// The fault of a unit that says its self-test failed, whenever that was.
 pub fn of_self_test(failed: SelfTest, at: Instant, sample: &Sample) -> FaultSeen {
     let event = Event::SelfTestFailed;
     let known = event.definition();

@@ -9,16 +9,16 @@ use super::event::SessionEvent;
 
 /// The first procedure, in the order of the run, that did not pass.
 ///
-/// The worker that runs procedures notes it before the stream of that procedure ends, and asks before the next begins.
-/// The collector that records them asks when the streams of all before have ended, so that the record ends with that
-/// procedure however many benches work side by side: what one of them has begun after it is given up.
+/// A worker notes a failure before the stream of the failed procedure ends, and asks before it begins the next
+/// procedure. The collector asks when the streams of all procedures before have ended, so that the record ends with the
+/// failed one however many benches work side by side: procedures after it that a bench has begun are given up.
 pub(super) struct FirstFailure {
     ends_run: bool,
     place: AtomicUsize,
 }
 
 impl FirstFailure {
-    /// No failure so far; `ends_run` = the run ends with the first.
+    /// No failure so far; `ends_run` = the run ends with the first failure.
     pub(super) fn new(ends_run: bool) -> Self {
         Self {
             ends_run,
@@ -26,8 +26,8 @@ impl FirstFailure {
         }
     }
 
-    /// Whether the procedure with this place belongs to the run, as far as is known now; for good once all
-    /// before it are over.
+    /// Whether the procedure with this place belongs to the run, as far as is known now; the answer is final once all
+    /// procedures before it are over.
     pub(super) fn admits(&self, place: usize) -> bool {
         place <= self.place.load(Ordering::Acquire)
     }

@@ -31,7 +31,8 @@ pub(super) fn of_run(
     }
 }
 
-/// Narrows the limits of all measurements by the uncertainty of the instrument that is registered for their unit.
+/// Narrows the limits of all measurements by the uncertainty of the instrument registered for their unit of
+/// measurement.
 ///
 /// # Errors
 /// No instrument says how uncertain it is.

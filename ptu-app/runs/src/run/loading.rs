@@ -31,18 +31,18 @@ pub const WORD: &str = "load-scripts";
 const MOST_TIME_S: u64 = 9;
 /// See [`MOST_TIME_S`].
 const SCRIPTS_A_SECOND: u64 = 50;
-/// Time by the clock over processor time: the machine may have other work.
+/// Permitted time by the clock over permitted processor time: the machine may have other work.
 const BUSY: u32 = 6;
-/// Memory that they may take, MiB.
+/// Memory that the process may take, MiB.
 const MOST_MEMORY_MIB: u64 = 512;
 /// Stack of the thread that evaluates scripts, bytes: scripts that nest and call as deep as they
 /// may take a fraction of it.
 const STACK: usize = 16 << 20;
 /// Longest line of what is loaded, bytes: the plan of one procedure.
 const LONGEST_LINE: u64 = 8 << 20;
-/// All that may be loaded, bytes as lines.
+/// Most that may be loaded in all, bytes of lines.
 const MOST_LOADED: u64 = 256 << 20;
-/// Lines under way.
+/// Lines that were read and not taken yet, at most.
 const QUEUE: usize = 16;
 /// Part of the last words of a broken-off process that is kept, bytes.
 const LAST_WORDS: u64 = 64 << 10;
@@ -71,15 +71,15 @@ enum LoaderLine<'a> {
 
 static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
 
-/// From now on scripts are loaded by a process of `program`, which calls [`serve`] when it is started with
-/// [`WORD`]. Until then they are loaded in this one, as is good for scripts that are known.
+/// From now on scripts are loaded by a process of `program`, which calls [`serve`] when it is started with [`WORD`].
+/// Until then they are loaded in this process, as is good for scripts that are known.
 pub fn load_apart(program: PathBuf) {
-    // The first caller has set the same.
+    // The first caller has set the same program.
     let _ = PROGRAM.set(program);
 }
 
-/// Loads scripts as [`loader::load`] does. One that takes too much is an error at its first line, and the only
-/// answer then.
+/// Loads scripts as [`loader::load`] does. A script that takes too much gives an error at its first line, and nothing
+/// else is loaded then.
 ///
 /// # Errors
 /// No process can be had.
@@ -152,9 +152,9 @@ fn cannot(error: impl Display) -> Failure {
 
 /// A process that broke off.
 struct Broken {
-    /// The script it was at.
+    /// Path of the script that it evaluated.
     at: Option<String>,
-    /// Error of the process; none if it ended by itself.
+    /// Why it was broken off; `None` if it ended by itself.
     why: Option<String>,
 }
 
@@ -202,13 +202,13 @@ fn listen(lines: &Receiver<Option<Vec<u8>>>, most_s: u64) -> Result<Loaded, Brok
             Err(error) if error.to_string().starts_with("recursion limit") => {
                 return broken(at, "declares conditions within conditions too deeply");
             }
-            // Numbers that are none.
+            // Numbers that JSON cannot hold, such as NaN.
             Err(error) => return broken(at, &format!("what it declares cannot be used: {error}")),
         }
     }
 }
 
-/// Hands over line by line; nothing for one that is too long.
+/// Hands over line by line; `None` for a line that is too long.
 fn read_lines(output: impl Read, lines: &SyncSender<Option<Vec<u8>>>) {
     let mut output = BufReader::new(output);
     loop {
@@ -316,7 +316,7 @@ fn say_all(order: &Order<'_>) -> std::io::Result<()> {
     } = order;
     let loaded = loader::load_each(scripts, unit, line, train, &mut |told| {
         let done = match told {
-            // What comes next may be the last.
+            // This script may be the last thing that the process tells.
             LoadEvent::Evaluates(path) => say(&LoaderLine::Evaluates(Cow::Borrowed(path)), true),
             LoadEvent::Loaded(procedure) => say(&LoaderLine::Loaded(procedure), false),
         };

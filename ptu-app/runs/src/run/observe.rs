@@ -30,7 +30,7 @@ impl ObservationBuilder {
         }
     }
 
-    /// Takes one event; a step that is over comes back.
+    /// Takes one event; returns the step that the event ends.
     pub fn take(&mut self, event: &SessionEvent) -> Option<&ObservedStep> {
         match event {
             SessionEvent::Fault(fault) => {
@@ -61,7 +61,7 @@ impl ObservationBuilder {
         self.steps.last()
     }
 
-    /// All steps; what showed after the last belongs to it.
+    /// All steps; signs that showed after the last step belong to it.
     pub fn finish(mut self) -> Vec<ObservedStep> {
         if let Some(last) = self.steps.last_mut() {
             last.signs.append(&mut self.waiting);
@@ -78,8 +78,8 @@ fn sign_of(fault: &FaultSeen) -> Option<Sign> {
     })
 }
 
-/// Observation of a stored run. Signs go with the step they showed in or, before a procedure's first
-/// step, with that; a run without steps, as an imported log is, has nothing but signs.
+/// Observation of a stored run. Signs go with the step in which they showed or, before a procedure's first step, with
+/// this first step; a run without steps, as an imported log is, has nothing but signs.
 pub fn of_run(run: &RunDetail, occurrences: &[RunOccurrence]) -> Observation {
     let mut seen = Observation::default();
     let steps = run

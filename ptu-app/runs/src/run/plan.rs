@@ -37,9 +37,9 @@ pub struct RunPlan {
     pub symptom: Option<String>,
     /// SHA-256 over all scripts.
     pub scripts_sha256: String,
-    /// Isolates a fault by itself, instead of running all tasks in order.
+    /// What an adaptive run, which isolates a fault instead of running all tasks in order, decides by.
     pub adaptive: Option<Adaptive>,
-    /// The earlier run whose open procedures these are.
+    /// The earlier run that is continued: the tasks are the procedures it left open.
     pub continues: Option<fault_db::Id>,
     /// Use of the bench's instruments.
     pub measuring: MeasuringRules,
@@ -76,7 +76,7 @@ impl RunPlan {
 /// Use that a run makes of the instruments of its bench.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeasuringRules {
-    /// Instruments whose calibration is over do not hinder the run; it says so.
+    /// Instruments whose calibration is over do not hinder the run; the run says so.
     pub uncalibrated: bool,
     /// Limits are narrowed by the uncertainty of what is measured.
     pub guard_band: bool,

@@ -27,7 +27,7 @@ pub fn trace_repaired(tasks: &mut [Task], store: &Store, unit: &str) -> Result<(
     Ok(())
 }
 
-/// Procedure and step of each.
+/// Procedure and step of each check that failed with such a fault.
 fn failed_before_repair(store: &Store, unit: &str) -> Result<BTreeSet<(String, String)>, Failure> {
     let filter = FaultFilter {
         unit: Some(unit.to_owned()),

@@ -39,9 +39,9 @@ impl RepetitionTally {
         matches!(self.verdict, Verdict::Passed | Verdict::Skipped)
     }
 
-    /// What the present repetition says, as the whole procedure says it: the procedure begins with the first,
-    /// and each one's end is kept for [`finished`](Self::finished). `goes_on` = what ends is not the whole repetition,
-    /// because a step of it is begun again.
+    /// Events of the present repetition as events of the whole procedure: the procedure begins with the first
+    /// repetition, and the end of each is kept for [`finished`](Self::finished). `goes_on` = the repetition is not
+    /// over: one of its steps is begun again.
     pub(super) fn take(&mut self, event: RunEvent, goes_on: bool) -> Option<RunEvent> {
         match event {
             RunEvent::ProcedureStarted { steps, at } => {
@@ -60,7 +60,7 @@ impl RepetitionTally {
         }
     }
 
-    /// Takes note of what failed between two repetitions; the event that reports it.
+    /// Notes what failed between two repetitions, and returns the event that reports it.
     pub(super) fn outside(
         &mut self,
         place: Outside,
@@ -89,7 +89,8 @@ impl RepetitionTally {
         }
     }
 
-    /// The end of the procedure; `link_lost` = nothing could be judged any more, which is what it came to.
+    /// The end of the procedure; `link_lost` = nothing could be judged any more, so that a verdict on the unit becomes
+    /// an error.
     pub(super) fn finished(self, link_lost: bool, at: Instant) -> RunEvent {
         let mut findings = Findings::default();
         for found in self.findings.iter().flat_map(Findings::iter) {

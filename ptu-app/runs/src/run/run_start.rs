@@ -14,7 +14,7 @@ pub struct RunStart {
 }
 
 impl RunStart {
-    /// Now.
+    /// A run that begins now.
     pub fn now() -> Self {
         Self {
             at_us: clock::now_us(),

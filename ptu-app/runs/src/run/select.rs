@@ -27,7 +27,7 @@ pub fn shuffle<T>(items: &mut [T], seed: u64) {
     }
 }
 
-/// Puts procedures into the order in which their files were asked for; those of one name stay as they are.
+/// Puts procedures into the order in which their files were asked for; procedures of one file stay in theirs.
 pub fn in_order(order: &[String], procedures: &mut [Arc<Procedure>]) {
     procedures.sort_by_key(|procedure| order.iter().position(|path| *path == procedure.path));
 }

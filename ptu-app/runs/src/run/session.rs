@@ -60,8 +60,8 @@ pub struct Window {
 }
 
 impl<L: UnitLink> Session<L> {
-    /// A session on `bench`; `fresh_unit` = it is powered up within the session, so that all it
-    /// logs belongs to it.
+    /// A session on `bench`; `fresh_unit` = the unit is powered up within the session, so that all it logs belongs to
+    /// the session.
     pub fn new(bench: Bench<L>, pace: Pace, stop: Stop, fresh_unit: bool) -> Self {
         Self {
             bench,
@@ -256,7 +256,7 @@ impl<L: UnitLink> Session<L> {
         window: Window,
         refused: &mut Vec<String>,
     ) -> Option<TraceData> {
-        // A unit that falls silent is what some traces show: only a broken connection ends it early.
+        // Some traces show a unit that falls silent: only a broken connection ends the replay early.
         while self.bench.now() < window.until
             && self.stop.presses() == 0
             && self.link_failure.is_none()
@@ -287,7 +287,7 @@ impl<L: UnitLink> Session<L> {
         false
     }
 
-    /// A person takes time by the clock: virtual time keeps to it while one is waited for.
+    /// A person takes time by the clock: virtual time keeps to the clock while a person is waited for.
     fn wait_with(&mut self, waits: bool) {
         match (waits, self.with_person, &self.pace) {
             (true, false, Pace::Virtual) => {

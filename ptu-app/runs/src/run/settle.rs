@@ -16,8 +16,8 @@ const SETTLE: Duration = Duration::from_ms(500);
 /// Number of waits for a quiet unit on a computer that is held up.
 const SETTLES: usize = 3;
 
-/// Waits until the unit has settled. What the last procedure's end still makes it log is not the next one's,
-/// but the train's equipment may break at any time, and nothing else would report it.
+/// Waits until the unit has settled. What the unit still logs because of the last procedure does not count against the
+/// next, but the train's equipment may break at any time, and nothing else would report that.
 pub(super) fn between_procedures<L: UnitLink>(session: &mut Session<L>) -> Vec<FaultSeen> {
     let mut found = Vec::new();
     let mut seen = |entry: &UnitEvent, at, sample: &Sample| {

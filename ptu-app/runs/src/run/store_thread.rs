@@ -96,7 +96,6 @@ impl RunStore {
         }
     }
 
-    /// Records an entry.
     pub(super) fn record(&self, entry: Entry) {
         // A send fails only after the writer has ended with an error, which `finish` returns.
         let _ = self.entries.send(entry);
@@ -123,7 +122,7 @@ fn write(
     begun: &SyncSender<Id>,
     (busy_timeout, stop): (BusyTimeout, &Stop),
 ) -> Result<Option<(Store, Trouble)>, Failure> {
-    // Nothing is lost yet: a file that is locked, or has two names, is said as soon as any.
+    // Nothing is lost yet: a file that is locked, or has two names, is refused at once.
     let mut writer = RunWriter::begin(store, record)?;
     store.set_busy_timeout_ms(busy_timeout.stops_ms)?;
     let _ = begun.send(writer.id());

@@ -70,7 +70,7 @@ impl Suite {
         })
     }
 
-    /// Whether the scripts directory still holds the scripts of this suite, which holds all of them.
+    /// Whether the scripts directory still holds the scripts of this suite, which was loaded from all scripts.
     ///
     /// # Errors
     /// A script cannot be read.

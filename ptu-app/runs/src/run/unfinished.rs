@@ -16,10 +16,10 @@ pub enum Unfinished {
     Errors,
 }
 
-/// Paths of the scripts whose procedures the run left so, in the order of its list of scripts.
+/// Paths of the scripts whose procedures the run left in this state, in the order of its list of scripts.
 ///
-/// No row says that a procedure came to its end, only those of the next one do. So the last one of a run that was
-/// interrupted has no verdict, whatever its steps came to.
+/// No row says that a procedure came to its end; only rows of the next procedure show it. So the last procedure of a
+/// run that was interrupted has no verdict, whatever verdicts its steps have.
 pub fn unfinished(run: &RunDetail, which: Unfinished) -> Vec<String> {
     let mut records = BTreeMap::new();
     for records_of_one in run.steps.chunk_by(|a, b| a.procedure == b.procedure) {

@@ -71,7 +71,7 @@ fn text(field: &[u8]) -> Option<String> {
     Some(shown)
 }
 
-/// A character that is not seen, or stands for bytes that are none.
+/// A character that is not seen, or that stands for bytes that are no text.
 fn is_escaped(character: char) -> bool {
     is_unseen(character) || character == char::REPLACEMENT_CHARACTER
 }

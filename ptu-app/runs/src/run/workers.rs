@@ -21,7 +21,7 @@ use crate::stop::Stop;
 /// Procedures that may be begun before those in front of them have ended; each keeps room for its events.
 const STREAMS_AHEAD: usize = 32;
 
-/// Starts the workers; each procedure and its stream, in the order of the tasks, when it is begun or due.
+/// Starts the workers. Gives each procedure with its stream, in the order of the tasks, when it is begun or due.
 pub(super) fn start<'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: &'scope RunPlan,
@@ -36,7 +36,7 @@ pub(super) fn start<'scope>(
     }));
     let work_off = move |connected: &mut Connected| {
         let may_begin = |place: usize| stop.may_begin() && first_failure.admits(place);
-        // What is due and not begun ends with no event.
+        // The stream of a procedure that is due and not begun ends without an event.
         while let Some((place, task, sender)) = take(&work).filter(|due| may_begin(due.0)) {
             first_failure.run_noting_failure(place, sender, |sink, go_on| {
                 connected.run(task, stop, sink, go_on);
@@ -96,7 +96,7 @@ impl Connected {
     }
 }
 
-/// Every step is run.
+/// For a task of which every step is run.
 pub const TO_THE_END: fn() -> bool = || true;
 
 /// Runs a task on an embedded unit made for it as long as `go_on` says so after a step, telling `sink` what happens.

@@ -28,10 +28,9 @@ use crate::structure::Structure;
 use crate::symptoms::{self, Symptom};
 use crate::words::Warning;
 
-/// What decides what a healthy unit measures.
+/// Configuration, line, train and connection, which decide what a healthy unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bench<'a> {
-    /// SHA-256 of the unit configuration.
     pub unit_config_sha256: &'a str,
     pub line: &'a str,
     pub train: &'a str,
@@ -53,7 +52,7 @@ pub struct Answer {
     pub traces: BTreeMap<String, Vec<Id>>,
     /// What to bear in mind.
     pub warnings: Vec<Warning>,
-    /// What people call the parts; none where the catalogue cannot be read.
+    /// What people call the parts; empty where the catalogue cannot be read.
     pub names: Vec<Lru>,
     pub dictionary_from: Origin,
     /// The dictionary was made of what the scripts directory holds now.
@@ -236,7 +235,7 @@ fn cannot_tell_unless_passed(run: &RunDetail, diagnosis: &mut Diagnosis) {
     }
 }
 
-/// The bench of which an instrument ended the run.
+/// Name of the bench one of whose instruments ended the run.
 fn failed_bench(run: &RunDetail) -> Option<String> {
     let named = |finding: &Finding| match finding {
         Finding::LinkLostAt {
@@ -266,7 +265,7 @@ pub fn adaptive(
 ) -> Result<Adaptive, Failure> {
     let chosen = choose(Some(store), directory, bench.connection)?;
     if !chosen.current {
-        // A step that does something else now would mislead it at every turn.
+        // A step that was changed since would mislead the run at every turn.
         let stale = chosen.warnings.into_iter().map(Trouble::from);
         return Err(Failure::usage(Trouble::All(stale.collect())));
     }

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 
 impl Answer {
     /// Stores what each fault of the run comes from. Nothing is stored of a run that did not fail, nor where the
-    /// dictionary does not fit, or no part was found; a fault that a person has attributed stays as it is.
+    /// diagnosis has a warning, or found no part; a fault that a person has attributed stays as it is.
     ///
     /// # Errors
     /// The database does not take it.

@@ -22,7 +22,7 @@ const FILES: [&str; 5] = [
     BENCH_SCATTER,
 ];
 
-/// What a dictionary made now on this connection would be made of.
+/// The basis of a dictionary that would be made now on this connection.
 ///
 /// # Errors
 /// A file cannot be read.
@@ -53,14 +53,14 @@ impl Contents {
         Ok(Self { procedures, files })
     }
 
-    /// The dictionary was made of what there is now. A procedure that came later does not change what those before it
-    /// show.
+    /// Whether the dictionary was made of what there is now. A procedure that the dictionary does not know came later,
+    /// and does not change what the others show.
     pub fn hold(&self, dictionary: &Basis, connection: Connection) -> bool {
         let known = |name: &str| dictionary.procedures.contains_key(name);
         self.basis(connection, known).sha256 == dictionary.sha256
     }
 
-    /// What a dictionary of the procedures that count would be made of.
+    /// The basis of a dictionary that would be made now of the procedures that count.
     pub fn basis(&self, connection: Connection, is_counted: impl Fn(&str) -> bool) -> Basis {
         let mut all = format!("version {}\n", env!("CARGO_PKG_VERSION"));
         if connection == Connection::Ptu {

@@ -1,5 +1,5 @@
-//! What the confirmed repairs of a depot say in a diagnosis: how often each part fails, how often it was the one when it was
-//! named, and how the runs looked that a repair of it has settled.
+//! What the confirmed repairs of a depot say in a diagnosis: how often each part fails, how often a part that was named
+//! was the right one, and how the runs looked that a repair of the part has settled.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -14,7 +14,7 @@ use crate::symptoms::Symptom;
 /// More earlier runs than these say no more: a unit may lie on the bench for days with one fault.
 const MOST_RUNS: u32 = 4;
 const DAY_US: i64 = 86_400_000_000;
-/// What the history tells comes after so many reasons.
+/// In a list of reasons, what the history tells comes after so many others.
 const AFTER: usize = 1;
 
 /// What a unit's history says of its parts.
@@ -68,7 +68,7 @@ impl OwnHistory {
                 repair.came_back || repair.faults.intersection(seen).next().is_some()
             });
             let factor = if let Some(repair) = in_vain {
-                // Faults that name a part in vain do not speak for it, however often.
+                // After a repair in vain, faults that name the part do not speak for it, however often.
                 let known = Known::CameBack(repaired(repair));
                 history.against.insert(part.clone(), known);
                 settings.replaced_in_vain_factor
@@ -86,7 +86,7 @@ impl OwnHistory {
         history
     }
 
-    /// Adds what who brought the unit said is wrong with it.
+    /// Adds the symptom that was reported with the unit.
     pub(super) fn add_symptom(&mut self, symptom: &Symptom, settings: &Settings) {
         for part in &symptom.parts {
             let symptom = symptom.name.clone();
@@ -111,7 +111,8 @@ impl OwnHistory {
     }
 }
 
-/// Adds what is known to reasons, after the strongest of them: it differs from what the steps show, and is read with these.
+/// Adds knowledge of the history to reasons, after the strongest: it is of another kind than what the steps show, and
+/// is read with these.
 fn add<'a>(reasons: &mut Vec<Reason>, known: impl Iterator<Item = &'a Known>) {
     let place = reasons.len().min(AFTER);
     reasons.splice(place..place, known.cloned().map(Reason::Known));

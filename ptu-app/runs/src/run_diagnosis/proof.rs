@@ -18,12 +18,12 @@ pub struct RepairProof {
     pub code_name: String,
     /// Runs that passed since the repair, this one among them.
     pub passed: usize,
-    /// What they say; the fault of a repair that they prove is verified.
+    /// What these runs say; if they prove the repair, its fault is verified.
     pub says: Proof,
 }
 
-/// Holds a run that passed against the repairs that its unit's faults had before, and verifies those that it proves: a unit
-/// that still has the fault would pass with a probability of at most `hidden_fault`.
+/// Holds a run that passed against earlier repairs of its unit's faults, and verifies the faults whose repairs it
+/// proves: a unit that still has the fault would pass with a probability of at most `hidden_fault`.
 ///
 /// # Errors
 /// The database or a dictionary cannot be read or written.

@@ -68,9 +68,10 @@ impl StoredRun {
         Ok(())
     }
 
-    /// What the run showed, with the signals that deviate first in its traces, as far as it can be compared with a dictionary:
-    /// without steps of scripts that have changed since, and without steps that the dictionary does not know. Warns of what is
-    /// left out, and of a run on another bench. The train is known where there is a trace.
+    /// What the run showed, with the signals that deviate first in its traces, as far as it can be compared with a
+    /// dictionary: without departure tests, steps of scripts that have changed since, and steps that the dictionary
+    /// does not know. Warns of what is left out, and of a run on another bench. The train is known where there is a
+    /// trace.
     pub fn evidence(
         &self,
         residuals: Vec<String>,

@@ -7,13 +7,13 @@ use protocol::config::{SpeedCode, UnitConfig};
 use super::SAMPLE_HZ;
 use crate::words::Unheard;
 
-/// Longer than the time of detection by what the receiver's filter takes, s.
+/// What the receiver's filter takes beyond the time of detection, s.
 const OF_FILTER_S: f64 = 0.1;
-/// Askings in a period of the code: it is to be heard wherever in it the window begins.
+/// Askings in a period of the code: the code is to be heard wherever in its period the window begins.
 const ASKINGS: usize = 6;
 
-/// The first code that the receiver does not hear, on which carrier, Hz, and why. Method: each is made at its nominal level
-/// and received for its time of detection, and a period more.
+/// The first code that the receiver does not hear, on which carrier, Hz, and why. Method: each code is made at its
+/// nominal level and received for its time of detection, and a period more.
 pub fn unheard(unit: &UnitConfig) -> Option<(&SpeedCode, f64, Unheard)> {
     let sample_hz = f64::from(SAMPLE_HZ);
     let seconds = f64::from(unit.receiver.detect_ms) / 1_000.0 + OF_FILTER_S;

@@ -52,7 +52,7 @@ pub(super) struct Carrier<'a> {
     now: Option<(String, f64)>,
     /// How long a code is heard before it is listed, s: noise and a jump of the phase pass meanwhile.
     patience_s: f64,
-    /// Askings whose mean it tells.
+    /// Askings of which the values of `under_way` are means.
     askings: f64,
     heard_s: f64,
 }
@@ -65,7 +65,7 @@ impl<'a> Carrier<'a> {
         let receiver = CodeReceiver::new(reception, sample_hz as f32);
         let detected_s = f64::from(unit.receiver.detect_ms) / 1_000.0;
         Self {
-            // Two askings in a row at least, and else until the one that is nearest.
+            // Two askings in a row at least; else up to the asking that is nearest to the unit's time of detection.
             patience_s: (detected_s - f64::from(receiver.window_s())).max(ASKED_EVERY_S)
                 - 0.5 * ASKED_EVERY_S,
             receiver,
@@ -98,7 +98,7 @@ impl<'a> Carrier<'a> {
         Some(source)
     }
 
-    /// Whether something is heard now.
+    /// Asks the receiver, and lists a code that has ended. Whether something is heard now.
     fn ask(
         &mut self,
         unit: &UnitConfig,

@@ -6,19 +6,19 @@ use std::f64::consts::{FRAC_PI_4, PI, SQRT_2, TAU};
 
 use ato_under_test::receivers::Downmix;
 
-/// Rate of the envelope, Hz, and its pass band, of codes from [`FAST_HZ`] on; slower ones have as much less, so that the
-/// image of a low carrier stays outside.
+/// Rate of the envelope, Hz, and its pass band, for codes with rates from [`FAST_HZ`] on; for slower codes both are
+/// lower in proportion, so that the image of a low carrier stays outside.
 const ENVELOPE_HZ: f32 = 600.0;
 const PASS_HZ: f32 = 160.0;
 const FAST_HZ: f64 = 20.0;
-/// Longest part that is fitted, s: its end.
+/// Longest part of a code that is fitted, s: its last one.
 const LONGEST_S: f64 = 8.0;
 /// Time that the filter takes to show a beginning, s.
 const SETTLES_S: f64 = 0.02;
-/// Harmonics that are fitted as far as the pass band has them, and parameters of all.
+/// Harmonics that are fitted as far as the pass band has them, and the number of parameters of all.
 const HARMONICS: [f64; 3] = [1.0, 3.0, 5.0];
 const PARAMETERS: usize = 1 + 2 * HARMONICS.len();
-/// How far from the known rate it is sought, Hz, and steps over a fitted part's length.
+/// How far from the known rate a rate is sought, Hz, and the steps in one cycle over the fitted part's length.
 const AROUND_HZ: f64 = 0.2;
 const STEPS: f64 = 6.0;
 /// Halvings of the last step.
@@ -62,7 +62,7 @@ impl Envelope {
         HARMONICS.iter().filter(within).count()
     }
 
-    /// Rate, Hz, and level, mV rms, of the code that was there from when to when, s, at about this rate.
+    /// Rate, Hz, and level, mV rms, of the code heard between these times, s, whose rate is near `about_hz`.
     pub(super) fn fit(&self, [from_s, to_s]: [f64; 2], about_hz: f64) -> Option<(f64, f64)> {
         let value_hz = f64::from(self.downmix.envelope_hz);
         let now_s = self.taken as f64 / self.sample_hz;
@@ -93,7 +93,7 @@ impl Envelope {
         }
         let (_, [_, cos, sin]) = fitted(&values, best.0 / value_hz, self.harmonics(best.0))?;
         let middle = sin.atan2(cos);
-        // Noise is in the pauses alone, and in the rest as much.
+        // A pause is noise alone; with the carrier there is as much noise, which is taken off.
         let mean_square = |phase: f64| {
             let near = values.iter().enumerate().filter(|(place, _)| {
                 let angle = TAU * best.0 / value_hz * *place as f64 - middle - phase;
@@ -109,7 +109,7 @@ impl Envelope {
     }
 }
 
-/// To the envelope of a carrier with codes up to this rate, Hz; and its pass band.
+/// The filter from samples to the envelope of a carrier with code rates up to `fastest_hz`; and its pass band, Hz.
 pub(super) fn downmix(carrier_hz: f64, fastest_hz: f64, sample_hz: f64) -> (Downmix, f32) {
     let slow = (fastest_hz / FAST_HZ).min(1.0) as f32;
     let (envelope_hz, pass_hz) = (slow * ENVELOPE_HZ, slow * PASS_HZ);
@@ -117,7 +117,7 @@ pub(super) fn downmix(carrier_hz: f64, fastest_hz: f64, sample_hz: f64) -> (Down
     (downmix, pass_hz)
 }
 
-/// What so many harmonics of a rate, in cycles a value, explain of the values, and the first parameters: mean, cosine, sine.
+/// How much of the values so many harmonics of a rate, in cycles a value, explain; and mean, cosine, sine of the first.
 fn fitted(values: &[f64], rate: f64, harmonics: usize) -> Option<(f64, [f64; 3])> {
     let size = 1 + 2 * harmonics;
     let mut matrix = [[0.0; PARAMETERS + 1]; PARAMETERS];

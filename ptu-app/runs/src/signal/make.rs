@@ -10,7 +10,7 @@ use crate::failure::{Failure, SoundTrouble, Unknown};
 
 /// Band that the noise beside a code is measured in, Hz: that of a receiver of codes.
 const CODE_BAND_HZ: f64 = 320.0;
-/// The same of a receiver of markers.
+/// Band that the noise beside a marker is measured in, Hz: that of a receiver of markers.
 const MARKER_BAND_HZ: f64 = 440.0;
 
 /// What to make.

@@ -48,7 +48,7 @@ const LENGTH: usize = 16;
 /// Edge of the filter's pass band over the rate of the samples that the filter gives.
 const EDGE: f64 = 0.375;
 
-/// Takes samples together, without what is too high for so few.
+/// Makes one sample of so many, without what is too high for the lower rate.
 #[derive(Clone)]
 pub(super) struct Decimator {
     pub(super) by: usize,

@@ -36,7 +36,7 @@ pub use tacho::read_tacho;
 pub(crate) use wav::sample_of_16_bits;
 pub use wav::{End, Wav};
 
-/// Samples a second of what is made.
+/// Sample rate of waveforms that are made, Hz.
 pub const SAMPLE_HZ: u32 = 48_000;
 /// What full scale of a file stands for, mV, unless something else is said: above the strongest level a receiver decodes.
 pub const FULL_SCALE_MV: f64 = 4_000.0;

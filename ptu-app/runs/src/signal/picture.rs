@@ -10,13 +10,13 @@ use rustfft::{Fft, FftPlanner};
 
 use super::fit::downmix;
 
-/// Columns of a reduced curve at most; twice as long ones take their place when they are full.
+/// Most columns of a reduced curve; when they are full, each two become one.
 const MOST_COLUMNS: usize = 1_024;
 /// Columns of the spectrum over time at most.
 const MOST_SPECTRA: usize = 512;
 /// Resolution of the spectrum, Hz, at least: the sidebands of the slowest code rates stand apart.
 const RESOLUTION_HZ: f64 = 12.0;
-/// Spectra that a sample is in.
+/// Spectra that each sample is part of.
 const OVERLAP: usize = 4;
 /// Lines beside a line, on either side, into which the window spreads its power, and the sum of all their powers over the
 /// power of the line.
@@ -122,7 +122,7 @@ impl Merge for Levels {
     }
 }
 
-/// One channel, as it is looked at.
+/// Curves of one channel of a recording.
 #[derive(Clone)]
 pub struct Picture {
     sample_hz: f64,
@@ -192,7 +192,7 @@ impl Picture {
         (from_s, from_s + spectra.len() as f64 * each_s)
     }
 
-    /// Frequencies of a spectrum's row, Hz.
+    /// Width of a spectrum's row, Hz.
     pub fn row_hz(&self) -> f64 {
         self.sample_hz / 2.0 / ROWS as f64
     }
@@ -271,8 +271,8 @@ impl Spectrum {
         }
     }
 
-    /// Frequency of the strongest line, Hz, and its mean level, mV rms; none of silence and of less samples than a spectrum
-    /// takes.
+    /// Frequency of the strongest line, Hz, and its mean level, mV rms; `None` for silence, and for fewer samples than
+    /// a spectrum takes.
     pub(super) fn strongest(&self) -> Option<(f64, f64)> {
         let lines = self.powers.windows(2 * BESIDE + 1).enumerate().skip(1);
         let (first, around) = lines.max_by(|a, b| a.1[BESIDE].total_cmp(&b.1[BESIDE]))?;
@@ -315,7 +315,7 @@ impl Spectrum {
     }
 }
 
-/// The eye of the TWC bits: what the receiver's decisions are taken from.
+/// The eye of the TWC bits: the values by which the receiver decides.
 #[derive(Clone)]
 struct Eye {
     receiver: FskReceiver,
@@ -324,7 +324,7 @@ struct Eye {
     /// Samples of the last byte.
     line: VecDeque<f32>,
     curves: Vec<Vec<f32>>,
-    /// Curves of which one is kept, and those passed since.
+    /// One in `every` curves is kept; `passed` = curves since the last one kept.
     every: usize,
     passed: usize,
 }
@@ -356,7 +356,7 @@ impl Eye {
         }
     }
 
-    /// A byte is over, with the decision of its stop bit: two bits each are a curve.
+    /// Keeps the curves, of two bits each, of a byte that has just ended with the decision of its stop bit.
     fn keep(&mut self) {
         let two = (2.0 * self.per_bit).round() as usize;
         let line: Vec<f32> = self.line.iter().copied().collect();

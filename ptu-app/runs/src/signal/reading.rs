@@ -1,4 +1,4 @@
-//! What is heard in a recording, and the time by which it is told: the receivers of all signals speak in these terms.
+//! What is heard in a recording, and when: the receivers of all signals answer in these types.
 
 use std::fmt;
 
@@ -7,14 +7,14 @@ use serde::{Serialize, Serializer};
 use super::meter::Meter;
 use super::wav::Wav;
 
-/// How often the receivers of codes are asked, s: it is most of their work.
+/// Time between two askings of the receivers of codes, s: their answers are most of their work.
 pub(super) const ASKED_EVERY_S: f64 = 0.1;
 /// Most entries of each kind in an answer.
 pub(super) const MOST: usize = 100_000;
 /// Channels of a recording that are read at most.
 pub const MOST_CHANNELS: usize = 8;
 
-/// When the samples of a block are.
+/// Times of the samples of a block.
 #[derive(Clone, Copy)]
 pub(super) struct Clock {
     /// Samples before the block.
@@ -48,11 +48,11 @@ pub struct Reading {
 pub struct Level {
     /// Channel of the file, from 1.
     pub channel: usize,
-    /// Level of the whole, mV rms.
+    /// Level of the whole channel, mV rms.
     pub level_mv: f64,
     /// The greatest level for 0.1 s, mV rms.
     pub most_mv: f64,
-    /// The strongest line, Hz; none of silence and of less than a spectrum.
+    /// Frequency of the strongest line, Hz; `None` for silence, and for fewer samples than a spectrum takes.
     pub strongest_hz: Option<f64>,
     /// Mean level of the strongest line, mV rms.
     pub strongest_mv: Option<f64>,
@@ -104,9 +104,9 @@ pub struct Source {
 /// What the two lines of a speed sensor tell.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Tacho {
-    /// Pulses, forward and backward.
+    /// Pulses forward.
     pub forward: u64,
-    /// Backward.
+    /// Pulses backward.
     pub backward: u64,
     /// Mean speed between the first pulse and the last, km/h.
     pub mean_kmh: f64,
@@ -151,7 +151,7 @@ pub enum Why {
     },
     /// A speed sensor has two lines, and the file has one channel.
     OneLine,
-    /// The lines from this channel on change as those of no speed sensor do.
+    /// The lines from this channel on change as the lines of no speed sensor do.
     NoSensor(usize),
     /// So many samples of the channel are as great as the file holds: the signal is clipped.
     Clipped {

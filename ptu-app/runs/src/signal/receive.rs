@@ -13,7 +13,7 @@ use super::reading::{
 };
 use super::twc::Twc;
 
-/// Askings in a block.
+/// How often the receivers are asked in a block.
 const ASKED_IN_BLOCK: usize = 10;
 /// Shortest part, s, that is told as not understood: louder than the weakest level that is decoded, and understood by no
 /// receiver.
@@ -24,7 +24,7 @@ const JOINED_S: f64 = 1.0;
 const MOST_UNKNOWN: usize = 32;
 /// Highest rate at which the receivers work, Hz: of faster samples some are taken together.
 const MOST_HZ: f64 = 96_000.0;
-/// Least sample rate, times the highest frequency of a signal.
+/// Least ratio of the sample rate to the highest frequency of a signal.
 const LEAST_RATE: f64 = 2.2;
 
 /// The receivers of all channels of a recording.
@@ -138,7 +138,7 @@ impl<'a> Receivers<'a> {
         meanwhile
     }
 
-    /// What was heard up to now, and how it looks.
+    /// What was heard up to now, and pictures of it.
     pub fn so_far(&self) -> (Reading, Vec<Picture>) {
         let mut reading = Reading {
             duration_s: self.samples as f64 / self.sample_hz,
@@ -188,7 +188,7 @@ struct Channel<'a> {
 }
 
 impl<'a> Channel<'a> {
-    /// The channel, and the frequencies that samples of this rate do not have.
+    /// The channel, and the frequencies, Hz, for which samples of this rate are too slow.
     fn new(number: usize, unit: &'a UnitConfig, sample_hz: f64) -> (Self, Vec<f64>) {
         let mut carriers: Vec<Carrier<'_>> = Vec::new();
         let mut too_high = Vec::new();
@@ -224,7 +224,7 @@ impl<'a> Channel<'a> {
         (channel, too_high)
     }
 
-    /// What of the block is loud although nobody understood it.
+    /// Notes the parts of the block that are loud although no receiver understood them.
     fn judge(&mut self, samples: &[f32], clock: Clock) {
         let level_min = self.unit.receiver.level_min_mv;
         let in_message = self.twc.as_ref().map(|twc| twc.understood.as_slice());
@@ -273,7 +273,7 @@ impl<'a> Channel<'a> {
     }
 }
 
-/// What is loud and not understood.
+/// Parts that are loud and not understood.
 #[derive(Default)]
 struct Loud {
     under_way: Option<Part>,
@@ -282,7 +282,7 @@ struct Loud {
     joined_s: f64,
 }
 
-/// From when to when, the sum of squared levels, and how many.
+/// Beginning and end, s, sum of squared levels, mV², and how many levels.
 #[derive(Clone, Copy)]
 struct Part {
     from_s: f64,

@@ -11,7 +11,7 @@ use super::reading::{ASKED_EVERY_S, Level, MOST_CHANNELS, Reading, Source, Tacho
 use super::wav::{End, Wav};
 use crate::failure::Failure;
 
-/// A period that is so much longer than the one before it lacks a tooth, at a speed that changes gently.
+/// Ratio to the period before of a period that lacks a tooth, at a speed that changes gently.
 const GAP: std::ops::RangeInclusive<f64> = 1.6..=2.4;
 /// Ratio of a period to the one before it while a wheel turns, and the greatest share of other ratios, as at a turn back. With
 /// more of them the lines are noise.
@@ -24,7 +24,7 @@ struct Sensor {
     input: SensorInput,
     was_high: [bool; 2],
     samples: u64,
-    /// First pulse, the last one, and the one before it, samples from the beginning.
+    /// First pulse and last pulse, samples from the beginning, and the period that the last pulse ended, samples.
     first: Option<f64>,
     last: Option<f64>,
     period: Option<f64>,
@@ -36,9 +36,9 @@ struct Sensor {
     /// Periods that lack a tooth, and which teeth of the wheel these are.
     gaps: u64,
     missing: BTreeSet<i64>,
-    /// By how much the tooth that passed last is further on than the pulses forward less those backward.
+    /// Missing teeth passed: how far the last tooth is ahead of the pulses forward less the pulses backward.
     ahead: i64,
-    /// Way at the last pulse, and at the last fall of line A.
+    /// Direction at the last pulse, and at the last fall of line A.
     backward: Option<bool>,
     fell_backward: bool,
     /// Periods that are much longer or shorter than the one before, and all.
@@ -207,8 +207,8 @@ pub fn read_tacho(path: &Path, unit: &UnitConfig, full_scale_mv: f64) -> Result<
 mod tests {
     use super::*;
 
-    /// Goal: a tooth that lacks is one, on the way forward and on the way back. Method: a wheel that turns back upon a tooth,
-    /// and one that turns back between two.
+    /// Goal: a missing tooth counts once, on the way forward and on the way back. Method: a wheel that turns back upon
+    /// a tooth, and one that turns back between two.
     #[test]
     fn a_missing_tooth_is_the_same_one_on_the_way_back() {
         const TEETH: u32 = 20;

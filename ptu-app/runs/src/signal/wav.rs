@@ -13,7 +13,7 @@ use crate::new_file::{NewFile, cannot_write, kind};
 /// Highest sample rate that is read, Hz.
 const MOST_HZ: u32 = 768_000;
 
-/// A sample from here on, over the full scale, is the greatest of its sign; and so many in a row are a clipped wave.
+/// From this part of full scale on a sample is the greatest of its sign; so many in a row are a clipped wave.
 const GREATEST: f64 = 0.9999;
 const IN_A_ROW: u64 = 3;
 
@@ -83,8 +83,8 @@ impl Wav {
         usize::from(self.head.channels)
     }
 
-    /// The next samples, mV, of its first `most` channels, `frames` of each or less at its end, and why there are no more.
-    /// What is no number is silence.
+    /// The next samples, mV, of the first `most` channels, `frames` of each or fewer at the end, and why there are no
+    /// more. A sample that is no finite number is silence.
     pub fn block(
         &mut self,
         frames: usize,
@@ -139,12 +139,13 @@ impl Wav {
 /// A part of full scale as a sample of 16 bits, and whether the part was beyond full scale and is cut off there.
 pub(crate) fn sample_of_16_bits(part: f64) -> (i16, bool) {
     let sample = (part * 32_768.0).round();
-    // A conversion to integers ends at the greatest of its sign.
+    // A conversion to an integer ends at the greatest of its sign.
     let kept = sample as i16;
     (kept, f64::from(kept) != sample)
 }
 
-/// Writes samples, mV, of so many channels by turns, as 16 bits; how many were beyond full scale and are cut off there.
+/// Writes samples, mV, of so many channels by turns, as 16 bits. Counts those beyond full scale, which are cut off
+/// there.
 ///
 /// # Errors
 /// The file cannot be written.

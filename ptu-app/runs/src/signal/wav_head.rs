@@ -5,7 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 /// Pieces of a file before its samples; one of a program that writes recordings has a few.
 const MOST_CHUNKS: usize = 1_000;
-/// As much of a format as says anything here, bytes.
+/// Most bytes that are read of a piece: a format has no more that matters here.
 const FORMAT: u64 = 40;
 /// A length that its writer did not know, or that stands elsewhere.
 const OPEN: u64 = 0xffff_ffff;
@@ -30,7 +30,7 @@ pub(super) struct Head {
 }
 
 impl Head {
-    /// A sample of as many bytes as one has, as a part of full scale.
+    /// The value of one sample's bytes, as a part of full scale.
     pub fn sample(&self, bytes: &[u8]) -> f64 {
         match *bytes {
             // Samples of eight bits alone have no sign.

@@ -1,4 +1,4 @@
-//! What a device makes of a whole sample, as somebody has measured it.
+//! Calibrations: what a device makes of the greatest sample, as somebody has measured it.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ const LONGEST_FILE: u64 = 1 << 20;
 pub enum Direction {
     /// To the device.
     Output,
-    /// From it.
+    /// From the device.
     Input,
 }
 
@@ -30,7 +30,7 @@ pub struct Calibration {
     /// Whether it plays or records.
     pub direction: Direction,
     pub channel: Side,
-    /// What a whole sample stands for, mV.
+    /// What the greatest sample stands for, mV.
     pub full_scale_mv: f64,
     /// When it was measured, µs UTC.
     pub at_us: i64,
@@ -39,14 +39,14 @@ pub struct Calibration {
     pub uncertainty_percent: f64,
 }
 
-/// All that are known to this user.
+/// All calibrations that are known to this user.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Calibrations {
     calibrations: Vec<Calibration>,
 }
 
 impl Calibrations {
-    /// Reads them; none if there is no file.
+    /// Reads the calibrations; none if there is no file.
     ///
     /// # Errors
     /// The file cannot be read or is damaged.
@@ -68,7 +68,7 @@ impl Calibrations {
         }
     }
 
-    /// Keeps one in the place of an earlier one of its channel.
+    /// Keeps a calibration in the place of an earlier one of its channel.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -87,7 +87,7 @@ impl Calibrations {
         })
     }
 
-    /// What a whole sample of each channel stands for, mV; without a calibration a nominal value.
+    /// What the greatest sample of each channel stands for, mV; without a calibration a nominal value.
     pub fn full_scale_mv(&self, device: &str, direction: Direction) -> [f64; CHANNELS] {
         Side::ALL.map(|channel| {
             let known = self.of(device, direction, channel);

@@ -27,14 +27,14 @@ pub(super) struct Carried {
 }
 
 impl Carried {
-    /// Starts it. When `stop` is pressed it is ended at once, whatever this thread waits for.
+    /// Starts the process. When `stop` is pressed it is ended at once, whatever this thread waits for.
     pub(super) fn start(command: &mut Command, plays: bool, stop: &Stop) -> Result<Self, Failure> {
         let name = command.get_program().to_string_lossy().into_owned();
         Self::spawn(command, plays, stop)
             .map_err(|error| Failure::bench(RunTrouble::NotStarted(name, error.to_string())))
     }
 
-    /// The same; else what the system says.
+    /// As [`Self::start`]; the error is what the system says.
     pub(super) fn spawn(command: &mut Command, plays: bool, stop: &Stop) -> std::io::Result<Self> {
         let pipe = |wanted: bool| {
             if wanted {
@@ -78,7 +78,7 @@ impl Carried {
         Ok(carried)
     }
 
-    /// Waits until it has ended by itself, after its input has.
+    /// Closes the input of the process and waits until it has ended by itself.
     pub(super) fn wait(&mut self) {
         self.input = None;
         loop {
@@ -91,7 +91,7 @@ impl Carried {
         }
     }
 
-    /// Last words of the process, once it has ended.
+    /// Last line in which the process said why it failed, once it has ended.
     pub(super) fn last_words(&mut self) -> Option<String> {
         self.wait();
         // The last line may still be on its way.
@@ -122,7 +122,7 @@ fn end(child: &Mutex<Child>) {
     }
 }
 
-/// Counts the gaps that the process tells, and keeps the last of its other lines.
+/// Counts the gaps that the process tells, and keeps the last line that tells a failure.
 fn listen(mut words: ChildStderr, gaps: &AtomicU64, last: &Mutex<String>) {
     let mut buffer = [0; 512];
     let mut line = Vec::new();

@@ -49,8 +49,8 @@ impl Lead {
     }
 }
 
-/// Plays samples, mV of each channel, until there are no more or `stop` is pressed; `full_scale_mv` says what the device
-/// makes of a whole sample. It begins 20 dB below its level and reaches it in half a second.
+/// Plays samples, mV of each channel, until there are no more or `stop` is pressed; `full_scale_mv` says what the
+/// device makes of the greatest sample. The sound begins 20 dB below its level and reaches it in half a second.
 ///
 /// # Errors
 /// Nothing here carries sound, or the device cannot be played on.

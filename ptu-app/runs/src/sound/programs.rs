@@ -29,7 +29,7 @@ pub(super) fn carrier(direction: Direction, device: &str) -> Result<Command, Fai
         .map_err(|(one, other)| Failure::bench(SoundTrouble::NoProgram(one, other)))
 }
 
-/// The same to play; else the names of the programs that are missing.
+/// As [`carrier`], to play; else the names of the programs that are missing.
 pub(super) fn player(device: &str) -> Result<Command, (&'static str, &'static str)> {
     found(Direction::Output, device)
 }

@@ -31,8 +31,8 @@ pub struct Recorded {
     pub overruns: u64,
 }
 
-/// Records samples, mV of each channel, for a time or until `stop` is pressed; `full_scale_mv` says what a whole sample
-/// of the device stands for. `take` gets them block by block.
+/// Records samples, mV of each channel, for a time or until `stop` is pressed; `full_scale_mv` says what the greatest
+/// sample of the device stands for. `take` gets the samples block by block.
 ///
 /// # Errors
 /// Nothing here carries sound, the device cannot be recorded from, or `take` fails.

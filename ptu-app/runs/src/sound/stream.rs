@@ -16,14 +16,14 @@ use crate::stop::Stop;
 /// Samples that are written together, and those that wait besides: 10 and 20 ms.
 const TOGETHER: usize = 480;
 const WAITING: usize = 960;
-/// Samples beyond those that are given: the filter between two clocks reaches over so many, and takes one more where this
-/// computer's clock is the slower one.
+/// Samples that must wait beyond those that are taken: the filter between two clocks reaches over so many, and takes
+/// one more where this computer's clock is the slower one.
 const BESIDES: usize = TAPS + 1;
-/// Samples that wait where the device takes none: those of a second [default: a sound server that starts takes less].
+/// With more samples waiting the device takes none: those of a second [default: a sound server that starts takes less].
 const STUCK: usize = SAMPLE_HZ as usize;
-/// What is on its way to the card: in its sound server and in the pipe, ms.
+/// Time on the way to the card, in its sound server and in the pipe, ms.
 pub const ON_THE_WAY_MS: u64 = programs::LATENCY_MS as u64 + 21;
-/// The same, and what waits here at most while all is well, ms.
+/// Time on the way, and time that samples wait here at most while all is well, ms.
 pub const TAKES_MS: u64 = ON_THE_WAY_MS + ((WAITING + TOGETHER) / 48) as u64;
 
 struct State {
@@ -53,7 +53,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// To a device that makes so many mV of a whole sample of each channel.
+    /// Starts a stream to a device that makes so many mV of the greatest sample of each channel.
     ///
     /// # Errors
     /// Nothing here carries sound.

@@ -88,8 +88,8 @@ impl Structure {
         None
     }
 
-    /// From the last link of a way on to one that is made of nothing else, over signals that the step looks at where there
-    /// are any, and otherwise over those that the file names first.
+    /// Goes on from the last link of a way to a sensor, a link that is made of no other: over signals that the step
+    /// looks at where there are any, and otherwise over those that the file names first.
     fn on_to_a_sensor(&self, way: &mut Vec<LinkOutput>, looked_at: &[LinkOutput]) {
         while let Some(step) = way.last().and_then(|made| self.steps.get(made)) {
             let is_new = |from: &&LinkOutput| self.steps.contains_key(from) && !way.contains(from);

@@ -31,7 +31,7 @@ pub struct Link {
 /// A way from a sensor to what a step judges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chain {
-    /// A part that all links need, as the supply; none where the part is in a link.
+    /// The part, if all links need it, as the supply; none where the part is in a link.
     pub before: Option<LruId>,
     /// From the sensor to what is judged.
     pub links: Vec<Link>,

@@ -24,8 +24,8 @@ pub fn sections(choices: &[SectionChoice], setup: &BenchSetup) -> Result<Vec<Dri
     Ok(plans)
 }
 
-/// Drives them one after the other and returns to the depot. A section at whose end the train did not stop by itself
-/// is the last.
+/// Drives the sections one after the other and returns to the depot. A section at whose end the train did not stop by
+/// itself is the last.
 pub fn drive(
     plans: &[DrivePlan],
     aboard: &mut UnitAboard,

@@ -11,24 +11,24 @@ use crate::clock::NOT_KNOWN_MS;
 /// Time by which an entry may be younger than the uptime it is dated by, ms: it was logged while the log was read.
 const YOUNGER_MS: u64 = 60_000;
 
-/// The unit's clock beside ours.
+/// The unit's clock beside this computer's, at one moment.
 #[derive(Clone, Copy, Debug)]
 pub struct ClockPair {
     /// Time since power-up as the unit reported it, ms.
     pub uptime_ms: u32,
-    /// Our own time when it did, µs UTC.
+    /// This computer's time at that moment, µs UTC.
     pub at_us: i64,
 }
 
-/// Drift between two oscillators: 100 ppm.
+/// Drift between two oscillators, 100 ppm: 1 in this number.
 const DRIFT: i64 = 10_000;
 
-/// Times that a store of the unit was sent.
+/// Times of day that the unit was sent and has stored, by which its entries are dated.
 #[derive(Clone, Debug, Default)]
 pub struct StoredClocks {
     /// Times that nothing disproves.
     clocks: Vec<StoredClock>,
-    /// Our own, if it is known to be right.
+    /// This computer's clock, if it is known to be right.
     ours: Option<StoredClock>,
     /// Power-ups whose times contradict others: which is right is unknown.
     doubtful: BTreeSet<u32>,
@@ -47,8 +47,8 @@ pub struct StoredDate {
 }
 
 impl StoredClocks {
-    /// Clocks that the unit was sent, and ours beside the present power-up's. What ours disproves, if it is known to
-    /// be right, dates nothing.
+    /// Makes them of the clocks that the unit was `told`, and of `ours`, this computer's in the present power-up. A
+    /// clock that ours disproves, if ours is known to be right, dates nothing.
     pub fn new(told: &[StoredClock], ours: Option<StoredClock>) -> Self {
         let known = ours.filter(|ours| ours.uncertainty_ms != NOT_KNOWN_MS);
         let all: Vec<_> = told.iter().copied().chain(ours).collect();
@@ -67,8 +67,8 @@ impl StoredClocks {
         }
     }
 
-    /// The date of an entry, by the clock of its power-up that says it best; none where no time was sent, and
-    /// where the time that the unit is up since then disproves it.
+    /// The date of an entry, by the best clock of its power-up; `None` where no time was sent in it, and where the date
+    /// of an earlier power-up lies after the beginning of the present one.
     pub fn date(&self, power_up: u32, at_ms: u32) -> Option<StoredDate> {
         let of_power_up = self
             .clocks
@@ -171,8 +171,8 @@ fn utc_us(clock: &StoredClock) -> i64 {
     i64::try_from(clock.utc_ms).map_or(i64::MAX, |ms| ms.saturating_mul(1000))
 }
 
-/// Dates of `entries`, which are in order, µs UTC; none for what the clock cannot date: what stands
-/// before the entry of the last power-up, or before a time that falls, is of another clock.
+/// Dates of `entries`, which are in order, µs UTC; `None` for an entry of another clock: one that stands before the
+/// entry of the last power-up, or before a time that falls.
 pub fn dates(entries: &[UnitEvent], clock: Option<ClockPair>) -> Vec<Option<i64>> {
     let Some(clock) = clock else {
         return vec![None; entries.len()];
@@ -275,8 +275,8 @@ mod tests {
         assert!(why.contains("10.0 s apart"), "{why}");
     }
 
-    /// Goal: a laptop whose clock is a year behind, and that read first, dates nothing for one that is right. Method:
-    /// both in one power-up, and the wrong one knowing that it is not set, or not.
+    /// Goal: a laptop that read first, with a clock a year behind, dates nothing once a right one has read. Method:
+    /// both in one power-up; the first knows that its clock is not set, or does not know it.
     #[test]
     fn the_better_date_replaces_the_worse() {
         const YEAR_S: u64 = 31_536_000;

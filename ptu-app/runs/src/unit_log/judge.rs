@@ -1,5 +1,5 @@
-//! Finds the entries of a unit's log that are faults of the unit and its train: no information, no
-//! act of a tester, no silence of a unit with nothing connected.
+//! Finds the entries of a unit's log that are faults of the unit and its train. Information, acts of a tester and the
+//! silence of a unit with nothing connected are none.
 
 use std::ops::Range;
 
@@ -36,14 +36,14 @@ const FRAMES_LOST: [Event; 4] = [
 pub struct JudgedLog {
     /// Faults, in order.
     pub faults: Vec<Entry>,
-    /// Numbers of entries that are no faults, by reason.
+    /// Counts of entries that are no faults, by reason.
     pub left_out: ExcludedEntries,
 }
 
 /// Entries left out, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExcludedEntries {
-    /// Information only, also of a station's loop that a train left in a mode without need of one.
+    /// Information only; also the loss of a station's loop in a mode that needs none.
     pub information: u32,
     /// Entries made before the time asked for.
     pub too_old: u32,
@@ -146,8 +146,8 @@ fn armed(events: &[UnitEvent]) -> Vec<Range<usize>> {
     spans
 }
 
-/// Spans of entries in which nothing was connected to the unit: from inputs and TCMS gone, both, to the
-/// first of them back.
+/// Spans of entries in which nothing was connected to the unit: from the loss of both inputs and TCMS to the return of
+/// the first.
 fn alone(events: &[UnitEvent]) -> Vec<Range<usize>> {
     let mut spans = Vec::new();
     let (mut inputs, mut tcms): (Option<usize>, Option<usize>) = (None, None);

@@ -47,7 +47,7 @@ pub struct StoredRead {
     pub power_up: u32,
     /// Rows of the run record, if they were asked for.
     pub rows: Vec<StoredRow>,
-    /// Clocks that date them.
+    /// Clocks that date entries and rows.
     pub clocks: StoredClocks,
     /// Entries that are damaged in the unit.
     pub damaged: u64,
@@ -78,8 +78,8 @@ pub struct LogRead {
     pub stored: Option<StoredRead>,
 }
 
-/// Reads the log of the unit on `link`, over all power-ups if it stores it; with `rows`, its stored run record,
-/// too. Times of the link begin after `from`, and `clock` gives our own, µs UTC, which the unit is sent with its
+/// Reads the log of the unit on `link`, over all power-ups if it stores it; with `rows`, its stored run record, too.
+/// Times of the link begin after `from`; `clock` gives this computer's time, µs UTC, which the unit is sent with its
 /// uncertainty.
 ///
 /// # Errors
@@ -114,7 +114,7 @@ pub fn read_log<L: UnitLink>(
         let exchanged = link.exchange(now, &to_unit, &mut from_unit);
         session.receive(now, &from_unit);
         if session.restarts() != restarts {
-            // What was read before is of the clock before.
+            // Entries read before are of the unit's clock before it started again.
             restarts = session.restarts();
             entries.extend(dated(&mut since_power_up, pair.take(), uncertainty_ms));
         }
@@ -149,8 +149,8 @@ pub fn read_log<L: UnitLink>(
         return Err(broken_off.unwrap_or(BrokenOff::Stopped));
     };
     let stored = session.stored().map(|(events, rows)| {
-        // A unit that started again while its log was read does not say beside which power-up our clock stands;
-        // the times that it was sent and stored do.
+        // A unit that started again while its log was read does not say beside which power-up this computer's clock
+        // stands; the times that the unit was sent and has stored do.
         let (dated, read) =
             from_store(events, rows, pair.filter(|_| restarts == 0), uncertainty_ms);
         entries = dated;
@@ -183,7 +183,7 @@ fn dated(events: &mut Vec<UnitEvent>, clock: Option<ClockPair>, uncertainty_ms: 
         .collect()
 }
 
-/// Entries of the store with their dates; `pair` is the unit's clock beside ours, now.
+/// Entries of the store with their dates; `pair` is the unit's clock beside this computer's, now.
 fn from_store(
     events: &StoredData,
     rows: Option<&StoredData>,

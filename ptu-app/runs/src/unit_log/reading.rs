@@ -33,7 +33,7 @@ pub struct AskedUnit {
 pub struct UnitReading {
     pub read: LogRead,
     pub source: Source,
-    /// Whether our own clock was right then.
+    /// State of this computer's clock when the log was read.
     pub clock: ClockState,
     pub warnings: Vec<String>,
 }

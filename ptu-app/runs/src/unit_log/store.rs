@@ -39,7 +39,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// End of the run that a reading is stored as: the verdict of a whole reading is this one, and of a broken one an error.
+    /// End of the run that a reading is stored as: a whole reading has the verdict `of_whole`, one that broke off is an
+    /// error.
     pub(crate) fn end(&self, of_whole: Verdict) -> RunEnd {
         RunEnd {
             verdict: match self.broken_off {
@@ -156,7 +157,7 @@ pub(crate) fn run_record(source: &Source) -> RunRecord {
     }
 }
 
-/// The entry as a run would have stored it, on the unit's own clock, with what it froze.
+/// The entry as a run would have stored it, on the unit's own clock, with the signals that the entry froze.
 fn record(entry: &Entry, read_at_us: i64) -> FaultRecord {
     let event = &entry.event;
     let at = Instant::from_ms(u64::from(event.at_ms));

@@ -98,7 +98,7 @@ sentences! {
         Creates: "`ptu gui --create` makes it", "만들기: `ptu gui --create`";
     }
 
-    /// Automatic runs, trains and test matrices.
+    /// Refusals about automatic runs, trains and test matrices.
     DriveTrouble {
         Outside(option: String, value: String, low: String, high: String): "{option} {value} is outside {low} .. {high}", "{option} {value}이(가) 범위 {low} .. {high}를 벗어납니다";
         BrakesLess(train: String, brakes: f64, counts_on: f64): "the train \"{train}\" brakes at {brakes} km/h/s, and ATO counts on {counts_on} (ato.decel_kmh_per_s): it may overrun its stop points" ["; --set ato.decel_kmh_per_s={brakes} tells ATO"], "열차 \"{train}\"의 제동 감속도는 {brakes} km/h/s이고 ATO는 {counts_on}(ato.decel_kmh_per_s)을 기준으로 하므로 정차 위치를 지나칠 수 있습니다" [". ATO에 알리려면 --set ato.decel_kmh_per_s={brakes}"];
@@ -112,7 +112,7 @@ sentences! {
         Outcome(text: String): "--outcomes: \"{text}\" is not TEST=0 (passed), TEST=1 (failed) or TEST=WORD", "--outcomes: \"{text}\"은(는) TEST=0(합격), TEST=1(불합격) 또는 TEST=WORD가 아닙니다";
     }
 
-    /// Waveforms and sound devices.
+    /// Refusals about waveforms and sound devices.
     SoundTrouble {
         NoMarker: "markers are PSM1 to PSM4: give 1, 2, 3 or 4", "마커는 PSM1에서 PSM4까지입니다. 1, 2, 3, 4 중 하나를 지정하십시오";
         NoBytes: "bytes are pairs of hex digits, as '01 fe 3c'", "바이트는 '01 fe 3c'와 같이 16진수 두 자리씩 적습니다";
@@ -129,7 +129,7 @@ sentences! {
         Rate(hz: u32, to: u32): "the file has {hz} samples a second: make it one of {to}, as with `sox IN.wav -r {to} OUT.wav`", "파일의 샘플이 초당 {hz}개입니다. `sox IN.wav -r {to} OUT.wav`와 같이 {to}개로 바꾸십시오";
     }
 
-    /// Runs, questions and answers that are kept.
+    /// Refusals about runs, questions and answers that are kept.
     KeepTrouble {
         Unusable(file: String, why: Why): "cannot use {file}: {why}; name another file", "쓸 수 없는 파일입니다: {file} ({why}). 다른 파일을 지정하십시오";
         Unwritten(file: String, why: String): "cannot write {file}: {why}; it keeps the runs before, and the campaign goes on with the same command", "쓸 수 없습니다: {file} ({why}). 그 전의 시험은 남아 있으며 같은 명령으로 이어집니다";

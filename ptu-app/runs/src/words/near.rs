@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The known name nearest to one that is none; its text is ` (did you mean "x"?)`, in the alternate form without English, or
+/// The known name nearest to an unknown one; its text is ` (did you mean "x"?)`, in the alternate form ` ("x"?)`, or
 /// nothing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Near(pub Option<String>);
@@ -45,7 +45,7 @@ pub fn did_you_mean_number<'a>(asked: &str, known: impl IntoIterator<Item = &'a 
     Near(near.map(|(_, name)| name.to_owned()))
 }
 
-/// Keys pressed wrong, where another digit is none.
+/// Number of keys pressed wrong; one digit in place of another is no slip.
 fn slips(asked: &str, name: &str) -> usize {
     let both = || asked.chars().zip(name.chars());
     let other_digits = both().filter(|(a, b)| a != b && a.is_ascii_digit() && b.is_ascii_digit());

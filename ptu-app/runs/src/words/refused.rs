@@ -12,7 +12,7 @@ use crate::endpoint::Endpoint;
 use crate::keys::Standing;
 
 sentences! {
-    /// A name that is none.
+    /// A name that nothing has.
     Unknown {
         Fault(asked: String, near: Near): "no fault \"{asked}\"{near}" ["; `ptu catalog faults` lists them"], "고장 모드 \"{asked}\"이(가) 없습니다{near}" [". 목록: `ptu catalog faults`"];
         FaultGlob(asked: String, near: Near): "no fault mode matches \"{asked}\"{near}" ["; `ptu catalog faults` lists them"], "\"{asked}\"에 맞는 고장 모드가 없습니다{near}" [". 목록: `ptu catalog faults`"];
@@ -77,7 +77,7 @@ sentences! {
         Nothing: "the receiver hears no code in it; its rate is too fast for the receiver, or its carrier too slow for the rate", "수신기가 코드를 수신하지 못합니다. 코드 주파수가 너무 빠르거나 반송파가 그에 비해 너무 느립니다";
     }
 
-    /// A file or a folder.
+    /// Refusals about a file or a folder.
     FileTrouble {
         Unread(file: String, why: Why): "cannot read {file}: {why}", "읽을 수 없습니다: {file} ({why})";
         Unwritten(file: String, why: Why): "cannot write {file}: {why}", "쓸 수 없습니다: {file} ({why})";
@@ -111,7 +111,7 @@ sentences! {
         NoSamples(file: String, channels: u16, hz: u32): "{file} has {channels} channels at {hz} Hz: nothing that can be read", "{file}: 채널 {channels}개, {hz} Hz는 읽을 수 없습니다";
     }
 
-    /// Keys that sign.
+    /// Refusals about keys that sign.
     KeyTrouble {
         ShortPin(least: usize): "a PIN has at least {least} letters or digits", "PIN은 글자나 숫자가 {least}자 이상이어야 합니다";
         PinsDiffer: "the two PINs differ; no key was made", "두 PIN이 서로 다릅니다. 키를 만들지 않았습니다";
@@ -152,7 +152,7 @@ sentences! {
         OtherTrack(serial: String, unit: String, ours: String): "the track database of unit {serial} has checksum {unit}, the tests were loaded for {ours}; choose the track database of that unit", "장치 {serial}의 선로 데이터베이스가 시험용과 다릅니다 (체크섬 {unit}, 시험용 {ours}). 그 장치의 노선을 선택하십시오";
     }
 
-    /// A bench, or a run on it.
+    /// Refusals about a bench, or a run on it.
     RunTrouble {
         NoUnit: "no unit is connected", "연결된 장치가 없습니다";
         NotReached(at: Endpoint): "{at}: stopped before the unit was reached", "{at}: 장치에 연결하기 전에 중지되었습니다";
@@ -180,7 +180,7 @@ sentences! {
         ProgramFailed(run: Id): "the program failed in run {run}, which is recorded as an error; please report what stands before this", "시험 {run} 중 프로그램에 결함이 발생했습니다. 시험은 판정 불가로 기록되었습니다. 앞에 표시된 내용을 알려 주십시오";
     }
 
-    /// The log or the memory of a unit.
+    /// Refusals about the log or the memory of a unit.
     FieldTrouble {
         Simulated: "the simulated unit keeps no log from run to run; choose a unit on a port" [" with --unit serial:PATH or tcp:HOST:PORT"], "모의 장치에는 시험 사이에 남는 고장 기록이 없습니다. 포트에 연결된 장치를 선택하십시오" [": --unit serial:PATH 또는 tcp:HOST:PORT"];
         LockStep: "the clock of a unit in lock step stands between scans, which dates no entry; choose a unit on a port" [" with --unit serial:PATH or tcp:HOST:PORT"], "동기 방식 장치의 시계는 스캔 사이에 멈추어 기록의 날짜를 알 수 없습니다. 포트에 연결된 장치를 선택하십시오" [": --unit serial:PATH 또는 tcp:HOST:PORT"];
@@ -196,7 +196,7 @@ sentences! {
         TooLong(within: Duration): "the log does not end within {within}", "기록이 {within} 안에 끝나지 않음";
     }
 
-    /// A trace, or the recording that belongs to it.
+    /// Refusals about a trace, or the recording that belongs to it.
     RecordTrouble {
         NoRecording(trace: Id): "trace {trace} has no recording of what was done to the bench: it is of an earlier version, or its run broke off", "신호 기록 {trace}에는 시험대 조작 기록이 없습니다: 이전 버전의 기록이거나 시험이 중단되었습니다";
         NoRows(trace: Id): "trace {trace} has no rows", "신호 기록 {trace}에 행이 없습니다";
@@ -216,7 +216,7 @@ sentences! {
         SectionsAlike(sections: String): "sections {sections} fit this run alike: name one" [" with --section"], "구간 {sections}이(가) 이 운행과 똑같이 맞습니다. 하나를 지정하십시오" [": --section"];
     }
 
-    /// A diagnosis.
+    /// Refusals about a diagnosis.
     DiagnosisTrouble {
         RunTwice(run: Id): "run {run} is named twice", "시험 {run}을(를) 두 번 지정했습니다";
         OtherUnit(run: Id, unit: String, config: String, of: String, of_config: String): "run {run} is of unit {unit}, {config}, and not of {of}, {of_config}; runs of one unit alone are diagnosed together", "시험 {run}은(는) 장치 {of} ({of_config})이(가) 아니라 {unit} ({config})의 시험입니다. 한 장치의 시험만 함께 진단합니다";

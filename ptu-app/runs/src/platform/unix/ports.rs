@@ -27,7 +27,7 @@ pub fn open_alone(
         .exclusive(true)
         .open()?;
     if let Some(beside) = beside {
-        // The lock stays.
+        // Only the exclusive use ends; the lock stays.
         let _ = ioctl_tiocnxcl(&beside);
     }
     Ok(port)

@@ -12,7 +12,7 @@ pub struct StopSignals {
 }
 
 impl StopSignals {
-    /// From now on none of them ends the process.
+    /// From now on none of these signals ends the process.
     ///
     /// # Errors
     /// The system's.
@@ -26,7 +26,7 @@ impl StopSignals {
         })
     }
 
-    /// Waits for the next.
+    /// Waits for the next signal.
     pub async fn next(&mut self) {
         tokio::select! {
             _ = self.interrupt.recv() => {}
@@ -59,7 +59,7 @@ pub fn survive_file_limit() {
     }
 }
 
-/// Whether a closed terminal is to end this process: not if it was started to outlive it (`nohup`).
+/// Whether a closed terminal is to end this process: not if the process was started to outlive the terminal (`nohup`).
 fn heeds_hang_up() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     !ignores_hang_up(&status)

@@ -1,4 +1,4 @@
-//! Hard limits of this process, by a job that it joins and cannot leave, and of one that ran into them.
+//! Hard limits of this process, by a job that it joins and cannot leave; and whether a process ran into them.
 
 use std::io::Result;
 use std::os::windows::process::CommandExt as _;

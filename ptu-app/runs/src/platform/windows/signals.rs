@@ -18,7 +18,7 @@ pub struct StopSignals {
 }
 
 impl StopSignals {
-    /// From now on none of them ends the process at once.
+    /// From now on none of these events ends the process at once.
     ///
     /// # Errors
     /// The system's.
@@ -32,7 +32,7 @@ impl StopSignals {
         })
     }
 
-    /// Waits for the next.
+    /// Waits for the next event.
     pub async fn next(&mut self) {
         tokio::select! {
             _ = self.interrupt.recv() => {}

@@ -22,8 +22,8 @@ fn a_repetition_is_the_procedure_again_with_its_set_up_and_clean_up() {
     assert_eq!(turns, rounds);
 }
 
-/// Goal: repetitions that were still due make a run that was stopped aborted, when the one under way had
-/// nothing left to be stopped. Method: stopped in the last scan of the second of three.
+/// Goal: a run that is stopped is aborted where repetitions are still due, even if the one under way has nothing left
+/// to be stopped. Method: stopped in the last scan of the second of three.
 #[test]
 fn a_procedure_stopped_between_two_repetitions_is_aborted() {
     let once = plan_of(&[LEAVES_THE_KEY_ON]);

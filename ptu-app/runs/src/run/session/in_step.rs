@@ -1,5 +1,5 @@
-//! A computer that stands still with unit and tester on it gives neither of them time. Each finds out for itself, and not
-//! to the millisecond: the tester then follows the unit's clock, so that what is left over does not add up.
+//! Keeps tester and unit in step where both are on one computer, and it stands still: each finds out for itself, and
+//! not to the millisecond. The tester then follows the unit's clock, so that what is left over does not add up.
 
 use protocol::{Duration, Instant, SCAN};
 

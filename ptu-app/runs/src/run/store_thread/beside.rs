@@ -10,7 +10,7 @@ use super::records::{Entry, RecordedIds, keep};
 use crate::clock;
 use crate::failure::{Failure, Trouble};
 
-/// Records the rest of a run in a file of its own, beside the one that stays busy; none if that fails, too.
+/// Records the rest of a run in a file of its own, beside the history that stays busy; none if that fails, too.
 pub(super) fn keep_rest(
     writer: &mut RunWriter<'_>,
     mut kept: RecordedIds,
@@ -44,7 +44,7 @@ pub(super) fn keep_rest(
     Some(path)
 }
 
-/// Keeps a run that the history does not hold in a file beside; which, and a sentence that tells where and why.
+/// Keeps a run that the history does not hold in a file beside it: returns that file, and what tells where and why.
 ///
 /// # Errors
 /// No such file can be made: the run is lost.
@@ -58,7 +58,7 @@ pub(super) fn keep_beside(
     let beside = beside(store.path(), run);
     let elsewhere = std::env::temp_dir().join(beside.file_name().unwrap_or_default());
     let made = [beside, elsewhere].into_iter().find_map(|path| {
-        // What the open file holds is more than the run, if it can be read still.
+        // A copy of the open file holds more than the run, if that file can be read still.
         let copied = match *error {
             StoreError::FileChanged { .. } => copy_with_run(store, run, &path),
             _ => None,
@@ -97,7 +97,7 @@ fn copy_with_run(store: &Store, run: Id, path: &Path) -> Option<Store> {
     copy
 }
 
-/// A new history with the run alone, from its records; with it what is missing there.
+/// A new history with the run alone, from its records; and how many traces are missing there.
 fn write_again(
     (store, writer): (&Store, &RunWriter<'_>),
     record: &RunRecord,
@@ -119,7 +119,7 @@ fn write_again(
     Some((made, kept.left_out))
 }
 
-/// The file beside a history that takes a run of it.
+/// The file beside a history in which a run of that history is kept.
 fn beside(history: &Path, run: Id) -> PathBuf {
     let mut name = history.as_os_str().to_owned();
     name.push(format!(".run-{}.db", run.short()));

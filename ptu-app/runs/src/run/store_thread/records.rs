@@ -62,7 +62,7 @@ pub struct RecordedIds {
 }
 
 impl RecordedIds {
-    /// Holds what was recorded until the end of the run, to write it again if the file is lost.
+    /// Holds an entry until the end of the run, to write it again if the file is lost.
     pub fn hold(&mut self, entry: Entry) {
         match &entry {
             Entry::Say(_) => return,
@@ -101,7 +101,7 @@ impl RecordedIds {
     }
 }
 
-/// Records one entry, perhaps for another time: a step that was not written waits with the writer.
+/// Records one entry; `again` = the first try failed: a step that was not written then waits with the writer.
 pub fn keep(
     writer: &mut RunWriter<'_>,
     kept: &mut RecordedIds,
