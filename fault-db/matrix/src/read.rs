@@ -6,7 +6,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use serde::Deserialize;
-use serde::de::{Deserializer, MapAccess, Visitor};
+use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 use serde_json::Value;
 
 use super::error::MatrixError;
@@ -30,14 +30,21 @@ struct TestEntry {
 }
 
 /// The probability that a test fails, or one of its outcomes.
-#[derive(Deserialize)]
-#[serde(
-    untagged,
-    expecting = "a number is expected, or the word of an outcome"
-)]
 enum Cell {
     Number(f64),
     Word(String),
+}
+
+// An untagged enum does not read the numbers of any length that another crate of the program asks of serde_json.
+impl<'de> Deserialize<'de> for Cell {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let wrong = || D::Error::custom("a number is expected, or the word of an outcome");
+        match Value::deserialize(deserializer)? {
+            Value::Number(number) => number.as_f64().map(Self::Number).ok_or_else(wrong),
+            Value::String(word) => Ok(Self::Word(word)),
+            _ => Err(wrong()),
+        }
+    }
 }
 
 impl Matrix {
