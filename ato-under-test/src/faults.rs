@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use protocol::injection::{Effect, FaultMode, OccurrenceState, Place};
 use protocol::{Duration, Instant, Random, SCAN, Speed};
 
-/// Time over which the wheels' speed is felt: pulses of one scan are too few.
+/// Time over which faults that depend on the wheels' speed average it: pulses of one scan are too few.
 const FELT_OVER: Duration = Duration::from_ms(200);
 
 /// The faults of this unit and how much of each acts at present.
@@ -59,7 +59,7 @@ impl Faults {
         }
     }
 
-    /// The wheels turned this far in a scan, m.
+    /// Takes the way that the wheels turned in a scan, m.
     pub fn roll(&mut self, metres: f64) {
         let share = SCAN.as_secs() / FELT_OVER.as_secs();
         let mps = metres / SCAN.as_secs();
@@ -99,7 +99,7 @@ impl Faults {
     }
 }
 
-/// Events of a Poisson process of `per_s` in one scan, at most one.
+/// Probability of an event in one scan, of a Poisson process of `per_s`.
 pub fn one_in_scan(per_s: f64) -> f64 {
     per_s * SCAN.as_secs()
 }

@@ -37,7 +37,7 @@ guards! {
     release_standstill: ReleaseStandstill,
     /// Speed, way and direction of ATO's jogging are supervised.
     jog: JogGuard,
-    /// A code in force is renewed only by one that is confirmed.
+    /// A code in force is renewed only by a confirmed code.
     code_confirmation: CodeConfirmation,
     /// Motion with the reverser in neutral is noticed.
     neutral: NeutralGuard,
@@ -48,7 +48,7 @@ guards! {
     // Position.
     /// Further edges of a marker's contact are left out.
     marker_debounce: MarkerDebounce,
-    /// A marker is compared with the way from the one before.
+    /// A marker is compared with the way from the marker before.
     marker: MarkerGuard,
     /// Places without a loop are known.
     loop_places: LoopPlaces,

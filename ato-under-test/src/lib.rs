@@ -14,7 +14,7 @@
 //! * `front_end`: antennas, sensors and relays, where injected faults act;
 //! * `guards`: what injected faults put out of action elsewhere.
 //!
-//! It has two ports ([`Port`]): the harness carries everything, the maintenance port a tester alone.
+//! It has three ports ([`Port`]): the harness carries all, the maintenance port a tester alone, the loop TWC alone.
 //! [`Unit`] is stepped every 10 ms of virtual time; nothing here knows a clock, a thread or a file,
 //! and `no_std` keeps it so. [`serve`], a feature of its own, needs the standard library: it serves a
 //! unit on a port in real time, and `flash::FileFlash` beside it keeps its memory in a file.

@@ -20,6 +20,6 @@ pub struct Setup {
     pub tdb_crc: u32,
     /// Seed of arm challenges and injected noise.
     pub seed: u64,
-    /// Faults injected into it.
+    /// Faults injected into the unit.
     pub faults: Vec<FaultMode>,
 }

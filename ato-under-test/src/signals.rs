@@ -12,9 +12,9 @@ pub struct AntennaSignal {
     pub rate_hz: f64,
     /// Level, mV.
     pub level_mv: f64,
-    /// Time for which a receiver of waveforms had it already when it was heard.
+    /// Time for which the signal had been there when a receiver of waveforms heard it.
     pub heard_for: Duration,
-    /// Time for which it may be over already, as a receiver of waveforms hears it for longer than it is there.
+    /// Time for which the signal may be over already: a receiver of waveforms hears it for longer than it is there.
     pub lags: Duration,
 }
 
@@ -22,7 +22,7 @@ pub struct AntennaSignal {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pulses {
     pub count: u32,
-    /// Time of the last one, on the sender's clock.
+    /// Time of the last pulse, on the sender's clock.
     pub edge_at: Instant,
     /// Time up to which pulses were counted, on the same clock.
     pub sampled_at: Instant,
@@ -30,7 +30,7 @@ pub struct Pulses {
 }
 
 impl Pulses {
-    /// Way that they stand for, m, backward negative.
+    /// Way that the pulses stand for, m, backward negative.
     pub fn way_m(&self, metres_per_pulse: f64) -> f64 {
         let way_m = f64::from(self.count) * metres_per_pulse;
         if self.backward { -way_m } else { way_m }
@@ -52,7 +52,7 @@ pub struct Inputs {
     pub alive: bool,
     /// Signal at the receiver's output filter; none while the self-test feeds the receiver.
     pub signal: AntennaSignal,
-    /// Signal there of the code that the self-test feeds in.
+    /// Signal at the receiver's output filter of the code that the self-test feeds in.
     pub self_test_signal: Option<AntennaSignal>,
     pub pulses: [Pulses; 2],
     /// Tachometer inputs fed by the TEST board.

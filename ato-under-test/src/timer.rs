@@ -7,7 +7,7 @@ pub fn ms(ms: u32) -> Duration {
     Duration::from_ms(u64::from(ms))
 }
 
-/// A time as a clock that runs this many times too fast tells it.
+/// Time that a clock shows which runs `rate` times as fast as it should.
 pub fn at_rate(passed: Duration, rate: f64) -> Duration {
     if rate == 1.0 {
         return passed;

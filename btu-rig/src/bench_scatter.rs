@@ -10,10 +10,10 @@ use crate::conditions::{Conditions, Sensors};
 use crate::drive::Scatter;
 use crate::drive::scatter::{Spread, check_spreads};
 
-/// Sets what is drawn here apart from the train and day that the same seed gives.
+/// Mixed into the seed, so that the draws here differ from those of train and day by the same seed.
 const OWN_SEQUENCE: u64 = 0xBE7C_45CA_77E2_0B1D;
 
-/// All that differs; see `scripts/bench_scatter.toml`.
+/// Spreads of all that differs from run to run; see `scripts/bench_scatter.toml`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BenchScatter {
@@ -29,7 +29,7 @@ pub struct BenchScatter {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensorScatter {
-    /// Level in the antenna over the intended one.
+    /// Level in the antenna divided by the intended one.
     pub level_factor: Spread,
     /// Noise of the level, as a share.
     pub level_noise: Spread,
@@ -39,34 +39,34 @@ pub struct SensorScatter {
     pub rate_offset_hz: Spread,
     /// Noise of the code rate, Hz.
     pub rate_jitter_hz: Spread,
-    /// Place of each tooth, share of the pitch.
+    /// Displacement of each tooth from its place, share of the pitch.
     pub tooth_pitch: Spread,
     /// Spurious pulses of a channel, 1/s.
     pub spurious_pulses_per_s: Spread,
 }
 
-/// How the times of unit and bench lie to each other; each is one of [`Timing`].
+/// When the unit is powered up and how long frames take; each field is one of [`Timing`].
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct TimingScatter {
-    /// Power-up after a whole cycle of the bench, ms.
+    /// Time from the start of a bench cycle to power-up, ms.
     pub power_up_ms: Spread,
-    /// Distance of a frame to the unit, ms.
+    /// Time that a frame to the unit is on its way, ms.
     pub to_unit_ms: Spread,
-    /// Distance of a frame from it, ms.
+    /// Time that a frame from the unit is on its way, ms.
     pub from_unit_ms: Spread,
     /// Share of scans whose frames come one scan later than that.
     pub late_share: Spread,
 }
 
-/// When a unit is powered up, and how long frames are on their way. The default is at once.
+/// When a unit is powered up, and how long frames are on their way. The default is no delay.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timing {
-    /// Power-up after a whole cycle of the bench.
+    /// Time from the start of a bench cycle to power-up.
     pub power_up: Duration,
-    /// Distance of a frame to the unit.
+    /// Time that a frame to the unit is on its way.
     pub to_unit: Duration,
-    /// Distance of a frame from it.
+    /// Time that a frame from the unit is on its way.
     pub from_unit: Duration,
     /// Share of scans whose frames come one scan later than that.
     pub late_share: f64,

@@ -30,7 +30,7 @@ pub struct Conditions {
     pub delay_factor: f64,
     /// Factor on the braking effort the train gives for a demand.
     pub brake_factor: f64,
-    /// True wheel diameter over the configured one.
+    /// True wheel diameter divided by the configured one.
     pub wheel_factor: f64,
     /// Where each marker really lies, relative to the track database, m.
     pub marker_offsets_m: [f64; 4],
@@ -41,7 +41,7 @@ pub struct Conditions {
 /// Deviations of sensors and signal sources from ideal ones, and their scatter. By default there are none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensors {
-    /// Level in the ATP antenna over the intended one: height of the antenna, its tuning.
+    /// Level in the ATP antenna divided by the intended one: height and tuning of the antenna.
     pub level_factor: f64,
     /// Noise of that level from scan to scan, standard deviation as a share of it.
     pub level_noise: f64,
@@ -51,9 +51,9 @@ pub struct Sensors {
     pub rate_offset_hz: f64,
     /// Noise of the code rate from scan to scan, standard deviation, Hz.
     pub rate_jitter_hz: f64,
-    /// Place of each tooth of the tone wheels, standard deviation as a share of the pitch.
+    /// Displacement of each tooth of the tone wheels, standard deviation as a share of the pitch.
     pub tooth_pitch: f64,
-    /// Picks which teeth lie where.
+    /// Seed of the displacements of the teeth.
     pub teeth_seed: u64,
     /// Spurious pulses of each tachometer channel, 1/s.
     pub spurious_pulses_per_s: f64,

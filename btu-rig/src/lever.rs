@@ -40,12 +40,12 @@ impl Lever {
         Self::Power(4),
     ];
 
-    /// The position scripts write as a number: −8 emergency, −7 to −1, 0, 0.5, 1 to 4.
+    /// The position that scripts write as a number: −8 emergency, −7 to −1, 0, 0.5, 1 to 4.
     pub fn from_number(number: f64) -> Option<Self> {
         Self::ALL.into_iter().find(|lever| lever.number() == number)
     }
 
-    /// The position called so: `EB`, `B7` to `B1`, `N`, `P0.5`, `P1` to `P4`.
+    /// The position with a name: `EB`, `B7` to `B1`, `N`, `P0.5`, `P1` to `P4`.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL
             .into_iter()
@@ -62,7 +62,7 @@ impl Lever {
         }
     }
 
-    /// Position as the unit's input has it; a power notch counts as one however small.
+    /// Position as the unit's input has it; P0.5 counts as P1.
     pub fn wire(self) -> i8 {
         match self {
             Self::Emergency => -8,

@@ -1,4 +1,4 @@
-//! What the rig scatters, out of the generator that it was given.
+//! Random quantities of the rig, drawn from the generator that it was given.
 
 use protocol::Random;
 

@@ -6,9 +6,9 @@ use std::collections::VecDeque;
 use protocol::signal::{Sample, Signal};
 use protocol::{CYCLE, Duration, Instant};
 
-/// Recorded before a trigger at least.
+/// Time recorded before a trigger, at least.
 pub const BEFORE: Duration = Duration::from_ms(10_000);
-/// Recorded after a trigger.
+/// Time recorded after a trigger.
 pub const AFTER: Duration = Duration::from_ms(5_000);
 /// A slow fault's window begins with its step, but not longer before the trigger than this.
 const LONGEST_BEFORE: Duration = Duration::from_ms(120_000);
@@ -25,13 +25,13 @@ pub struct Row {
 }
 
 impl Row {
-    /// NaN when the value was not known.
+    /// Value of a signal; NaN when it was not known.
     pub fn value(&self, signal: Signal) -> f64 {
         self.sample.values()[signal.index()]
     }
 }
 
-/// Number of rows of a time.
+/// Number of rows in a time.
 pub const fn rows_of(span: Duration) -> usize {
     (span.as_us() / CYCLE.as_us()) as usize
 }
@@ -48,7 +48,7 @@ impl<const ROWS: usize> Ring<ROWS> {
         &self.rows
     }
 
-    /// Takes a row in place of the oldest; one from before the last empties the ring first.
+    /// Takes a row in place of the oldest; a row older than the last one empties the ring first.
     pub fn push(&mut self, row: Row) {
         if self.rows.back().is_some_and(|last| row.at < last.at) {
             self.rows.clear();
@@ -71,7 +71,7 @@ struct Open {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedWindow {
-    /// Faults it shows, by their number in the procedure.
+    /// Faults in the window, by their number in the procedure.
     pub faults: Vec<usize>,
     /// Rows of the window; at least one.
     pub rows: Vec<Row>,
@@ -102,8 +102,9 @@ impl Recorder {
             .then(|| self.close(false))?
     }
 
-    /// Fault number `fault` happened now, or what is to be kept without one, in a step that began at `step_began`. Inside an
-    /// open window it extends and shares that; returns the window it ends.
+    /// Opens a window around `now`, in a step that began at `step_began`; `fault` is the number of a fault, `None` for
+    /// another trigger. A trigger within an open window extends it; if the window would be too long, it ends and is
+    /// returned.
     pub fn trigger(
         &mut self,
         now: Instant,

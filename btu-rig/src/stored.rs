@@ -17,7 +17,7 @@ pub mod mps {
     }
 }
 
-/// A word of the wire by its number, so that one this version has no name for is kept, too.
+/// Stores a wire enumeration by its number, so that a value without a name in this version is kept, too.
 macro_rules! by_code {
     ($($name:ident: $word:ident),* $(,)?) => { $(
         #[doc = concat!("[`protocol::message::", stringify!($word), "`] by its number.")]

@@ -23,8 +23,8 @@ impl Id {
         )
     }
 
-    /// A UUIDv8 that follows from what it names: the first 16 bytes of the SHA-256 over `kind` and `parts`, each
-    /// after its length, so that every store makes the same one of the same thing.
+    /// A UUIDv8 computed from content: the first 16 bytes of the SHA-256 over `kind` and `parts`, each after its
+    /// length. Every store makes the same id for the same content.
     pub fn of_content(kind: &str, parts: &[&[u8]]) -> Self {
         let mut hash = Sha256::new();
         for part in std::iter::once(&kind.as_bytes()).chain(parts) {
@@ -37,7 +37,7 @@ impl Id {
         Self(Builder::from_custom_bytes(bytes).into_uuid().into_bytes())
     }
 
-    /// Takes the 16 bytes as they are.
+    /// An id of these 16 bytes.
     pub fn from_bytes(bytes: [u8; 16]) -> Self {
         Self(bytes)
     }
@@ -103,7 +103,7 @@ impl fmt::Debug for IdSource {
     }
 }
 
-/// Ids in words.
+/// Ids as text, separated by commas.
 pub(crate) fn list(ids: &[Id]) -> String {
     ids.iter().map(Id::to_string).collect::<Vec<_>>().join(", ")
 }

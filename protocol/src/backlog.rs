@@ -1,33 +1,33 @@
-//! Distributes bytes that arrived while the program was held up among the scans that it makes up afterwards.
+//! Distributes bytes that arrived while the program was held up over the scans that it makes up afterwards.
 //!
 //! If all of them were read in the first of those scans, frames would be ahead of the program's own time,
 //! every later frame would seem late, and a partner that has sent all the while would seem silent.
 //!
-//! A partner that has sent nothing all the while stood still itself: both are programs on one computer that held
-//! them up. Then neither has anything to make up, and the time is none for both.
+//! A partner that has sent nothing meanwhile stood still itself: both are programs on one computer, which held both up.
+//! Then neither has anything to make up, and the time counts for neither.
 
 use alloc::vec::Vec;
 
 use crate::{Duration, SCAN};
 
-/// Arrived and not taken yet.
+/// Bytes that have arrived and that no scan has taken yet.
 #[derive(Debug, Default)]
 pub struct Backlog {
     waiting: Vec<u8>,
-    /// Bytes that usually arrive in a scan, in parts of [`PARTS`].
+    /// Bytes that usually arrive in a scan, times [`PARTS`].
     usual: usize,
     /// The last scan was late, too.
     late: bool,
 }
 
-/// Shortest delay that counts as a standstill; a shorter one is made up whatever the partner did.
+/// Shortest delay that counts as a standstill; scans missed by a shorter one are made up whatever the partner did.
 const PAUSE: Duration = Duration::from_ms(100);
-/// The usual number of bytes is kept in parts of this size, and is an average of as many scans.
+/// Number of scans over which the usual number of bytes is averaged; the average is kept times this number.
 const PARTS: usize = 64;
 
 impl Backlog {
-    /// Adds what arrived and appends to `out` what belongs to this scan, which is `behind` its time. Returns how much
-    /// of that is no time, because the partner stood still as well.
+    /// Adds the bytes that arrived, and appends to `out` those of this scan, which is late by `behind`. Returns how
+    /// much of `behind` does not count as time, because the partner stood still as well.
     pub fn share(&mut self, arrived: &[u8], behind: Duration, out: &mut Vec<u8>) -> Duration {
         let pause = self.pause(arrived.len(), behind);
         self.spread(
@@ -38,8 +38,8 @@ impl Backlog {
         pause
     }
 
-    /// All of `behind`, if this is the first scan after a standstill in which less than half of what usually arrives
-    /// in that time has arrived.
+    /// `behind` itself, if this is the first scan after a standstill and less than half of what usually arrives in that
+    /// time has arrived; else 0.
     fn pause(&mut self, arrived: usize, behind: Duration) -> Duration {
         let late = behind >= PAUSE;
         let was_late = core::mem::replace(&mut self.late, late);
@@ -142,7 +142,7 @@ mod tests {
         );
     }
 
-    /// Only the scan that wakes up can tell: those made up after it find nothing more on the wire.
+    /// Only the first scan after a standstill can tell: the scans made up after it find nothing more on the wire.
     #[test]
     fn scans_that_are_made_up_are_no_pause() {
         let (mut backlog, mut out) = (Backlog::default(), Vec::new());
@@ -157,7 +157,8 @@ mod tests {
         assert_eq!(late(0, 280), Duration::ZERO);
     }
 
-    /// A standstill that was made up, as one before the first word of the partner, says nothing about the next.
+    /// A standstill that was made up, for instance before the first byte of the partner, says nothing about the next
+    /// one.
     #[test]
     fn a_pause_is_seen_after_a_standstill_that_was_made_up() {
         let (mut backlog, mut out) = (Backlog::default(), Vec::new());

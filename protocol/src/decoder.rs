@@ -51,8 +51,8 @@ impl Decoder {
         }
     }
 
-    /// Takes bytes as they arrived. Beyond [`MAX_PENDING`] the oldest go, as garbage: whoever
-    /// reads too late is better served with what is new.
+    /// Takes bytes as they arrived. Beyond [`MAX_PENDING`] the oldest are dropped as garbage: whoever reads too late is
+    /// better served with new bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.pending.drain(..self.read);
         self.read = 0;
@@ -68,7 +68,7 @@ impl Decoder {
         self.pending.extend_from_slice(newest);
     }
 
-    /// Forgets a frame under way and what was not looked at yet, as garbage: other bytes follow than those.
+    /// Drops an unfinished frame and bytes not yet looked at, as garbage: the bytes that follow do not continue them.
     pub fn restart(&mut self) {
         self.garbage += (self.pending_len() + self.len) as u64;
         self.pending.clear();
@@ -186,8 +186,8 @@ mod tests {
         decoder.push(&flood);
         assert!(decoder.next_frame().is_none());
         assert_eq!(decoder.pending_len(), 0);
-        // Two of the body, twenty of the first push, ten before the flag: all but the frame that
-        // the flag began, and what of it exceeds the longest body.
+        // Garbage: two bytes of the body, twenty of the first push, ten before the flag, and what exceeds the longest
+        // body of the frame that the flag began.
         let began = MAX_PENDING - 11;
         assert_eq!(decoder.garbage, (2 + 20 + 10 + began - MAX_BODY) as u64);
     }

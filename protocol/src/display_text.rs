@@ -21,7 +21,7 @@ pub fn lines(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// A character that is invisible, controls the display, or is none (the last two of each plane, and those between U+FDD0 and
+/// A character that is invisible, controls the display, or is no character (the last two of each plane, and U+FDD0 to
 /// U+FDEF), which XML cannot hold.
 pub fn is_unseen(letter: char) -> bool {
     letter.is_control()

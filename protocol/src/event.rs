@@ -239,9 +239,9 @@ impl Event {
             }
             // The relay dropped, and the unit does not see it.
             Self::CabsNotChanged if parameter == RELAY_DROPPED => Some("io_board"),
-            // The line takes nothing: no inverter's fault.
+            // The contact line takes no power: no inverter is at fault.
             Self::RegenerationCutOut if parameter == ALL_CARS => return None,
-            // Frames arrive: what stands is who makes them.
+            // Frames arrive, and their counter stands: TCMS, which makes the frames, is at fault.
             Self::TcmsLost if parameter == COUNTER_STANDS => Some("tcms"),
             Self::FramesRejected if parameter != i32::from(Channel::Tcms.code()) => {
                 Some("io_board")
@@ -251,18 +251,18 @@ impl Event {
         named.map_or_else(|| self.definition().lru.clone(), LruId::listed)
     }
 
-    /// Whether TCMS logs it, and not the unit.
+    /// Whether TCMS logs the event, and not the unit.
     pub const fn by_tcms(self) -> bool {
         self.definition().code / 100 == 8
     }
 
-    /// Whether the unit logs it of a restart of its own, by a part of it that failed.
+    /// Whether the unit logs the event because a failed part of it made the unit restart.
     pub const fn restarts_unit(self) -> bool {
         matches!(self, Self::SupplyDip)
     }
 
-    /// Whether it is about the train's own equipment, which stays broken whatever is tested next; what
-    /// TCMS says of the unit and of the link to it is not.
+    /// Whether the event is about the train's own equipment, which stays broken whatever is tested next; what TCMS logs
+    /// about the unit and the link to it is not.
     pub const fn about_train(self) -> bool {
         matches!(
             self,

@@ -40,12 +40,12 @@ pub const FLAG: u8 = 0x7E;
 /// Ends the bytes of one scan where both ends move on in lock step: frames have no more than two flags in
 /// a row, and a decoder passes over empty ones.
 pub const SCAN_END: [u8; 3] = [FLAG; 3];
-/// Says that the next byte is sent with [`ESCAPE_XOR`].
+/// Announces that the next byte is exclusive-ored with [`ESCAPE_XOR`].
 pub const ESCAPE: u8 = 0x7D;
 /// Number with which an escaped byte is exclusive-ored.
 pub const ESCAPE_XOR: u8 = 0x20;
 
-/// Sixteen bytes a step: at one byte a step the check sequence would be the dearest part of a frame.
+/// Sixteen bytes a step: at one byte a step the check sequence would be the slowest part of a frame.
 static FCS: Crc<u32, Table<16>> = Crc::<u32, Table<16>>::new(&CRC_32_ISO_HDLC);
 
 /// Frame check sequence over `bytes`: the CRC of Ethernet, zlib and zip.
@@ -60,7 +60,7 @@ pub struct Header {
     pub channel: Channel,
     /// Address of the sender.
     pub source: Address,
-    /// Whom it is for.
+    /// Address of the receiver.
     pub destination: Address,
     /// Sequence number, one up for each frame the sender sends on the channel, wrapping.
     pub seq: u16,
@@ -82,9 +82,9 @@ crate::labelled! {
         Checksum = "checksum",
         /// Another version of the wire.
         Version = "version",
-        /// No channel has this number, or it is none of this end.
+        /// No channel has this number, or this end does not hear the channel.
         Channel = "channel",
-        /// Nobody has this address, or the frame is not from and for those whom this end expects.
+        /// An address is nobody's, or sender or receiver is not the one that this end expects on the channel.
         Address = "address",
         /// Aborted by its sender, or an escape that no sender may use.
         Escape = "escape",
@@ -102,8 +102,8 @@ crate::labelled! {
 pub struct Rejected {
     /// First reason that applies.
     pub reason: Reject,
-    /// The channel it claims to be of, if it got that far. With a wrong FCS this is a hint for
-    /// whoever counts, not a fact.
+    /// Channel that the frame claims, if it got that far. With a wrong FCS this is a hint for whoever counts, not a
+    /// fact.
     pub channel: Option<Channel>,
 }
 

@@ -1,7 +1,7 @@
 //! Enums whose variants have one fixed text each.
 
-/// Declares an enum with the text of each variant: `ALL` of them in this order, their `LABELS`, and a method of the name
-/// behind the enum's that says the text.
+/// Declares an enum with a fixed text for each variant: `ALL` variants and their `LABELS`, in the order of declaration,
+/// and a method that returns the text; its name stands behind that of the enum.
 #[macro_export]
 macro_rules! labelled {
     ($(#[$meta:meta])* $vis:vis enum $name:ident: $text:ident {
@@ -11,9 +11,9 @@ macro_rules! labelled {
         $vis enum $name { $( $(#[$each])* $variant, )+ }
 
         impl $name {
-            /// Texts of all, in this order.
+            /// Texts of all variants, in the order of declaration.
             pub const LABELS: &'static [&'static str] = &[$( $label ),+];
-            /// All of them, in this order.
+            /// All variants, in the order of declaration.
             pub const ALL: [Self; Self::LABELS.len()] = [$( Self::$variant ),+];
 
             /// Text of the variant, as its declaration has it.

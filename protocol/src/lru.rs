@@ -100,7 +100,7 @@ impl PartialEq<&str> for LruId {
     }
 }
 
-/// The word for it in scripts and in the window: `-` is none.
+/// The part as scripts and the window write it; `-` is no part.
 pub fn shown(lru: Option<&LruId>) -> &str {
     lru.map_or(SHOWN_NONE, LruId::as_str)
 }
@@ -116,7 +116,7 @@ pub fn from_shown(text: &str) -> Result<Option<LruId>, NotAnLru> {
     }
 }
 
-/// The word for it in the database and in the fault dictionary: `unknown` is none.
+/// The part as the database and the fault dictionary write it; `unknown` is no part.
 pub fn stored(lru: Option<&LruId>) -> &str {
     lru.map_or(STORED_NONE, LruId::as_str)
 }

@@ -6,7 +6,7 @@ use crate::{Duration, Instant, SCAN};
 /// both ends up must not look like a slow unit.
 const MAKE_UP: Duration = Duration::from_ms(1);
 
-/// Deadlines of scans: every 10 ms of a monotonic clock, or so many times that. A late scan is made up, not skipped.
+/// Deadlines of scans: every 10 ms of a monotonic clock, times `slower`. A late scan is made up, not skipped.
 #[derive(Clone, Copy, Debug)]
 pub struct ScanDeadlines {
     /// The last deadline, by the clock.
@@ -35,7 +35,7 @@ impl ScanDeadlines {
         };
     }
 
-    /// Lag of the last scan, or of what came after it, in the time of the bench.
+    /// Time from the last deadline to `now`, in bench time.
     pub const fn behind(&self, now: Instant) -> Duration {
         Duration::from_us(now.since(self.due).as_us() / self.slower as u64)
     }

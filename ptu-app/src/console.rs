@@ -1,4 +1,4 @@
-//! The console during a run: progress.
+//! Progress of a run on the console.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -20,34 +20,33 @@ use ptu_runs::table::{cell, padded};
 use ptu_runs::terminal::{self, Style};
 use ptu_runs::{progress, stdio};
 
-/// Interval at which the bar's clock moves while nothing happens.
+/// Interval at which the clock beside the bar is drawn while nothing happens.
 const TICK: Duration = Duration::from_millis(250);
-/// Number of lines that may wait for a terminal that takes nothing, as a halted one; further lines
-/// are left out.
+/// Most lines that wait for a terminal that takes no output, as a stopped terminal; further lines are left out.
 const WAITING: usize = 4096;
-/// Width of a line's beginning, columns.
+/// Width of the word at the beginning of a line, columns.
 const LINE_BEGIN: usize = 7;
-/// Widest wording beside the bar, in columns.
+/// Greatest width of the text beside the bar, columns.
 const BESIDE_BAR: usize = 100;
 
-/// Amount of detail about a run.
+/// How much the console says about a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
     Quiet,
-    /// And each procedure, and the step under way on a terminal.
+    /// Also each procedure, and on a terminal the step under way.
     Usual,
-    /// And each step and measurement.
+    /// Also each step and each measurement.
     Verbose,
 }
 
-/// Shows progress on stderr: a bar on a terminal, a line a procedure elsewhere. It has a thread of its own:
-/// neither the bench nor the store waits for whoever reads.
+/// Shows progress on stderr: a bar on a terminal, elsewhere a line for each procedure. The console has a thread of its
+/// own, so that neither bench nor store waits for a slow terminal.
 pub struct Console {
     detail: Detail,
-    /// Steps of the present procedure: begun, and all of it.
+    /// Steps of the present procedure: number begun, number of all.
     steps: (usize, usize),
     shown: SyncSender<Shown>,
-    /// Lines that were not printed.
+    /// Number of lines that were not printed.
     left_out: Arc<AtomicUsize>,
     thread: JoinHandle<()>,
 }
@@ -81,10 +80,10 @@ impl Console {
         })
     }
 
-    /// The run is over; returns when all is shown.
+    /// Ends the console after the run; returns when everything is printed.
     pub fn finish(self) {
         drop(self.shown);
-        // A console that broke off is no reason for a run to fail.
+        // A console that failed is no reason for the run to fail.
         let _ = self.thread.join();
         let left_out = self.left_out.load(Ordering::Relaxed);
         if left_out > 0 {
@@ -153,7 +152,7 @@ impl Listener for Console {
             }
             _ => return,
         };
-        // A terminal that takes nothing misses this, and the run goes on.
+        // If the terminal takes no output, this state is not shown, and the run goes on.
         let _ = self.shown.try_send(shown);
     }
 
@@ -193,7 +192,7 @@ impl Listener for Console {
                 let verdict = terminal::verdict(&begin(words.verdict_name(*verdict)));
                 Some(format!("{verdict} {}{more}", procedure.id))
             }
-            // Quietly the failed step says it.
+            // With --quiet the line of the failed step stands for the fault.
             SessionEvent::Fault(fault) if self.detail != Detail::Quiet => Some(format!(
                 "{} {} → {}: {}",
                 begin(words.common.fault),
@@ -222,7 +221,7 @@ fn after_colon(findings: &Findings, words: &Words) -> String {
     }
 }
 
-/// A value with its limits, in the words of a failed one.
+/// Text of a measurement: name, value, permitted range, unit.
 fn measured(measurement: &Measurement, words: &Words) -> String {
     let value = measurement
         .value

@@ -15,12 +15,12 @@ use ptu_runs::new_file::{NewFile, kind};
 use ptu_runs::run::{Outcome, SessionEvent};
 use ptu_runs::stdio;
 
-/// Lines that may wait for a reader. One that falls further behind ends the stream, not the run.
+/// Most lines that wait for a reader. A reader that falls further behind ends the stream, not the run.
 const WAITING: usize = 65_536;
 
 #[derive(Clone, Debug)]
 pub enum StreamTarget {
-    /// Standard output, which then has nothing else.
+    /// Standard output, which then carries nothing else.
     Stdout,
     File(PathBuf),
 }
@@ -54,12 +54,12 @@ impl EventStream {
         let mut is_begun = false;
         let out: Box<dyn Write + Send> = match &place {
             StreamTarget::Stdout => Box::new(stdio::stdout()),
-            // A pipe or device is written to as it is.
+            // A pipe or device is written to directly.
             StreamTarget::File(file) if std::fs::metadata(file).is_ok_and(|of| !of.is_file()) => {
                 let opened = OpenOptions::new().write(true).open(file);
                 Box::new(opened.map_err(|error| cannot(&error))?)
             }
-            // In its place from the first line on: other programs read while it grows.
+            // The file appears at its place with its first line: other programs read it while it grows.
             StreamTarget::File(file) => {
                 let begun = NewFile::begin(file, kind::EVENTS);
                 let mut file = begun.map_err(|why| why.because_of(Asked::Option("--events")))?;
@@ -73,7 +73,7 @@ impl EventStream {
         let thread = std::thread::Builder::new()
             .name("events".into())
             .spawn(move || match write(&lines, out) {
-                // A reader that has gone away has read enough.
+                // A reader that has closed the pipe wants no more lines: no failure.
                 Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
                 written => written,
             });
@@ -102,17 +102,17 @@ impl EventStream {
     fn put(&mut self, line: String) {
         let sent = self.to.as_ref().map(|to| to.try_send(line));
         if let Some(Err(error)) = sent {
-            // Nothing comes after a line that is left out, so that none is missed unseen. Why the thread has ended it
-            // tells itself.
+            // If the queue is full the stream ends, so that no line is missing between two others. If the thread has
+            // ended, `finish` says why.
             self.is_cut = matches!(error, TrySendError::Full(_));
             self.to = None;
         }
     }
 
-    /// Ends the stream: with the run's last line, if it ended.
+    /// Ends the stream; if the run has an outcome, writes the outcome as the last line.
     ///
     /// # Errors
-    /// Some of it could not be written.
+    /// A part of the stream could not be written.
     pub fn finish(mut self, outcome: Option<&Outcome>) -> Result<(), Failure> {
         if let Some(outcome) = outcome {
             let last = self.lines.finished(outcome);
@@ -130,7 +130,7 @@ impl EventStream {
     }
 }
 
-/// Writes lines as they come, and empties its buffer where none waits.
+/// Writes lines as they come, and flushes whenever no further line waits.
 fn write(lines: &Receiver<String>, out: impl Write) -> std::io::Result<()> {
     let mut out = BufWriter::new(out);
     while let Ok(line) = lines.recv() {

@@ -2,8 +2,8 @@
 //!
 //! * [`cli`]: one file per verb. `ptu gui` starts the program `ptu-window`; [`console`]: what `ptu run` says.
 //!
-//! Of the workspace only `ptu-app`, its crates `ptu-runs` and `ptu-report` and the served unit's program read clocks;
-//! the database crate opens its own files and connections.
+//! `protocol`, the unit's library, `btu-rig` and `diagnosis` read no clock. `fault-db` opens its own files and
+//! connections, and reads a clock only to end the check of a file in time.
 
 pub mod cli;
 pub mod console;

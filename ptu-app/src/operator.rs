@@ -1,4 +1,4 @@
-//! Questions of a run's scripts to the operator at its terminal.
+//! Questions of check procedures to the operator at the terminal.
 
 use std::sync::{Arc, Mutex};
 
@@ -11,13 +11,13 @@ use ptu_runs::run::RunControl;
 use ptu_runs::stdio;
 use ptu_runs::typed::{Typed, somebody_is_there};
 
-/// Takes lines of the terminal while a script asks.
+/// Reads the answers that the operator types while a procedure asks.
 pub struct Operator {
     typed: Mutex<Typed>,
 }
 
 impl Operator {
-    /// Whoever can be asked, if anybody.
+    /// The operator at the terminal; `None` if nobody is there.
     pub fn at_terminal() -> Option<Arc<Self>> {
         let typed = || Mutex::new(Typed::listen());
         somebody_is_there().then(|| Arc::new(Self { typed: typed() }))
@@ -33,7 +33,7 @@ impl RunControl for Operator {
         let Ok(typed) = self.typed.try_lock() else {
             return;
         };
-        // A line typed before the question is no answer to it.
+        // A line typed before the question is not an answer to it, and is dropped.
         let asks = runner.awaits_operator();
         for line in typed.lines().iter().filter(|_| asks) {
             match answer(line) {

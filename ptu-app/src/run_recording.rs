@@ -10,7 +10,7 @@ use ptu_runs::failure::Failure;
 use ptu_runs::new_file::{NewFile, cannot_write, kind};
 use ptu_runs::run::{Outcome, SessionEvent};
 
-/// Recording of a run. The file is there once the run has ended, whole.
+/// Recording of a run. The file appears, complete, only when the run has ended.
 pub struct RunRecording {
     place: PathBuf,
     /// The file; a failed write ends the recording, not the run.
@@ -37,10 +37,10 @@ impl RunRecording {
         }
     }
 
-    /// Ends the recording: with the run's last line, if it ended.
+    /// Ends the recording; if the run has an outcome, writes the outcome as the last line.
     ///
     /// # Errors
-    /// Some of it could not be written; no file is left then.
+    /// A part of the recording could not be written; then no file is left.
     pub fn finish(self, outcome: Option<&Outcome>) -> Result<(), Failure> {
         let file = self.file?.finish(outcome);
         file.map_err(|error| cannot_write(&self.place, &error))?

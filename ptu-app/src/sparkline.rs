@@ -1,9 +1,9 @@
 //! A series of values as one line of text.
 
-/// Heights of a line.
+/// Characters for bars, the lowest first.
 pub const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// Counts as bars from nothing (a dot) to the greatest.
+/// Counts as bars up to the greatest count; a dot for 0.
 pub fn sparkline(counts: &[u64]) -> String {
     let most = counts.iter().copied().max().unwrap_or(0);
     let bar = |count: u64| match count {
@@ -13,7 +13,7 @@ pub fn sparkline(counts: &[u64]) -> String {
     counts.iter().map(|count| bar(*count)).collect()
 }
 
-/// Values as bars from the least to the greatest; what is not there leaves a gap.
+/// Values as bars from the least to the greatest; a missing value leaves a gap.
 pub fn sparkline_of(values: &[Option<f64>]) -> String {
     let known = || values.iter().flatten().copied();
     let (least, most) = (

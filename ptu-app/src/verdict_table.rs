@@ -12,7 +12,7 @@ use ptu_runs::stored::{by_procedure, from_stored, of_procedure, standing};
 use ptu_runs::table::Table;
 use ptu_runs::terminal::verdict;
 
-/// The procedure and the step; or where it failed outside of steps, as files name it.
+/// The procedure and its step; for a failure outside the steps, the place of the failure.
 fn named(step: &StepRecord, words: &Words) -> String {
     let name = match words.language {
         Language::English => words.step(&step.name, [step.turn, step.turns], step.kind),
@@ -21,7 +21,7 @@ fn named(step: &StepRecord, words: &Words) -> String {
     format!("{}: {name}", step.procedure)
 }
 
-/// Attempts at steps that were not tested, and made again.
+/// Table of attempts at steps that could not be tested and were made again.
 fn repeated(run: &RunDetail, words: &Words) -> String {
     let mut table = Table::headed(&[words.terminal.repeated_step, words.terminal.reason]);
     let attempts = run.steps.iter();
@@ -37,7 +37,7 @@ fn repeated(run: &RunDetail, words: &Words) -> String {
     format!("\n\n{}", table.render())
 }
 
-/// Reasons of skipped steps, each reason once.
+/// Table of the reasons for skipped steps, each reason once.
 fn skipped(run: &RunDetail, words: &Words) -> String {
     let mut reasons = BTreeMap::<_, BTreeSet<(&str, Option<u32>)>>::new();
     let skipped = standing(&run.steps);
@@ -58,7 +58,7 @@ fn skipped(run: &RunDetail, words: &Words) -> String {
 /// Procedures with their verdicts, what did not pass, and the faults found.
 pub fn verdict_table(run: &RunDetail, words: &Words) -> String {
     let mut text = match run.steps[..] {
-        // A unit's own log, imported, or a run that never began.
+        // An imported log of a unit, or a run that never began.
         [] => fill(words.terminal.no_steps, &[("source", &run.run.source)]),
         _ => part(run, words) + &procedures(run, words).render(),
     };
@@ -93,7 +93,7 @@ pub fn verdict_table(run: &RunDetail, words: &Words) -> String {
     text
 }
 
-/// Failures, repeated steps, and the verdict.
+/// Steps that did not pass, repeated steps, and the verdict.
 pub fn failures(run: &RunDetail, words: &Words) -> String {
     let (failed, repeated) = (not_passed(run, words), repeated(run, words));
     format!("{failed}{repeated}\n\n{}", summary(run, words))
@@ -178,7 +178,7 @@ fn summary(run: &RunDetail, words: &Words) -> String {
     format!("{came}\n{took}{continued}")
 }
 
-/// The first line, where steps were skipped.
+/// First line of the table where steps were skipped: verdict and coverage.
 fn part(run: &RunDetail, words: &Words) -> String {
     let coverage = coverage_text(&Coverage::of_run(run), words);
     coverage.map_or_else(String::new, |part| {

@@ -1,4 +1,4 @@
-//! What ATO is told in each cycle.
+//! Inputs of ATO in each cycle.
 
 use protocol::Speed;
 use protocol::config::SpeedCode;
@@ -7,7 +7,6 @@ use protocol::message::{Mode, RunningMode};
 
 use super::art::Checks;
 
-/// Inputs of ATO in one cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct AtoInputs<'a> {
     /// Operating mode set by ATP.
@@ -24,7 +23,7 @@ pub struct AtoInputs<'a> {
     pub running_mode: RunningMode,
     /// Section of the track database the train is in.
     pub section: Option<&'a Section>,
-    /// Position in it, m.
+    /// Position in the section, m.
     pub position_m: f64,
     /// Distance by which the train may be farther on while markers do not come, m.
     pub ahead_m: f64,
@@ -52,7 +51,7 @@ pub struct AtoInputs<'a> {
 pub struct TrainReport {
     /// TCMS brakes by itself, or gives no power.
     pub overrides: bool,
-    /// Effort last sent to it.
+    /// Effort last sent to TCMS.
     pub sent: i16,
     /// Effort the train gives; `None` = not known.
     pub given: Option<i16>,

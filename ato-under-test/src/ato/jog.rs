@@ -23,11 +23,11 @@ const PATIENCE_CYCLES: u32 = 120;
 const LONGEST_CYCLES: u32 = 500;
 /// Acceleration that is asked for at least until the train moves, m/s²: the holding brake goes by motor current (S4).
 const START_MPS2: f64 = 0.15;
-/// Speed that is asked for until then, m/s.
+/// Speed that is asked for until the train moves, m/s.
 const START_MPS: f64 = 0.15;
 /// Correction by speed error, 1/s.
 const GAIN_PER_S: f64 = 1.5;
-/// Distance to the stop point within which the rate stays, m: a rate by the distance left is
+/// Distance to the stop point within which the deceleration stays as it is, m: speed² over twice the distance is
 /// undefined at 0.
 const HOLD_M: f64 = 0.05;
 
@@ -125,7 +125,7 @@ impl Jog {
         let short = to_stop_m > 0.0;
         let near = distance_m <= config.max_m && inputs.jogs;
         if short && distance_m > config.max_m {
-            // The run's controller drives there.
+            // The run's own controller drives to the stop point.
             self.phase = Phase::Idle;
             return JogOutcome::default();
         }

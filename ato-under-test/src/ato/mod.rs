@@ -57,11 +57,11 @@ pub struct AtoOutputs {
     pub effort: i16,
     /// The holding brake is requested of TCMS.
     pub holding_brake: bool,
-    /// Direction of the jog that is on: backward; `None` = no jog.
+    /// Whether the jog that is on goes backward; `None` = no jog.
     pub jogs_backward: Option<bool>,
     /// Result of jogging in this cycle.
     pub jog: JogOutcome,
-    /// Distance run in this cycle that sliding wheels did not tell, m.
+    /// Distance run in this cycle that sliding wheels did not count, m.
     pub slid_m: f64,
     pub failure: AtoFailure,
     /// Findings of the monitor in this cycle.
@@ -86,7 +86,7 @@ pub struct Ato {
 }
 
 impl Ato {
-    /// Ready once it has been inspected.
+    /// An ATO at power-up: ready once it has been inspected.
     pub fn new(unit: &UnitConfig) -> Self {
         let config = &unit.ato;
         let measurement = SpeedMeasurement {
@@ -109,7 +109,7 @@ impl Ato {
 
     /// One 50 ms cycle.
     pub fn step(&mut self, inputs: AtoInputs<'_>, config: &AtoConfig) -> AtoOutputs {
-        // As near as can be believed while the position is unsure.
+        // While the position is unsure, the shortest distance that can be believed.
         let to_stop_m = inputs
             .section
             .map(|s| s.stop_m - inputs.position_m - inputs.ahead_m);
@@ -260,9 +260,9 @@ impl Ato {
         let speed_ends = ahead.speed_mps <= ENDING_MPS;
         let starts_mps2 = self.jog.least_mps2();
         let goes = demand.force_n > STARTING_MPS2 * mass_kg || starts_mps2.is_some();
-        // A departure under a speed of 0 holds the train until there is one to run at.
+        // A departure under a target speed of 0 holds the train until there is a speed to run at.
         let rests = !goes && (self.state == AtoState::Run || jogs || cruise == Speed::ZERO);
-        // A demand that is no number stays one, so that REG brakes.
+        // A demand that is not a number (NaN) stays NaN, so that REG brakes.
         let past_it = !jogs && to_stop_m.is_some_and(|distance| distance < -config.watch.overrun_m);
         let force_n = if past_it { least } else { demand.force_n };
         let asked_n = force_n.clamp(least, most) + self.feed_forward_n;
@@ -299,7 +299,7 @@ impl Ato {
         config.decel_kmh_per_s / 3.6 + least * weighs
     }
 
-    /// Stands, or is not to drive.
+    /// Outputs while the train stands, or while ATO is not to drive.
     fn rest(&mut self, inputs: &AtoInputs<'_>) -> AtoOutputs {
         self.controller.reset();
         self.regulator.reset();
@@ -317,12 +317,12 @@ impl Ato {
         }
     }
 
-    /// Stands after a run, at the stop point or as near to it as it came.
+    /// The train stands after a run, at the stop point or as near to it as it came.
     pub fn arrived(&self) -> bool {
         self.state == AtoState::Stop
     }
 
-    /// Stands after a run away from the stop point, and jogging has given up.
+    /// The train stands after a run away from the stop point, and jogging has given up.
     pub fn gave_up(&self) -> bool {
         self.jog.gave_up
     }

@@ -9,7 +9,7 @@
 //! * Effort that the train did not give is not ATO's fault: the effort that TCMS reports is compared with the
 //!   effort it was sent. While TCMS brakes by itself or cuts powering nothing is judged. A deviation of which
 //!   withheld effort explains at least half is reported as the train's, and ends the run only in braking.
-//! * A run that ends away from the stop point is reported; one that begins past it, to jog back, has not passed it.
+//! * A run that ends away from the stop point is reported; a run that begins past it, to jog back, is no overrun.
 
 use protocol::config::AtoConfig;
 use protocol::line::Section;
@@ -24,15 +24,15 @@ use super::reg::power_mps2;
 const FASTEST_MPS: f64 = 150.0 / 3.6;
 /// Greatest change of speed within a cycle, also of a sliding wheel, m/s [default].
 const JUMP_MPS: f64 = 1.0;
-/// Time after a jump in which another is not one more lone pulse, s [default]: of good tachometers one comes in minutes.
+/// Time after a jump within which a second one is no lone pulse, s [default]: good tachometers have one in minutes.
 const JUMPS_AGAIN_S: f64 = 1.0;
 /// Acceleration asked for at which the speed cannot stay the same, m/s² [default]: more than the
 /// gradient of 35 ‰ and the resistance that a unit with a wrong track database may not know of.
 const ASKED_MPS2: f64 = 0.6;
-/// Change of speed in a cycle below which a tachometer says the same, m/s: what edge times in whole
-/// microseconds can make of one speed.
+/// Change of speed in a cycle below which the speed counts as unchanged, m/s: what edge times in whole microseconds can
+/// make of one speed.
 const SAME_MPS: f64 = 5e-4;
-/// Distance from the section at which a position cannot be, m [default].
+/// Distance outside the section at which a position is absurd, m [default].
 const OUTSIDE_M: f64 = 100.0;
 /// Longest section, m [default].
 const LONGEST_M: f64 = 50e3;
@@ -46,7 +46,7 @@ const STANDS_S: f64 = 5.0;
 pub struct MonitorInputs {
     /// State until now.
     pub state: AtoState,
-    /// Acceleration the last effort asks for, track and resistance taken off, m/s².
+    /// Acceleration that the last effort asks for, less what track and resistance cost, m/s².
     pub asked_mps2: f64,
     /// Neither limit nor order nor brake keeps the train standing.
     pub may_go: bool,
@@ -60,10 +60,9 @@ pub struct MonitorInputs {
 pub struct Findings {
     /// Inputs no train can make.
     pub absurd: AbsurdInputs,
-    /// Speed less the speed effort should have made, m/s.
+    /// Measured speed less the speed that the effort should have produced, m/s.
     pub not_following_mps: Option<f64>,
-    /// Deviation of a train that withholds effort by its TCMS's own report, m/s; reported once until it
-    /// is over.
+    /// Deviation of a train that, by its TCMS's own report, withholds effort, m/s; reported once until it is over.
     pub withheld_mps: Option<f64>,
     /// Distance past the stop point, m; reported once a run.
     pub overrun_m: Option<f64>,
@@ -77,13 +76,13 @@ pub struct Monitor {
     before_mps: Option<f64>,
     /// Speed before it jumped in the last cycle, m/s.
     jumped_from_mps: Option<f64>,
-    /// Time in which the next jump follows soon, s.
+    /// Time left in which a next jump counts as following soon, s.
     jumps_again_s: f64,
     expected_mps2: f64,
     deviation_mps: f64,
     /// Acceleration that the sent effort should have by now, m/s².
     sent_mps2: f64,
-    /// Speed that the train's own effort did not make of it, m/s.
+    /// Speed that the train lacks because it gave less effort than it was sent, m/s.
     withheld_mps: f64,
     withheld_reported: bool,
     frozen_s: f64,
@@ -156,7 +155,7 @@ impl Monitor {
         (jumps, jumps && soon)
     }
 
-    /// The speed says exactly the same although effort is asked for.
+    /// The measured speed stays exactly the same although effort is asked for.
     fn frozen(
         &mut self,
         change_mps: f64,
@@ -204,7 +203,7 @@ impl Monitor {
         (libm::fabs(self.deviation_mps) > most_mps).then_some(self.deviation_mps)
     }
 
-    /// A deviation as ATO's own, or as the train's when at least half of it is what that withheld.
+    /// Attributes a deviation to ATO, or to the train when withheld effort explains at least half of it.
     fn whose(&mut self, deviation_mps: Option<f64>) -> (Option<f64>, Option<f64>) {
         let Some(deviation_mps) = deviation_mps else {
             self.withheld_reported = false;
@@ -267,7 +266,7 @@ fn mps2_from_effort(effort: i16, speed: Speed, config: &AtoConfig) -> f64 {
     }
 }
 
-/// Inputs that cannot be, each by itself.
+/// Inputs that are impossible, each judged by itself.
 fn absurd(inputs: &AtoInputs<'_>, config: &AtoConfig) -> AbsurdInputs {
     let speed = |mps: f64| (0.0..=FASTEST_MPS).contains(&mps);
     let order = |order: Speed| order.mps().is_finite() && order >= Speed::ZERO;

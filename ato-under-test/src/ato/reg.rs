@@ -13,7 +13,7 @@ pub struct Regulator {
 pub struct GrantedEffort {
     /// -1024 full brake .. 1023 full power.
     pub effort: i16,
-    /// Force that stands for, N.
+    /// Force that the effort stands for, N.
     pub force_n: f64,
 }
 
@@ -28,7 +28,7 @@ pub struct Bounds {
 }
 
 impl Regulator {
-    /// One cycle. Not a number is a full brake.
+    /// One cycle. A force that is not a number gives a full brake.
     pub fn step(&mut self, force_n: f64, bounds: Bounds, config: &AtoConfig) -> GrantedEffort {
         let train = &config.train;
         let (power, brake) = (

@@ -14,9 +14,9 @@ use protocol::line::Section;
 pub struct TrainPosition<'a> {
     /// Section of the track database.
     pub section: Option<&'a Section>,
-    /// Position in it, m.
+    /// Position in the section, m.
     pub position_m: f64,
-    /// Way behind a code's place within which the one before may still be in force, m.
+    /// Way behind a code's place within which the code before may still be in force, m.
     pub heard_within_m: f64,
     /// Length of the train, m.
     pub length_m: f64,
@@ -24,7 +24,7 @@ pub struct TrainPosition<'a> {
     pub limit: Speed,
 }
 
-/// Limit that ATO runs by. `slowing_m` tells the way in which it slows from the limit in force to that of another.
+/// Limit that ATO runs by. `slowing_m` gives the way in which the train slows from the limit in force to another limit.
 pub fn limit_ahead(
     place: TrainPosition<'_>,
     codes: &[SpeedCode],

@@ -24,7 +24,7 @@ pub struct BrakeState {
 pub struct Demand {
     /// The service brake is asked for, and the train must slow.
     pub holds: bool,
-    /// The speed is one at which a deceleration is to be measured: not close to what the train is braked to.
+    /// A deceleration can be measured: the speed is not close to the one that the train is braked to.
     pub measurable: bool,
 }
 
@@ -57,7 +57,7 @@ impl BrakeProof {
         if self.effect_changes.update(now, differs, delay) {
             self.effective = proved;
         }
-        // Nor does it make a train that is at its limit faster.
+        // Nor does such a pulse make a train that is at its limit count as faster.
         let measurable = self.measurable.update(now, demand.measurable, delay);
         let waited = (self.demanded).update(now, demand.holds, ms(config.brake_proof_ms));
         BrakeState {

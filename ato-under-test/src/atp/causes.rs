@@ -37,8 +37,8 @@ impl Atp {
         }
     }
 
-    /// The code, or none, permits no motion; nor does a switched-off mode, in which a welded emergency brake relay
-    /// must not leave the train without any brake.
+    /// No motion is permitted: by the code, without a code, or in mode off, where a welded emergency brake relay must
+    /// not leave the train without any brake.
     pub(super) fn must_stand(&self) -> bool {
         (self.by_code() || self.sequence.mode() == Mode::Off) && self.limit == Speed::ZERO
     }

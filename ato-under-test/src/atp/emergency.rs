@@ -32,7 +32,7 @@ pub struct BrakeInputs {
 pub struct EmergencyBrake {
     cause: EbCause,
     acknowledge: Edge,
-    /// Acknowledged at standstill, when the last pulse was not long enough ago: it counts as long as it is given.
+    /// Acknowledged at standstill, too soon after the last pulse: the acknowledgement counts as long as it is given.
     awaits_stillness: bool,
 }
 
@@ -94,7 +94,7 @@ impl EmergencyBrake {
         .find_map(|(holds, cause)| holds.then_some(cause))
     }
 
-    /// Applies it for a cause that is over at once, and is acknowledged all the same.
+    /// Applies the brake for a cause that is over at once, and is acknowledged all the same.
     pub fn latch(&mut self, cause: EbCause) {
         if matches!(self.cause, EbCause::None | EbCause::NotReleased) {
             self.cause = cause;

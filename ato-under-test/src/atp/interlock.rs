@@ -25,7 +25,7 @@ pub struct Interlock {
 }
 
 impl Interlock {
-    /// One scan: whether something holds the train, or its brake line is open, and the notch of the controller. For 300 ms
+    /// One scan. `held`: something holds the train; `open`: its brake line is open; `controller`: its notch. For 300 ms
     /// after the brake is released the line may still be open: that alone does not latch the interlock.
     pub fn step(&mut self, now: Instant, held: bool, open: bool, controller: i8) {
         let stays_open = self.open.update(now, open && !held, LINE_FOLLOWS);

@@ -141,7 +141,7 @@ impl JogGuard {
         self.back_m.unwrap_or_default()
     }
 
-    /// ATO orders backward and may not.
+    /// ATO orders a jog backward that is not permitted.
     pub fn refuses(&self) -> bool {
         self.refused
     }

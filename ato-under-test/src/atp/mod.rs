@@ -259,8 +259,8 @@ impl Atp {
         };
         let wrong_way = self.jog.step(now, jog_inputs, config, log);
         let allowed_m = config.tacho.rollback_m + self.jog.back_m();
-        // The sum begins anew when a jog's permission ends, when the train stands with its brake applied or after a jog, and
-        // when an automatic run begins.
+        // Rollback is summed up anew when a jog's permission ends, when the train stands with its brake applied or
+        // after a jog, and when an automatic run begins.
         let stopped = still && (self.brake.applied() || self.jog.back_m() > 0.0);
         let from_zero = self.jog.ended || stopped || self.sequence.begins();
         let chatters = self.reverser.chatters();

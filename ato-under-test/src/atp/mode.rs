@@ -1,20 +1,20 @@
 //! Operating modes and the automatic-mode sequence [S2 §3.1]: conditions → Automatic → Automatic
 //! Run, with the reason for every refusal.
 //!
-//! When ATO has failed in a run, or TCMS no longer lets it run (permission taken back, link lost, a brake
-//! not released), the service brake stops the train first: there may be no driver. Then there is no
-//! Automatic until that is acknowledged or the mode switch has left its automatic positions.
+//! When ATO has failed in a run, or TCMS no longer lets it run (permission taken back, link lost, a brake not
+//! released), the service brake stops the train first: there may be no driver. Then there is no Automatic until the
+//! failure is acknowledged or the mode switch has left its automatic positions.
 //!
-//! A driverless train waits for a new departure, or for the start button, after each run, after an emergency brake and after
-//! a power-up: a departure that is still given began the run before, and who acknowledges a brake does not send the train
-//! off. It departs once its doors have been served.
-//! A departure is new if it was heard withheld before: neither the first that is heard nor one that is heard again
-//! after silence says when it was given. One that is given on the way, while the emergency brake is applied, or before such a failure
-//! is acknowledged, is not: it was given to a train that may not go, and has to be given again.
+//! After each run, emergency brake and power-up, a driverless train waits for a new departure or the start button: a
+//! departure that is still given began the run before, and acknowledging a brake does not send the train off. It
+//! departs once its doors have been served.
+//! A departure is new only if it was heard withheld before: neither the first one heard nor one heard again after
+//! silence tells when it was given. A departure given on the way, while the emergency brake is applied, or before such
+//! a failure is acknowledged, is not new either: that train could not go, and departure has to be given again.
 //!
-//! An emergency brake line that others open ends a run at once, and bars the next while it is open. The service brake stops
-//! the train, whether the line is closed again or not, and a driverless one waits for a new departure. So it is when a
-//! door or the cab ends a run in motion, as TCMS reads it, too.
+//! When others than the unit open the EB train line, a run ends at once, and the next is barred while the line is open.
+//! The service brake stops the train, whether the line is closed again or not, and a driverless train waits for a new
+//! departure. So it is when an open door or an inactive cab, also as TCMS reads them, ends a run in motion.
 
 use protocol::Instant;
 use protocol::event::Event;
@@ -61,7 +61,7 @@ pub struct ModeInputs {
     pub acknowledge: bool,
     /// The train stands at the end of its run.
     pub arrived: bool,
-    /// A section began: what was authorised was a run through the one before.
+    /// A section began: the run that was authorised led through the section before.
     pub relocated: bool,
     /// The train stands away from the stop point, and ATO has given the stop point up.
     pub gave_up: bool,
@@ -82,7 +82,7 @@ pub struct ModeSequence {
     began: bool,
     /// Departure was heard withheld, and not given since.
     withheld: bool,
-    /// Refusal that ended a run and is not acknowledged, of [`KEPT`].
+    /// Refusals of [`KEPT`] that ended a run and are not acknowledged.
     failed: Refusals,
     /// The next run needs a departure of its own.
     departs_anew: bool,
@@ -97,7 +97,7 @@ impl ModeSequence {
         self.refusals
     }
 
-    /// The line has ended a run on the way: the train is stopped.
+    /// The line, a door or the cab has ended a run: the service brake stops the train.
     pub fn stops(&self) -> bool {
         self.stops
     }
@@ -140,8 +140,8 @@ impl ModeSequence {
         self.refusals.set(Refusals::NO_DEPARTURE, !inputs.departure);
         let turned = core::mem::replace(&mut self.switch, inputs.switch) != inputs.switch;
         let stands = !inputs.lacking.contains(Refusals::NOT_STANDSTILL);
-        // A driver who turns the switch at rest has to authorise the next run: one position departs by a button, the
-        // other without.
+        // A driver who turns the switch at rest has to authorise the next run: in one of its positions a button
+        // departs, in the other none is needed.
         inputs.arrived |= inputs.relocated || turned && stands;
         let next = next(self.mode, &inputs, departing);
         if pressed && next != Mode::AutomaticRun {
@@ -164,10 +164,10 @@ impl ModeSequence {
         }
     }
 
-    /// Latches what ends a run, and gives it up.
+    /// Latches the refusals that end a run, and clears them when they are acknowledged.
     fn keep_failure(&mut self, inputs: &ModeInputs) {
         let acknowledged = self.acknowledge.rises(inputs.acknowledge);
-        // A train that is held departs by what is given when it may go: who releases it does not send it off.
+        // A departure given while the train is held is not new: whoever releases the train does not send it off.
         let held = inputs
             .lacking
             .intersects(Refusals::EB_APPLIED | Refusals::NOT_STANDSTILL)
@@ -202,7 +202,7 @@ impl ModeSequence {
         }
     }
 
-    /// A run that the line ends, or in motion a door or the cab: the train is stopped, and does not go on by itself.
+    /// Stops a train whose run is ended by the line, or in motion by a door or the cab; it does not go on by itself.
     fn stop_after_end(&mut self, now: Instant, inputs: &ModeInputs, log: &mut EventLog) {
         let moves = inputs.lacking.contains(Refusals::NOT_STANDSTILL);
         let lost = moves && inputs.lacking.intersects(STOPS);
@@ -210,7 +210,7 @@ impl ModeSequence {
             self.departs_anew = true;
             self.stops = true;
         }
-        // The emergency brake of a train that moves logs what it follows.
+        // The emergency brake of a moving train logs its cause itself.
         let braked = inputs.line_fell && moves;
         if self.mode == Mode::AutomaticRun && inputs.line_open && !braked {
             log.push(now, Event::LineOpened, i32::from(!inputs.line_fell));
@@ -223,7 +223,7 @@ impl ModeSequence {
         self.began
     }
 
-    /// ATO has failed in a run, or could not go on with it, and it is not acknowledged.
+    /// ATO has failed in a run, or could not go on with it, and that is not acknowledged.
     pub fn failed(&self) -> bool {
         !self.failed.is_empty()
     }

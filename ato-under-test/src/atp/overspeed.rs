@@ -3,9 +3,9 @@
 //! The service brake brings the train back under the limit by itself and releases there; when it
 //! does not slow the train (`brake_proof`), or the speed passes the emergency margin, the emergency brake follows.
 //!
-//! Margins are of limits above zero. Under a stop (code 0, absolute stop, no code, or mode off) alarm and service
+//! Margins apply to limits above zero. Under a stop (code 0, absolute stop, no code, or mode off) alarm and service
 //! brake come as soon as the train does what no standing train does, and the service brake is held until a limit above
-//! zero lets it run.
+//! zero lets the train run.
 
 use protocol::config::{OverspeedConfig, UnitConfig};
 use protocol::event::Event;
@@ -20,7 +20,7 @@ use crate::timer::{Edge, OnDelay, ms};
 pub struct SupervisedMotion {
     pub speed: Speed,
     pub limit: Speed,
-    /// The limit is zero because the code, or none, says so, or the mode is off.
+    /// The limit is zero by the code, without a code, or because the mode is off.
     pub stop: bool,
     pub standstill: bool,
     /// The train does what no standing train does

@@ -1,9 +1,9 @@
 //! Stop and proceed: without a code the train is stopped, and the driver may then go on slowly.
 //!
-//! The driver acknowledges it at standstill by a brake notch, which is a new act: one that has been held since the train ran,
-//! or since it had a code, acknowledges nothing. From then on a low limit holds, and a warning sounds again
-//! and again, until a code is there, or nobody drives by hand any more. An absolute stop is no lack of a code: nobody
-//! proceeds under one.
+//! The driver acknowledges the stop at standstill by a brake notch, which is a new act: a notch that has been held
+//! since the train ran, or since it had a code, acknowledges nothing. From then on a low limit holds, and a warning
+//! sounds again and again, until a code is there, or nobody drives by hand any more. An absolute stop is no lack of a
+//! code: nobody proceeds under one.
 
 use protocol::config::StopAndProceedConfig;
 use protocol::event::Event;
@@ -15,7 +15,7 @@ use crate::timer::{Edge, ms};
 /// Inputs of stop and proceed in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct ProceedInputs {
-    /// The code counts, and there is none.
+    /// The mode is one in which the speed code counts, and there is no code.
     pub without_code: bool,
     /// The mode switch leaves driving to the driver.
     pub by_driver: bool,
@@ -26,7 +26,7 @@ pub struct ProceedInputs {
 
 #[derive(Clone, Debug, Default)]
 pub struct StopAndProceed {
-    /// Since when, and the limit.
+    /// Time of the acknowledgement, and the limit since then; `None` = the driver may not proceed.
     proceeds: Option<(Instant, Speed)>,
     brakes: Edge,
     pub warns: bool,

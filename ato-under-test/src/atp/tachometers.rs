@@ -13,11 +13,11 @@ use crate::timer::{Burst, OnDelay, ms};
 
 /// A channel slower than this beside a turning one counts as dead rather than as different.
 const DEAD_BELOW: Speed = Speed::from_kmh(1.0);
-/// Scans with an impossible jump within [`NOISE_SPAN`] that make a channel noisy: more than one spurious
-/// pulse can make. Beside the first ones after standing it stands out for less than 50 ms: for as long as
-/// one pulse more in so short a window is a jump, and until the pulse after that.
+/// Scans with an impossible jump within [`NOISE_SPAN`] that make a channel noisy: more than one spurious pulse can
+/// make. Beside the first pulses after standstill, a spurious one shows for less than 50 ms: for as long as one pulse
+/// more in so short a window is a jump, and until the pulse after that.
 const NOISE_SCANS: u32 = 6;
-/// Span in which they are counted.
+/// Span in which scans with a jump are counted.
 const NOISE_SPAN: Duration = Duration::from_ms(1000);
 
 #[derive(Clone, Debug)]
@@ -35,7 +35,7 @@ pub struct Tachometers {
     last_pulse: Instant,
     /// Way by each channel at a speed that counts as standing, since the wheels last stood still, m.
     crept_m: [f64; 2],
-    /// The greater change of speed that no adhesion explains, m/s².
+    /// The greater of the channels' changes of speed that adhesion does not explain, m/s²; `None` = both roll.
     pub loose_mps2: Option<f64>,
     /// Way by each channel in this scan, m, backward negative.
     pub ways_m: [f64; 2],
@@ -86,7 +86,7 @@ impl Tachometers {
         self.farther = farther;
     }
 
-    /// Sets the way that a pulse stands for, m, of a train that stands.
+    /// Sets the way that a pulse stands for, m, while the train stands.
     pub fn set_pulse(&mut self, pulse_m: f64) {
         self.meters
             .iter_mut()
@@ -123,7 +123,7 @@ impl Tachometers {
             }
         }
         self.compare(now, inputs, config, log);
-        // By channel 1, by channel 2 when only that turns.
+        // Channel 1 counts the distance, or channel 2 when it alone turns.
         let first_dead = self.meters[0].speed < DEAD_BELOW && self.meters[1].speed > DEAD_BELOW;
         self.distance_channel = usize::from(first_dead);
         let silent = inputs.pulses.iter().all(|pulses| pulses.count == 0);
@@ -180,13 +180,13 @@ impl Tachometers {
         self.faulty = faulty;
     }
 
-    /// The greater of the two.
+    /// The greater of the two channels' speeds.
     fn measured(&self) -> Speed {
         let greater = self.meters[0].speed.max(self.meters[1].speed);
         Speed::from_mps(greater.mps() * (1.0 + self.farther) * (1.0 + self.credible.clock_fast))
     }
 
-    /// The safe speed: the greater of the two, or what the train may still have where they are not believed.
+    /// The safe speed: the greater of the two, or the speed that the train may still have where they are not believed.
     pub fn speed(&self) -> Speed {
         self.measured()
             .max(self.credible.doubted().unwrap_or(Speed::ZERO))
@@ -202,7 +202,7 @@ impl Tachometers {
         self.faulty || self.credible.doubted().is_some()
     }
 
-    /// The train does what no standing one does: it is faster, or creeps farther without a stop.
+    /// The train moves: it is faster than a standing one can be, or creeps farther without a stop.
     pub fn moves(&self, config: &UnitConfig) -> bool {
         let far = |way_m: &f64| libm::fabs(*way_m) > config.tacho.creep_m;
         self.speed().kmh() > config.tacho.standstill_kmh || self.crept_m.iter().any(far)

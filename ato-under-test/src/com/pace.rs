@@ -1,7 +1,7 @@
 //! The unit's clock beside TCMS's: TCMS sends one frame in each cycle of the link and counts them.
 //!
-//! Only a fast clock is reported, after two comparisons in a row: frames that were held up come all at once, as by a
-//! slow clock.
+//! Only a fast clock is reported, after two comparisons in a row: frames that were held up come all at once, as they do
+//! when the unit's clock is slow.
 
 use protocol::{CYCLE, Duration, Instant};
 
@@ -13,7 +13,7 @@ const GAP: Duration = Duration::from_ms(150);
 /// Counts from one frame to the next, beyond which the counter has jumped.
 const MOST_COUNTS: u8 = 3;
 
-/// Compares from frame to frame.
+/// Compares the unit's clock with TCMS's from frame to frame.
 #[derive(Debug, Default)]
 pub struct Pace {
     began: Option<Instant>,
@@ -24,7 +24,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// A frame whose alive counter has moved on by `counts`.
+    /// Counts a frame whose alive counter has moved on by `counts`.
     pub fn count(&mut self, now: Instant, counts: u8) {
         let in_time = now.since(self.last) <= GAP && counts <= MOST_COUNTS;
         self.last = now;

@@ -15,7 +15,7 @@ pub enum Port {
     /// To a tester alone: frames of any other channel than [`Channel::Ptu`] are rejected here, so that no
     /// laptop can play the train.
     Maintenance,
-    /// The loop in the track, of which the TWC antenna hears samples: TWC alone, and nothing is sent there.
+    /// The loop in the track, of which the TWC antenna hears samples: it carries TWC alone, and nothing is sent there.
     Loop,
 }
 
@@ -24,7 +24,7 @@ pub enum Port {
 pub struct Ports {
     /// By number of the [`Port`].
     links: [Link; 3],
-    /// Where a tester was heard last: it is spoken to there.
+    /// Port at which a tester was heard last, and at which it is answered.
     pub tester_at: Port,
     /// Bytes to be sent on the maintenance port.
     to_maintenance: Vec<u8>,
@@ -70,7 +70,7 @@ impl Ports {
         }
     }
 
-    /// A scan begins: what was not taken of the last one's frames is lost, as on a line without a listener.
+    /// Begins a scan: frames of the last scan that nobody took are lost, as on a line without a listener.
     pub fn begin_scan(&mut self) {
         self.to_maintenance.clear();
     }

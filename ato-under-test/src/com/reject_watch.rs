@@ -29,7 +29,7 @@ impl RejectWatch {
         }
     }
 
-    /// A frame was lost in a modem or line driver before it could be rejected, or says what cannot be.
+    /// Counts a frame that a modem or line driver lost before it could be rejected, or whose content is impossible.
     pub fn count_lost(&mut self, channel: Channel) {
         self.lost[channel as usize] += 1;
     }

@@ -38,8 +38,8 @@ impl TcmsLink {
         }
     }
 
-    /// Takes a frame; whether it makes sense. One that says what no train can do is as good as lost: what
-    /// was said before stands, until the link is given up.
+    /// Takes a frame; returns whether it makes sense. A frame that says what no train can do counts as lost: the frame
+    /// before stands, until the link is given up.
     pub fn take(&mut self, now: Instant, frame: TcmsToAtc) -> bool {
         if !EFFORT.contains(&frame.effort) || load_kg(&frame) > self.most_load_kg {
             return false;

@@ -1,10 +1,10 @@
 //! Turn-back with change of cabs [S4].
 //!
-//! Ordered where [`Cabs::turn_back`] is allowed, the unit holds the train and asks TCMS for the change of cabs. TCMS
-//! drops this cab's head control relay, the only one that counts, and picks up the other's: the unit goes to mode off,
-//! which applies its emergency brake. The cab that gets its relay back while the switch is at driverless takes the
-//! train over: it holds it until station data of the section that leaves from there have come, with no departure given
-//! in them, so that the departure that follows is one for this cab.
+//! On a turn-back order ([`Cabs::turn_back`]) the unit holds the train and asks TCMS for the change of cabs. TCMS drops
+//! this cab's head control relay and picks up the other cab's: the unit goes to mode off, which applies its emergency
+//! brake. The cab whose relay picks up while the mode switch is at driverless takes the train over and holds it:
+//! station data of the section that leaves from there must come without a departure first, so that the departure that
+//! follows is meant for this cab.
 
 use protocol::event::{Event, RELAY_DROPPED};
 use protocol::message::OrderState;
@@ -41,7 +41,7 @@ pub struct CabInputs {
     pub standstill: bool,
     /// An automatic run is under way.
     pub running: bool,
-    /// Station of valid station data that are those of a section's beginning.
+    /// Station of valid station data, if they are for the beginning of a section.
     pub departs_from: Option<u16>,
     pub departure: bool,
 }
@@ -100,7 +100,7 @@ impl Cabs {
         }
     }
 
-    /// Station data lead on from where the train was given up, and its departure is still to come.
+    /// Station data are for a section from where the train was given up, and departure is still to come.
     fn may_leave(&self, inputs: &CabInputs) -> bool {
         let here = |station| self.given_up_at.is_none_or(|at| at == station);
         inputs.departs_from.is_some_and(here) && !inputs.departure
@@ -163,7 +163,7 @@ mod tests {
         departure: false,
     };
 
-    /// Stages after the given inputs, 50 ms each, from the end of a stage on that a train comes to by itself.
+    /// State after the given inputs, 50 ms each, with a cab that begins in this stage.
     fn after(stage: Stage, inputs: &[CabInputs]) -> OrderState {
         let mut cabs = Cabs {
             stage,

@@ -29,7 +29,7 @@ enum Stage {
 pub struct StablingInputs {
     /// The mode switch is at driverless; `None` = the inputs are lost.
     pub driverless: Option<bool>,
-    /// The last self-test is over, and what failed of it.
+    /// Result of the last self-test: what failed of it; `None` until it is over.
     pub tested: Option<SelfTest>,
     pub departure: bool,
     /// An automatic run is under way.
@@ -77,7 +77,7 @@ impl Stabling {
             Stage::PutAway if taken => self.wake_up(),
             Stage::Waking if !self.wants_test => {
                 let Some(failed) = inputs.tested else { return };
-                // The departure of before may still be given; one that follows is for the woken train.
+                // A departure given before the wake-up may still stand: the woken train waits until it is withdrawn.
                 if failed.is_empty() && inputs.departure && !taken {
                     return;
                 }
@@ -104,12 +104,12 @@ impl Stabling {
         self.asleep() || self.stage == Stage::Failed
     }
 
-    /// Only a wake-up makes something of it.
+    /// The train is in a state in which a wake-up has an effect.
     pub fn can_wake(&self) -> bool {
         matches!(self.stage, Stage::PutAway | Stage::Failed)
     }
 
-    /// State of the order; `None` = the train is awake, and none of these concerns it.
+    /// State of the order; `None` = the train is awake, and neither put-away nor wake-up concerns it.
     pub fn state(&self) -> Option<OrderState> {
         match self.stage {
             Stage::Awake => None,

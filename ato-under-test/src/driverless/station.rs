@@ -11,12 +11,12 @@
 //! | closing, reopening | open | departure is withdrawn: what holds the train is for passengers, too |
 //! | closing | reopening | not proved closed in time, and not for the last time |
 //! | closing | obstructed | not proved closed in time, for the last time |
-//! | reopening | closing | after its time |
+//! | reopening | closing | after its time, or the enable is gone |
 //! | obstructed | open | departure is withdrawn |
 //! | obstructed | closing | a person acknowledges |
 //!
-//! It orders doors to open only on sides that ATP enables; without an enable what is open is to be closed, and stays so.
-//! ATP lets that order through while all that is open is on sides that it enables; what is open elsewhere somebody closes.
+//! Doors are ordered to open only on sides that ATP enables; without an enable, doors that have closed stay closed. ATP
+//! passes the order on while all open doors are on enabled sides; a person closes doors that are open elsewhere.
 
 use protocol::config::DriverlessConfig;
 use protocol::event::Event;

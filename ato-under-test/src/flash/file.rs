@@ -30,7 +30,7 @@ impl FileFlash {
         let cannot = |why: &dyn core::fmt::Display| {
             format!("cannot use {} as a unit's memory: {why}", path.display())
         };
-        // A pipe would be waited for.
+        // To open a pipe would wait for its other end.
         if let Ok(about) = std::fs::metadata(path)
             && !about.is_file()
         {
@@ -86,7 +86,7 @@ impl FileFlash {
     }
 }
 
-/// Takes all its room on the disk at once. What was not made whole is made empty again.
+/// Makes an erased flash, with all its room on the disk at once. A file that cannot be made whole is emptied again.
 fn make(file: &mut File) -> io::Result<()> {
     let made = file
         .write_all(&vec![ERASED; BYTES])
@@ -96,7 +96,7 @@ fn make(file: &mut File) -> io::Result<()> {
     })
 }
 
-/// Within a block of the device.
+/// Checks that the bytes lie within a block of the device.
 fn check(block: usize, offset: usize, bytes: usize) -> Result<(), FlashError> {
     let within = block < BLOCKS && offset + bytes <= BLOCK_BYTES;
     within.then_some(()).ok_or(FlashError)

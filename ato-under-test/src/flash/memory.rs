@@ -22,11 +22,11 @@ use crate::kernel::{EventLog, RunRecord};
 const EVENT_BLOCKS: usize = 64;
 /// Entries stored in a scan: 160 bytes, and the header of a block.
 const PER_SCAN: usize = 4;
-/// Times that are stored in a power-up: more would push the events out.
+/// Greatest number of testers' times that are stored in a power-up: more would push the events out.
 const CLOCKS: u8 = 32;
-/// The years 2000 to 2100, both included, ms since 1970: others are of a tester whose own clock is not set.
+/// The years 2000 to 2100, both included, ms since 1970: a tester that sends another time has not set its own clock.
 const UTC_MS: core::ops::Range<u64> = 946_684_800_000..4_133_980_800_000;
-/// Numbers looked at in a cycle when damaged ones are passed over.
+/// Most entries looked at in a cycle while damaged ones are passed over.
 const LOOKED_AT: u32 = 512;
 
 const _: () = {
@@ -100,7 +100,7 @@ impl Memory {
         core::mem::replace(&mut self.device, Box::new(RamFlash::default()))
     }
 
-    /// Stores what is new, as much as a scan may; true if the device fails with it.
+    /// Stores what is new, as much as a scan may; true if the device fails in doing so.
     pub fn step(&mut self, log: &EventLog, record: &RunRecord) -> bool {
         self.store_new(log, record).is_err() && self.rings.take().is_some()
     }
@@ -133,7 +133,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Each block of events has the time again, because the one that had it may be erased.
+    /// Stores the time again in each block of events, because the block that has it may be erased.
     fn store_clock_in_new_block(&mut self) -> Result<(), FlashError> {
         let next = self
             .rings
@@ -151,7 +151,7 @@ impl Memory {
     /// # Errors
     /// The time is out of range, too many were sent, or it could not be stored.
     pub fn set_clock(&mut self, now: Instant, told: SetClock) -> Result<(), SetClockError> {
-        // However many were sent, one at most half as uncertain as the best is stored: at most 17 more.
+        // Beyond that number a time is stored only if it is at most half as uncertain as the best: at most 17 more.
         let best = self.clock.map_or(u16::MAX, |clock| clock.uncertainty_ms);
         let is_too_many = self.clocks >= CLOCKS && told.uncertainty_ms >= best.div_ceil(2);
         if !UTC_MS.contains(&told.utc_ms) || is_too_many {
@@ -167,7 +167,7 @@ impl Memory {
         };
         self.clocks = self.clocks.saturating_add(1);
         let stored = self.store(StoreKind::Events, &clock);
-        // Written again in each block: the best one, of equals the last.
+        // The best time is written again in each block; of equally good ones the last.
         if clock.uncertainty_ms <= best {
             self.clock = Some(clock);
         }
@@ -202,7 +202,7 @@ impl Memory {
         false
     }
 
-    /// The last of these events that is stored, of the entries looked at in a cycle.
+    /// The last stored one of these events, if it is among the entries that a cycle looks at.
     pub fn last_of(&self, events: &[Event]) -> Option<Event> {
         let ring = self.ring(StoreKind::Events)?;
         let oldest = ring.oldest().max(ring.next().saturating_sub(LOOKED_AT));

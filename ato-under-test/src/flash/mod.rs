@@ -26,9 +26,8 @@ pub const BLOCKS: usize = 256;
 /// A byte that is erased: programming clears bits of it.
 pub const ERASED: u8 = 0xFF;
 
-/// A flash memory of [`BLOCKS`] erase blocks of [`BLOCK_BYTES`]. Erasing sets all bytes of a block to
-/// [`ERASED`]; programming can only clear bits. Power may fail within either: what is then in the bytes not yet
-/// reached is what was there before.
+/// A flash memory of [`BLOCKS`] erase blocks of [`BLOCK_BYTES`]. Erasing sets all bytes of a block to [`ERASED`];
+/// programming can only clear bits. Power may fail during either: the bytes not yet reached then keep their values.
 pub trait BlockDevice: fmt::Debug + Send {
     /// Erases a block.
     ///

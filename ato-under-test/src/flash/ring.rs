@@ -1,9 +1,8 @@
 //! A log ring over erase blocks.
 //!
-//! Blocks are filled in turn and erased in turn, so no block is erased more than once more often than
-//! another. The number of a block in the order of use, its **turn**, stands in its header; entries have a fixed
-//! size, so turn and place give an entry's **sequence number**, which goes on over power-ups and is never
-//! reused:
+//! Blocks are filled in turn and erased in turn, so their numbers of erasures differ by one at most. The number of a
+//! block in the order of use, its **turn**, stands in its header; entries have a fixed size, so turn and place give an
+//! entry's **sequence number**, which goes on over power-ups and is never reused:
 //!
 //! ```text
 //! block   header: magic, version, kind, slot size, turn, CRC | slot 0 | slot 1 | … | slot 100
@@ -19,7 +18,7 @@ use protocol::frame::fcs;
 
 use super::{BLOCK_BYTES, BlockDevice, ERASED, FlashError};
 
-/// A block of a ring begins with it.
+/// First bytes of each block of a ring.
 pub const MAGIC: [u8; 4] = *b"ATOF";
 const VERSION: u8 = 1;
 const HEADER_BYTES: usize = 16;
@@ -32,7 +31,7 @@ pub const SLOTS: u32 = ((BLOCK_BYTES - HEADER_BYTES) / SLOT_BYTES) as u32;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stored {
     pub sequence: u32,
-    /// The power-up that it was written in, from 1.
+    /// Number of the power-up in which the entry was written, from 1.
     pub power_up: u32,
     /// Content as the writer put it in; what the writer left out is [`ERASED`].
     pub content: [u8; CONTENT_BYTES],
@@ -41,7 +40,7 @@ pub struct Stored {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
     Empty,
-    /// Something that does not check.
+    /// An entry whose CRC or sequence number is wrong.
     Damaged,
     Entry(Stored),
 }
@@ -92,7 +91,7 @@ impl LogRing {
         let Some(newest) = ring.turns.iter().flatten().max().copied() else {
             return Ok(ring);
         };
-        // After the last slot that is not empty: an entry that was cut off has used its number.
+        // The next entry follows the last slot that is not empty: an entry that was cut off has used its number.
         let mut used = 0;
         for slot in 0..SLOTS {
             if ring.slot(device, newest * SLOTS + slot)? != Slot::Empty {
@@ -105,8 +104,8 @@ impl LogRing {
         Ok(ring)
     }
 
-    /// Turns too old to belong to the present lap are of a block that was to be erased next, or of a device that
-    /// was put together from two.
+    /// Forgets turns too old to belong to the present lap: they are of a block that was to be erased next, or of a
+    /// device that was put together from two.
     fn forget_strays(&mut self) {
         let Some(newest) = self.turns.iter().flatten().max().copied() else {
             return;

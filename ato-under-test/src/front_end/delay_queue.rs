@@ -22,7 +22,7 @@ impl<T> Default for DelayQueue<T> {
 }
 
 impl<T> DelayQueue<T> {
-    /// Lets one wait until `due`.
+    /// Lets a thing wait until `due`.
     pub fn push(&mut self, due: Instant, thing: T) {
         if self.waiting.len() == MOST {
             self.waiting.pop_front();
@@ -30,7 +30,7 @@ impl<T> DelayQueue<T> {
         self.waiting.push_back((due, thing));
     }
 
-    /// The next that is due by now, in the order they went in.
+    /// The next thing that is due by now, in the order they went in.
     pub fn pop(&mut self, now: Instant) -> Option<T> {
         let (due, _) = self.waiting.front()?;
         if *due > now {

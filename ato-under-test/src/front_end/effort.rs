@@ -8,7 +8,7 @@ use protocol::{CYCLE, Duration};
 /// Longest time an effort can be held back, cycles: 5 s.
 const LATEST_CYCLES: usize = 100;
 
-/// The processor's output.
+/// Output of ATO's processor to TCMS.
 #[derive(Clone, Debug, Default)]
 pub struct EffortOutput {
     held_back: VecDeque<i16>,

@@ -178,9 +178,9 @@ impl FrontEnd {
         }
     }
 
-    /// Antenna and receiver: the stronger of track and test coil through the antenna; what is built in
-    /// for the self-test enters behind it and is heard alone. What weakens a track's signal `is_wave` has weakened its
-    /// waveform already.
+    /// Antenna and receiver: the stronger of track and test coil through the antenna; the self-test's built-in code
+    /// enters behind the antenna and is heard alone. A track signal that `is_wave` comes from a waveform, which the
+    /// faults that weaken it have weakened already.
     fn receive(
         &mut self,
         (mut track, is_wave): (AntennaSignal, bool),
@@ -276,7 +276,7 @@ pub fn atp_gain(faults: &Faults) -> f32 {
     of(Place::AtpAntenna) * of(Place::AtpReceiver)
 }
 
-/// A signal of the wire.
+/// Signal in the antenna, from the numbers of an input frame.
 fn in_antenna(carrier_hz: u16, rate_chz: u16, level_mv: u16) -> AntennaSignal {
     AntennaSignal {
         carrier_hz: f64::from(carrier_hz),

@@ -22,7 +22,7 @@ struct Contact {
 }
 
 impl OutputStage {
-    /// The contacts for what is wanted.
+    /// States of the contacts for the wanted outputs.
     pub fn drive(&mut self, now: Instant, wanted: Outputs, faults: &Faults) -> Outputs {
         let mut contacts = wanted;
         for (output, contact, place) in [

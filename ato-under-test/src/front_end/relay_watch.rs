@@ -1,4 +1,4 @@
-//! Watches the EB relay through the brake line of the train that it opens.
+//! Watches the EB relay through the EB train line, which the relay opens.
 
 use protocol::event::Event;
 use protocol::message::TrainLines;
@@ -7,7 +7,7 @@ use protocol::{Duration, Instant};
 use crate::kernel::EventLog;
 use crate::timer::OnDelay;
 
-/// Time for which the line is dead before others count as having opened it: a contact that bounces does not [default].
+/// Time for which the line is dead before others count as having opened it: a contact bounces for less [default].
 const FALLS: Duration = Duration::from_ms(50);
 
 /// The line must die with the relay, and live with it as long as it is fed: a button, the master controller,
@@ -17,9 +17,9 @@ pub struct RelayWatch {
     welded: OnDelay,
     open: OnDelay,
     due: OnDelay,
-    /// The line must be energised: the relay is, and the line is fed, for as long as it may take to follow.
+    /// The line must be energised by now: for as long as it may take to follow, the relay is, and the line is fed.
     pub line_due: bool,
-    /// The line was due since the relay was energised.
+    /// Since the relay was energised, the line has been energised when it was due.
     followed: bool,
     fell: OnDelay,
     /// The line has followed the relay, which is energised still, and is dead now.

@@ -34,7 +34,7 @@ impl PulseSensor {
         let before = self.last_count.replace(count).unwrap_or(count);
         pulses.count = u32::from(count.wrapping_sub(before));
         self.turned = pulses.count;
-        // What feeds both.
+        // A dead part that feeds both sensors stops each of them.
         let place = match faults.dead(Place::SpeedSensors) {
             true => Place::SpeedSensors,
             false => place,

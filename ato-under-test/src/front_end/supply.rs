@@ -21,7 +21,7 @@ pub enum Supply {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PowerAndClock {
-    /// Without voltage nothing is taken.
+    /// There is no voltage: the unit takes no bytes.
     pub down: bool,
     down_until: Instant,
     last: Instant,

@@ -34,8 +34,8 @@ impl EventLog {
         self.frame = frame;
     }
 
-    /// From here on leaves out what was logged since index `since` with the same parameter; `None` = nothing is left
-    /// out. Two instances of a function that see the same are one event.
+    /// From here on leaves out events logged since index `since` with the same parameter; `None` = nothing is left out.
+    /// What two instances of a function see alike is one event.
     pub fn leave_out_repeats(&mut self, since: Option<u32>) {
         self.once_since = since;
     }

@@ -89,7 +89,7 @@ fn read(scripts: &ScriptFiles, name: &str) -> Result<String, UsageError> {
     let cannot =
         |why: &dyn fmt::Display| UsageError(format!("cannot read {}: {why}", file.display()));
     let about = std::fs::metadata(&file).map_err(|error| cannot(&error))?;
-    // A pipe would be waited for, a device may never end.
+    // Reading a pipe would wait, reading a device may never end.
     if !about.is_file() {
         return Err(cannot(&"it is no regular file"));
     }

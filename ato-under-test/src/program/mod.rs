@@ -118,7 +118,7 @@ pub fn serve(arguments: &Arguments) -> Result<(), Failure> {
         now: Instant::ZERO,
     };
     if arguments.lock_step {
-        // Each run of a seed is the same there.
+        // In lock step each run of a seed is the same.
         return run_in_lock_step(unit, &mut wire);
     }
     let started = RandomState::new().hash_one(arguments.seed);
@@ -146,7 +146,7 @@ fn millivolts(text: &str) -> Result<f32, String> {
 struct OnHarness {
     unit: Unit,
     listener: Option<Listener>,
-    /// Why it hears nothing any more.
+    /// Error for which the unit hears nothing any more.
     deaf: Option<ServeError>,
     /// Time of the next scan since power-up.
     now: Instant,
@@ -177,7 +177,7 @@ impl Served for OnHarness {
     }
 }
 
-/// One scan for each that the tester has sent, and the answer to it at once.
+/// One scan of the unit for each scan of the tester, answered at once.
 fn run_in_lock_step(mut unit: OnHarness, wire: &mut Wire) -> Result<(), Failure> {
     let mut received = Vec::with_capacity(1024);
     let mut to_send = Vec::with_capacity(1024);

@@ -1,5 +1,5 @@
 //! All that the program tells: where the unit is on standard output, everything else on standard error.
-//! Text that others wrote acts on no terminal here.
+//! Control characters in text that others wrote reach no terminal.
 
 use std::io::{self, ErrorKind, Write};
 

@@ -1,8 +1,8 @@
 //! Debouncing of marker pulses: the contact of TRA that closes more than once for one marker.
 //!
-//! The same marker again within the debounce time is the same edge. No line has two markers of one number so close
-//! that a train hears both within [`MarkerConfig::bounce_ms`]: a pulse later than the debounce time, but within
-//! that, is TRA's, and no marker out of order. The first edge gives the position.
+//! The same marker again within the debounce time is the same edge. No line has two markers of one number so close that
+//! a train hears both within [`MarkerConfig::bounce_ms`]: a later pulse within that time is TRA's bounce, and no marker
+//! out of order. The first edge gives the position.
 
 use protocol::config::MarkerConfig;
 use protocol::event::Event;
@@ -30,7 +30,7 @@ struct Contact {
 }
 
 impl Debounce {
-    /// One scan: the pulse, if it is a marker's first edge. Unless it `works`, every edge counts.
+    /// One scan: returns the pulse if it is a marker's first edge. Unless the debouncing `works`, every edge counts.
     pub fn take(
         &mut self,
         now: Instant,
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
     use crate::for_tests::{logged, sg100};
 
-    /// Edges as (time in ms, marker), those that count, and the parameters of what is blamed on TRA.
+    /// Edges as (time in ms, marker): the edges that count, and the parameters of the events that blame TRA.
     fn counted(edges: &[(u64, u8)]) -> (Vec<(u64, u8)>, Vec<i32>) {
         let config = sg100().marker;
         let (mut debounce, mut log) = (Debounce::default(), EventLog::default());

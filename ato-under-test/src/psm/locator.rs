@@ -1,11 +1,10 @@
 //! Position in the section: distance run from the departure, corrected at markers.
 //!
-//! Markers correct the position ([`super::marker_check`]) and calibrate the wheel ([`super::wheel`]). One
-//! that must have come by now and has not leaves the position unsure: from there on
-//! [`Locator::ahead_m`] grows, the distance by which the train may be further than it seems. ATO stops by
-//! the most advanced position that can be believed, so that a train without markers stops short
-//! rather than beyond the platform. So it does after a marker that came too early to be believed. Doors are enabled
-//! only where the last marker and the way from the one before agree on the stop point.
+//! Markers correct the position ([`super::marker_check`]) and calibrate the wheel ([`super::wheel`]). An overdue marker
+//! leaves the position unsure: from there on [`Locator::ahead_m`] grows, the distance by which the train may be further
+//! than it seems. ATO stops by the most advanced position that can be believed, so that a train without markers, or
+//! after a marker that came too early to be believed, stops short rather than beyond the platform. Doors are enabled
+//! only where the last marker and the way from the marker before agree on the stop point.
 
 mod agreement;
 mod stop_place;
@@ -53,24 +52,24 @@ pub struct Locator {
     unsure_since_m: Option<f64>,
     /// Distance by which a marker that was not believed came early, m.
     early_m: f64,
-    /// Position by the way from the marker before, less the place of the last one, m, beyond what the wheels may be
-    /// wrong on that way; 0 where they slid, or where no marker was before.
+    /// Position by the way from the marker before, minus the place of the last marker, m, reduced by what the wheels
+    /// may be wrong on that way; 0 where they slid, or where no marker was before.
     by_way_m: f64,
     /// The last markers agree with each other and not with one that was believed before.
     contradicted: bool,
-    /// The stop point was reached under the unit's supervision: what follows it is known.
+    /// The train has run under the unit's supervision: the section that follows the stop point is known.
     placed: bool,
     /// The section that ended where this one begins, if the train stopped there.
     came_from: Option<Section>,
     /// Ways between believed markers of this section.
     ways: Ways,
-    /// Wheels of another diameter were keyed in since the last believed marker: this way was measured with both.
+    /// Another wheel diameter was keyed in since the last believed marker: this way was measured with both diameters.
     rescaled: bool,
     holds_ways: bool,
     /// Markers are held against the way: nothing is wrong with that.
     holds_markers: bool,
     wheel_reported: bool,
-    /// Share by which the wheels run farther than they tell, as markers proved before others contradicted them.
+    /// Share by which the wheels run farther than they tell: markers proved it before later markers contradicted them.
     proved_farther: f64,
     /// Way that the marker of this scan ends, if it was believed and the wheels rolled.
     pub span: Option<MarkerSpan>,
@@ -119,7 +118,7 @@ impl Locator {
         }
     }
 
-    /// Sets the way that a pulse stands for, m: other wheels, of which nothing is known yet.
+    /// Sets the way per pulse, m, of other wheels, whose calibration begins anew.
     pub fn set_pulse(&mut self, pulse_m: f64) {
         self.odometer.set_pulse(pulse_m);
         self.wheel = self.wheel.of_other_wheels(self.config.wheel_spread);
@@ -129,7 +128,7 @@ impl Locator {
         self.rescaled = true;
     }
 
-    /// Begins a new section at a departure loop; whether one begins.
+    /// Begins a new section at a departure loop; returns whether one began.
     pub fn locate(&mut self, data: &TwcWayside, line: &Line, standstill: bool) -> bool {
         let Some(section) = line.section(data.section) else {
             return false;
@@ -237,7 +236,7 @@ impl Locator {
         let place = self.section.as_ref().and_then(|s| place_m(s, marker));
         let Some(place_m) = place else { return };
         for missing in self.fix.marker + 1..marker {
-            // The one before may have been heard and not believed.
+            // A marker that was heard and not believed is not missing.
             if self.pending.is_none_or(|d| d.marker != missing) {
                 log.push(now, Event::MarkerMissing, i32::from(missing));
             }
@@ -329,7 +328,7 @@ impl Locator {
         self.fix.place_m + self.wheels().run_m(odometer_m)
     }
 
-    /// Wheels have slid: the distance run that they did not count, m.
+    /// Adds a distance run on sliding wheels, which they did not count, m.
     pub fn slide(&mut self, distance_m: f64) {
         self.slid_m += distance_m;
     }
@@ -337,7 +336,7 @@ impl Locator {
     fn wheels(&self) -> Wheels {
         Wheels {
             scale: 1.0 + self.wheel.correction(),
-            // 4σ: a marker that is not believed costs more than one that is.
+            // 4σ: a good marker that is not believed costs more than a displaced one that is.
             uncertainty: 2.0 * self.wheel.uncertainty(),
             slid_m: self.slid_m,
         }

@@ -7,8 +7,8 @@
 use protocol::config::MarkerConfig;
 use protocol::line::Section;
 
-/// Share of the distance by which wheels of another size than the configured one may be wrong, so that two
-/// detections still agree [default]: a wheel changed without telling the unit, with something to spare.
+/// Share of the distance by which wheels may differ from the configured size for two detections still to agree
+/// [default]: a wheel changed without telling the unit, with something to spare.
 const WRONG_WHEEL: f64 = 0.15;
 /// Distance for which a detection away from its place is remembered, m [default].
 const REMEMBERED_M: f64 = 600.0;
@@ -40,7 +40,7 @@ pub struct MarkerDetection {
 pub struct Wheels {
     /// Distance run over the odometer's.
     pub scale: f64,
-    /// Share of the distance run by which that may be wrong.
+    /// Share of the distance run by which `scale` may be wrong.
     pub uncertainty: f64,
     /// Distance run on sliding wheels, m.
     pub slid_m: f64,
@@ -59,7 +59,7 @@ pub enum MarkerCheck {
     Accepted,
     /// The marker is out of turn: it has been passed, or lies at another marker's place.
     OutOfOrder,
-    /// Away from its place by this, m, position ahead positive.
+    /// Distance of the marker from its place by the odometer, m; positive when it came late.
     Away(f64),
 }
 
@@ -77,7 +77,7 @@ pub fn window_m(fix: &PositionFix, run_m: f64, wheels: &Wheels, config: &MarkerC
 /// The detection that was away from its place before this one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PendingDetection {
-    /// The detection; none since the fix.
+    /// `None`: since the fix no detection was away from its place.
     pub detection: Option<MarkerDetection>,
     /// A marker is overdue: even the fix may have been wrong.
     pub unsure: bool,
@@ -136,7 +136,7 @@ pub fn further_m(
     }
 }
 
-/// Two detections in order and as far apart as their places.
+/// Whether two detections are in order and as far apart as their places.
 fn agree(
     section: &Section,
     first: MarkerDetection,
@@ -173,7 +173,7 @@ mod tests {
         slid_m: 0.0,
     };
 
-    /// What is made of a marker after one that was believed to be at a place, from which the way is counted.
+    /// Judgement of a marker after another was believed at a place, from which the way is counted.
     fn judged(
         section: &Section,
         (place_m, marker): (f64, u8),
@@ -197,7 +197,7 @@ mod tests {
         }
     }
 
-    /// After PSM2 of section 61 (741.53 m): marker, position by the wheel, what is made of it.
+    /// After PSM2 of section 61 (741.53 m): marker, position by the wheel, and how the marker is judged.
     #[test]
     fn a_marker_is_believed_near_its_place_and_in_its_turn() {
         let section = line8().section(61).unwrap();
@@ -244,7 +244,7 @@ mod tests {
         ));
     }
 
-    /// PSM1 and PSM2 heard in order after PSM3 was believed, and in one that lies 600 m back.
+    /// PSM1 and PSM2 heard in order after PSM3 was believed, and PSM2 more than 600 m after PSM1.
     #[test]
     fn a_pair_takes_no_fix_back_and_is_not_remembered_for_ever() {
         let section = line8().section(61).unwrap();

@@ -19,7 +19,7 @@ use crate::timer::Edge;
 const COMPARED_FROM: Speed = Speed::from_kmh(10.0);
 /// Way over which the ratio is taken, m [default].
 const WINDOW_M: f64 = 100.0;
-/// Difference between the shares of two windows that are the same, share [default].
+/// Greatest difference between the shares of two windows that agree, share [default].
 const SAME: f64 = 0.01;
 /// Shortest way between two markers that tells a share, m [default].
 const SHORTEST_M: f64 = 50.0;
@@ -31,10 +31,10 @@ const MARKERS: usize = 4;
 /// Motion of both wheels in one scan.
 #[derive(Clone, Copy, Debug)]
 pub struct WheelMotion {
-    /// Way by each in this scan, m, backward negative.
+    /// Way by each tachometer in this scan, m, backward negative.
     pub ways_m: [f64; 2],
     pub speeds: [Speed; 2],
-    /// The greater change of speed of both wheels that no adhesion explains, m/s²; `None` = they roll.
+    /// The greater of both wheels' changes of speed that adhesion does not explain, m/s²; `None` = both roll.
     pub loose_mps2: Option<f64>,
 }
 
@@ -112,7 +112,7 @@ impl TachoCompare {
             self.differs = true;
             log.push(now, Event::TachoRatio, hundredths_of_percent(share));
         }
-        // Half of it, so that a share at the limit is reported once.
+        // Half of the limit, so that a share that stays near the limit is reported once.
         self.differs &= size > config.share / 2.0;
     }
 
@@ -142,8 +142,8 @@ impl TachoCompare {
         }
     }
 
-    /// One that tells another way than the track has, and another than its neighbour: both alike have the
-    /// diameter the unit is set to wrong, which the calibration finds.
+    /// Reports a tachometer that tells another way than the track has and than its neighbour. Where both tell the same
+    /// wrong way, the unit is set to a wrong diameter, which the calibration finds.
     fn judge_span(
         &mut self,
         now: Instant,

@@ -10,7 +10,7 @@ const MOST: usize = 4;
 struct Way {
     /// Way by the track over way by the wheels, less 1.
     share: f64,
-    /// Share by which its ends may be off.
+    /// Share of the way by which displaced ends may falsify it.
     off: f64,
 }
 
@@ -38,7 +38,7 @@ impl Ways {
         self.count += 1;
     }
 
-    /// Ways are there to be held against each other.
+    /// There are at least two ways to be held against each other.
     pub fn compared(&self) -> bool {
         self.count > 1
     }
@@ -61,7 +61,7 @@ impl Ways {
 mod tests {
     use super::*;
 
-    /// Ways of section 61 from its begin on, by wheels that tell `wheel` of the way, with PSM2 and PSM3 off by so many metres.
+    /// Ways of section 61 from its begin on, measured `wheel` times as long, with PSM2 and PSM3 off by these metres.
     fn contradicts(wheel: f64, second_m: f64, third_m: f64) -> bool {
         let mut ways = Ways::default();
         ways.note(304.03, 304.03 * wheel, 5.0);

@@ -65,7 +65,7 @@ impl WheelCalibration {
         (libm::fabs(self.share) > self.bound).then_some(self.share)
     }
 
-    /// Share of the distance by which it may still be wrong (2σ, and what the bound keeps back).
+    /// Share of the corrected distance by which it may still be wrong (2σ, and what the bound keeps back).
     pub fn uncertainty(&self) -> f64 {
         let kept_back = libm::fabs(self.share - self.correction());
         2.0 * (libm::sqrt(self.variance + CREEP * CREEP) + kept_back)

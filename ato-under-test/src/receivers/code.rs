@@ -1,9 +1,9 @@
 //! The receiver of ATP speed codes: a carrier that is keyed on and off at the code rate, or shifted up and down at it
 //! (`shifted.rs`).
 //!
-//! The last values of the envelope, a window, are brought to the phase of the carrier, so that two codes at once add up and
-//! noise has no mean. They are judged as a whole and in three halves that overlap: a rate counts only if each has it, with
-//! one phase, so that neither noise nor a change of the code is taken for a code that was not sent.
+//! The window, the last values of the envelope, is turned to the phase of the carrier: two codes at once then add up,
+//! and noise has a mean of zero. The window is judged as a whole and in three halves that overlap: a rate counts only
+//! if each has it, with one phase, so that neither noise nor a change of the code passes for a code.
 
 use core::f32::consts::{PI, SQRT_2, TAU};
 
@@ -12,10 +12,10 @@ use protocol::config::UnitConfig;
 use super::downmix::{Downmix, Phasor};
 use super::window::{mean_of, on_share, power_around};
 
-/// Rate of the envelope, about, Hz: fast enough for the third harmonic of the fastest code rate; and its pass band.
+/// Nominal rate of the envelope, Hz, fast enough for the third harmonic of the fastest code; and its pass band, Hz.
 const ENVELOPE_HZ: f32 = 600.0;
 const PASS_HZ: f32 = 160.0;
-/// Both are those of codes from this rate on, Hz; a table whose fastest code is slower has as much less.
+/// Code rate from which on these two hold, Hz; for a table whose fastest code is slower they are lower in proportion.
 const FAST_HZ: f32 = 20.0;
 /// Most values of a window.
 pub(super) const MOST: usize = 400;
@@ -25,31 +25,31 @@ const SHARE_OF_DETECTION: f32 = 0.75;
 /// Shortest and longest window, s.
 const SHORTEST_S: f32 = 0.2;
 const LONGEST_S: f32 = 0.62;
-/// Periods of the slowest code that a window holds at least, if that is within this share of the time of detection.
+/// A window holds at least this many periods of the slowest code, if they fit into this share of the time of detection.
 const PERIODS: f32 = 1.98;
 const SHARE_OF_SLOW: f32 = 0.88;
-/// Of noise alone, the weaker half of all values has this share of the mean power.
+/// In noise alone, the weaker half of the values has this mean power, over the mean power of all values.
 const WEAKER_HALF: f32 = 1.0 - core::f32::consts::LN_2;
-/// Least share of the keying's power that the rate's fundamental has, of the window and of each half. A square wave has
-/// 0.81; two codes spliced in the window, or noise, have less.
+/// Least share of the keying's power at the fundamental of the rate, over the whole window. A square wave has 0.81; two
+/// codes spliced in the window, or noise, have less.
 pub(super) const LEAST_SHARE: f32 = 0.55;
 /// Share of a square wave's power at its fundamental, and how near to it a code must come: less is another shape, as of a
 /// jump of the phase.
 pub(super) const OF_SQUARE_WAVE: f32 = 8.0 / (PI * PI);
 const NEARLY: f32 = 0.88;
-/// Most power in quadrature of one code alone, over that of the keying.
+/// Greatest power in quadrature to the carrier that one code alone has, over the power of its keying.
 const BESIDE: f32 = 0.12;
-/// With less noise than this, over the power of the keying, each break of a rate shows.
+/// Below this noise, over the power of the keying, each break of a rate shows.
 const CLEAR: f32 = 0.04;
-/// Least depth of keying: amplitude of the fundamental over the mean. On and off by half has 1.27.
+/// Least depth of keying: amplitude of the fundamental over the mean. A carrier on for half of the time has 1.27.
 const LEAST_DEPTH: f32 = 0.6;
-/// Share of the time that a carrier of a code is on.
+/// Shares of the time for which the carrier of a code may be on.
 const SHARES_ON: core::ops::RangeInclusive<f32> = 0.25..=0.75;
-/// Most depth, beside a weaker code in opposite phase; more is no carrier between its sidebands.
+/// Greatest depth: a code beside a weaker one in opposite phase. More is two sidebands without a carrier between them.
 const MOST_DEPTH: f32 = 2.7;
 /// An envelope with less depth than this is a carrier without a code.
 const FLAT: f32 = 0.15;
-/// What is received.
+/// What a receiver has to receive: its carrier, levels and code rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reception {
     /// Carrier, Hz.
@@ -60,7 +60,7 @@ pub struct Reception {
     pub apart_db: f32,
     /// Time for which a code must be there until it is decoded, s.
     pub detect_s: f32,
-    /// By how much the code shifts the carrier, Hz; 0 = it keys it.
+    /// By how much the code shifts the carrier, Hz; 0 = the code keys the carrier on and off.
     pub shift_hz: f32,
     /// Slowest and fastest rate of the table, Hz.
     pub rates_hz: (f32, f32),
@@ -94,7 +94,7 @@ impl Reception {
     }
 }
 
-/// What the receiver makes of its window.
+/// Code that the receiver finds in its window, or carrier without a code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heard {
     /// Frequency of the carrier, Hz.
@@ -105,13 +105,13 @@ pub struct Heard {
     pub level_mv: f32,
     /// Share of the keying's power at the fundamental of the rate, 0 to 1.
     pub validity: f32,
-    /// Level over the noise within 160 Hz of the carrier, dB; of a carrier without a code it is not known.
+    /// Level over the noise within 160 Hz of the carrier, dB; `None` for a carrier without a code.
     pub snr_db: Option<f32>,
     /// The newest half of the window has the code as strong as the oldest.
     pub goes_on: bool,
-    /// There is too little noise to hide a break.
+    /// There is too little noise to hide a break of the code.
     pub is_clear: bool,
-    /// Of a slow code: time that the window shows it to be there already, s, and time for which it may be over.
+    /// Of a slow code: time for which it has been there already, s, and time for which it may be over.
     pub spell_s: Option<[f32; 2]>,
 }
 
@@ -120,9 +120,9 @@ pub struct Heard {
 pub struct CodeReceiver {
     pub(super) downmix: Downmix,
     pub(super) reception: Reception,
-    /// Ratio of the powers of two codes of which the stronger counts.
+    /// Least ratio of the powers of two codes at which the stronger counts.
     pub(super) apart: f32,
-    /// Share of the steps of rates that fit a usual window.
+    /// Step between the rates that are searched, over the step for a window of usual length; 1 or less.
     pub(super) finer: f32,
     pub(super) line: [Phasor; MOST],
     pub(super) window: usize,
@@ -130,13 +130,13 @@ pub struct CodeReceiver {
     pub(super) filled: usize,
 }
 
-/// The window on the carrier's phase.
+/// The window, turned to the frequency and phase of its carrier.
 pub(super) struct OnCarrier {
     pub(super) values: [f32; MOST],
-    /// Power of the noise on either side of that phase, mV²: the least that quadrature and pauses tell, since a jump of the
-    /// carrier's phase is in the quadrature, too.
+    /// Power of the noise in one phase, along or across the carrier, mV²: the lesser of what quadrature and pauses
+    /// show, since a jump of the carrier's phase adds to the quadrature, too.
     pub(super) noise: f32,
-    /// Power in quadrature beyond that noise, mV²: of a jump of the carrier's phase, or of another code.
+    /// Power in quadrature beyond the noise, mV²: of a jump of the carrier's phase, or of another code.
     pub(super) beside: f32,
     pub(super) offset_hz: f32,
 }
@@ -156,7 +156,7 @@ impl Tone {
 }
 
 impl CodeReceiver {
-    /// For samples of this rate, Hz.
+    /// Receiver of samples at this rate, Hz.
     pub fn new(reception: Reception, sample_hz: f32) -> Self {
         let slow = (reception.rates_hz.1 / FAST_HZ).min(1.0);
         let (envelope_hz, pass_hz) = (slow * ENVELOPE_HZ, slow * PASS_HZ);
@@ -179,7 +179,7 @@ impl CodeReceiver {
         }
     }
 
-    /// Time that the window holds, s: whoever hears a code has had it for about so long.
+    /// Length of the window, s: a code that is heard has been there for about so long.
     pub fn window_s(&self) -> f32 {
         self.window as f32 / self.downmix.envelope_hz
     }
@@ -222,12 +222,12 @@ impl CodeReceiver {
         (heard.level_mv >= self.reception.level_min_mv).then_some(heard)
     }
 
-    /// The window holds codes that need a long one.
+    /// The table has codes so slow that the window is longer than usual.
     fn is_slow(&self) -> bool {
         self.finer < 1.0
     }
 
-    /// The code of a carrier that is not flat, with its mean and its power around that.
+    /// The code of a keyed carrier; `mean` is that of the envelope, `power` is the power around this mean.
     fn keyed(&self, on: &OnCarrier, (mean, power): (f32, f32), rates_hz: &[f32]) -> Option<Heard> {
         let (tone, rate_hz, [is_whole, goes_on]) = self.rate(on, mean, rates_hz)?;
         let share = tone.power() / power;
@@ -249,7 +249,7 @@ impl CodeReceiver {
                 let square = mean_of(&on.values[..self.window], |value| value * value);
                 (square - on.noise).max(0.0) / share_on
             }
-            // The mean is of both codes: of one that is on for half of the time the fundamental tells.
+            // The mean is of both codes: the fundamental of the stronger one, on for half of the time, tells its level.
             _ if is_whole
                 && tone.amplitude < MOST_DEPTH * mean
                 && self.is_second_code(on, mean, tone, power, rates_hz) =>
@@ -292,7 +292,7 @@ impl CodeReceiver {
             turned = turned.plus(value.times_conj(before));
         }
         let coarse = turned.angle();
-        // What is left of the offset is seen from one half of the window to the other.
+        // The rest of the carrier's offset turns the phase from one half of the window to the other.
         let mut halves = [Phasor::default(); 2];
         let (mut at, turn) = (Phasor::at(0.0), Phasor::at(-coarse));
         for (place, value) in self.values().enumerate() {
@@ -324,8 +324,8 @@ impl CodeReceiver {
         on
     }
 
-    /// Power of what the pauses hold, half of it on either side of a phase, mV²: the quarter of the window with the least is
-    /// their weaker half.
+    /// Power of the noise in the pauses, in one phase, mV²: half of the power in both. The weakest quarter of the
+    /// window is the weaker half of the pauses.
     fn noise_of_pauses(&self) -> f32 {
         let mut powers = [0.0f32; MOST];
         for (power, value) in powers.iter_mut().zip(&self.line[..self.window]) {

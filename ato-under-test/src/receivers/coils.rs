@@ -14,35 +14,35 @@ use super::marker::MarkerReceiver;
 use super::sensor::SensorInput;
 
 const SAMPLE_HZ: f32 = COIL_SAMPLE_HZ as f32;
-/// Coils and lines.
+/// Number of coils, lines of speed sensors included.
 const COILS: usize = Coil::ALL.len();
 /// Coils of antennas; the others are lines of speed sensors.
 const IN_ANTENNAS: [Coil; 3] = [Coil::AtpAntenna, Coil::TwcAntenna, Coil::MarkerAntenna];
-/// Scans without samples after which a coil has been silent for long, and its receiver rests.
+/// Scans without samples after which a coil's receiver rests.
 const RESTS_AFTER: u8 = 100;
-/// Time of its window that a code may lack when it is heard, ms: the window's ends count for little.
+/// Part of its window that a code need not fill to be heard, ms: the window's ends count for little.
 const HEARD_EARLY_MS: u64 = 150;
-/// The same of a slow code, and of one that shifts its carrier, as a share of the window, %.
+/// Part of its window that a slow code, or a code that shifts its carrier, need not fill to be heard, %.
 const HEARD_EARLY_PERCENT: u64 = 38;
-/// Time for which a code may be over when it is heard still: where noise may hide its end, ms; and where it does not go on
-/// through the window, a part of the window more.
+/// Time for which a code may be over when it is still heard: where noise may hide its end, ms; and where the code does
+/// not go on through the window, one tenth of the window more.
 const HEARD_LATE_MS: u64 = 40;
 const HEARD_LATE_PART: u64 = 10;
-/// Window for which these hold, ms.
+/// Longest window for which these times hold as they are, ms.
 const LONG_MS: u64 = 620;
-/// Scans for which the last code stands in for one that noise hides.
+/// Scans for which the last code stands in for a code that noise hides.
 const STANDS_IN: u8 = 3;
-/// Weakest level of TWC and of a marker, as a share of its configured one.
+/// Weakest level of TWC and of a marker that is heard, as a share of its configured level.
 const WEAKEST: f64 = 0.1;
 
-/// What the receivers make of a scan.
+/// Result of the receivers in one scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled {
     /// The input frame with code, pulses and marker as received.
     pub input: IoInput,
     /// Time for which the code was there already when it was heard.
     pub heard_for: Duration,
-    /// Time for which it may be over already.
+    /// Time for which the code may be over already.
     pub lags: Duration,
     /// Time since the last marker was passed.
     pub marker_age: Duration,
@@ -57,16 +57,16 @@ pub struct Coils {
     pub twc_bytes: Vec<u8>,
     markers: MarkerReceiver,
     sensors: [SensorInput; 2],
-    /// Line A of each in this scan: both lines of a sample are looked at together.
+    /// Line A of each speed sensor in this scan, kept for its line B: both lines of a sample are looked at together.
     lines_a: [[i16; COIL_SAMPLES]; 2],
-    /// Last marker, how many there were, and samples since the last one.
+    /// Last marker passed, count of markers, and samples since the last one.
     marker: (u8, u8, f32),
-    /// Parts of this scan that came of each coil, and scans since the last.
+    /// For each coil: parts of its samples that have come in this scan, and scans since the last ones.
     parts: [u8; COILS],
     silent: [u8; COILS],
-    /// What injected faults leave of the level between rail and ATP receiver.
+    /// Factor of the level that injected faults leave between rail and ATP receiver.
     atp_gain: f32,
-    /// Antennas are heard by sound, and not in frames.
+    /// The antennas' samples come as sound, not in frames.
     by_sound: bool,
     /// Codes shift their carrier.
     shifts: bool,
@@ -77,7 +77,7 @@ pub struct Coils {
 }
 
 impl Coils {
-    /// For a unit of this configuration; silent.
+    /// Coils of a unit of this configuration, in which nothing was heard yet.
     pub fn new(config: &UnitConfig) -> Self {
         let codes = config.carriers_hz().into_iter().map(|carrier_hz| {
             let reception = Reception::of(config, carrier_hz);
@@ -106,8 +106,8 @@ impl Coils {
         }
     }
 
-    /// What injected faults leave of the level between rail and ATP receiver from now on, and whether the weaker of two
-    /// codes is heard.
+    /// Sets the factor of the level that injected faults leave between rail and ATP receiver, and whether the weaker of
+    /// two codes is heard.
     pub fn suffer(&mut self, gain: f32, unselective: bool) {
         self.atp_gain = gain;
         self.unselective = unselective;
@@ -129,7 +129,7 @@ impl Coils {
         self.silent[place] = 0;
     }
 
-    /// Takes a scan of what is heard by sound: in the ATP antenna, and in those of TWC and markers together.
+    /// Takes a scan of sound: of the ATP antenna, and of the TWC and marker antennas together.
     pub fn hear(&mut self, heard: &[[i16; COIL_SAMPLES]; 2]) {
         self.by_sound = true;
         self.marker.2 += COIL_SAMPLES as f32;
@@ -148,7 +148,7 @@ impl Coils {
         }
     }
 
-    /// The end of a scan, with its input frame: what was received in it, if samples came of late.
+    /// Ends a scan: its input frame with what was received in it; `None` if no samples came of late.
     pub fn end_scan(&mut self, mut input: IoInput) -> Option<Sampled> {
         for (place, coil) in Coil::ALL.iter().enumerate() {
             let by_sound = self.by_sound && IN_ANTENNAS.contains(coil);
@@ -173,7 +173,7 @@ impl Coils {
             input.level_mv = whole(heard.level_mv);
             let window_s = (self.codes.first()).map_or(0.0, |(receiver, _)| receiver.window_s());
             let window_ms = (window_s * 1000.0) as u64;
-            // The ends of a window that is longer still are longer, too.
+            // The ends of a longer window are longer in proportion.
             let of_ends = |ms: u64| ms.max(ms * window_ms / LONG_MS);
             let early_ms = match self.shifts || window_ms > LONG_MS {
                 true => window_ms * HEARD_EARLY_PERCENT / 100,
@@ -271,7 +271,7 @@ impl Coils {
         self.lines_a[sensor][from..from + COIL_PART].copy_from_slice(samples);
     }
 
-    /// Both lines of a sensor, when its line B comes.
+    /// Receives both lines of a sensor when its line B comes.
     fn receive_sensor(&mut self, sensor: usize, from: usize, line_b: &[i16; COIL_PART]) {
         let line_a = &self.lines_a[sensor][from..from + COIL_PART];
         for (a, b) in line_a.iter().zip(line_b) {

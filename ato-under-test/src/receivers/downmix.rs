@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use libm::{cosf, sinf};
 
-/// Length of the filter, in values that it gives.
+/// Length of the filter, in values of the envelope.
 const LENGTH: usize = 8;
 /// Most taps of the filter: at 96 000 samples a second a slow code's envelope needs 5 688.
 const MOST_TAPS: usize = 8_192;
@@ -14,7 +14,7 @@ const MOST_TAPS: usize = 8_192;
 pub struct Phasor {
     /// In phase with the local oscillator, mV.
     pub re: f32,
-    /// A quarter turn ahead of it, mV.
+    /// A quarter turn ahead of the local oscillator, mV.
     pub im: f32,
 }
 
@@ -29,7 +29,7 @@ impl Phasor {
         self.re * self.re + self.im * self.im
     }
 
-    /// Product with the conjugate of another: its angle is the one between them.
+    /// Product with the conjugate of another phasor: its angle is the angle between both.
     pub fn times_conj(self, other: Self) -> Self {
         Self {
             re: self.re * other.re + self.im * other.im,
@@ -55,7 +55,7 @@ impl Phasor {
         }
     }
 
-    /// Unit length, at this angle.
+    /// Phasor of unit length at this angle.
     pub fn at(angle: f32) -> Self {
         Self {
             re: cosf(angle),
@@ -81,12 +81,12 @@ pub struct Downmix {
 }
 
 impl Downmix {
-    /// For a carrier in samples of this rate: values at about `envelope_hz`, of what is within `pass_hz` of it.
+    /// For a carrier in samples of this rate: values at about `envelope_hz`, of all within `pass_hz` of the carrier.
     pub fn new(carrier_hz: f32, sample_hz: f32, envelope_hz: f32, pass_hz: f32) -> Self {
         Self::of_length(carrier_hz, sample_hz, envelope_hz, pass_hz, LENGTH)
     }
 
-    /// The same with a filter of so many values.
+    /// Like [`Self::new`], with a filter that is `length` values of the envelope long.
     pub fn of_length(
         carrier_hz: f32,
         sample_hz: f32,
@@ -125,7 +125,7 @@ impl Downmix {
             return None;
         }
         self.left = self.by;
-        // A rotation keeps its length only about.
+        // Rounding errors change the length of a rotated phasor.
         let length = self.oscillator.abs();
         self.oscillator.re /= length;
         self.oscillator.im /= length;

@@ -6,16 +6,16 @@ use protocol::config::TwcConfig;
 
 use super::downmix::{Downmix, Phasor};
 
-/// Values of the complex envelope for each bit, about.
+/// Nominal number of values of the complex envelope for each bit.
 const VALUES_PER_BIT: f32 = 20.0;
 /// Longest bit, values.
 const MOST: usize = 32;
-/// Length of the filter over that of a bit.
+/// Length of the filter, over the length of a bit.
 const FILTER: f32 = 0.4;
-/// Least mean purity of a byte's bits: with that filter noise has 0.41, and its bytes differ by 0.057 (1 σ); a signal at Eb/N0
+/// Least mean purity of a byte's bits: with [`FILTER`] noise has 0.41 (1 σ from byte to byte: 0.057); a signal at Eb/N0
 /// of 8 dB has 0.74, and one byte of 14 less than this.
 const LEAST_PURITY: f32 = 0.68;
-/// Least level of a signal over that of silence: both tones are a little weaker behind the filter.
+/// Least level behind the filter, over the least level in the antenna: the filter weakens both tones a little.
 const BEHIND_FILTER: f32 = 0.95;
 /// Bits of a byte, with start, parity and stop bit.
 const BITS: f32 = 11.0;
@@ -25,16 +25,16 @@ const NUDGE: f32 = 0.25;
 /// The tones and the bit rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tones {
-    /// Middle of the two, Hz.
+    /// Frequency midway between the two tones, Hz.
     pub middle_hz: f32,
-    /// Distance of each from it, Hz; the upper tone is bit 1.
+    /// Distance of each tone from the middle, Hz; the upper tone is bit 1.
     pub apart_hz: f32,
     /// Bits per second.
     pub bit_rate: f32,
 }
 
 impl Tones {
-    /// Those of a unit configuration.
+    /// The tones of a unit configuration.
     pub fn of(twc: &TwcConfig) -> Self {
         Self {
             middle_hz: twc.middle_hz as f32,
@@ -44,14 +44,14 @@ impl Tones {
     }
 }
 
-/// What was received.
+/// A byte that was received, or what was wrong with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Received {
     /// A byte whose parity and stop bit are right.
     Byte(u8),
-    /// One whose parity is wrong.
+    /// A byte whose parity is wrong.
     Parity,
-    /// One without its stop bit.
+    /// A byte without its stop bit.
     Framing,
 }
 
@@ -61,7 +61,7 @@ pub struct Demodulator {
     downmix: Downmix,
     turn: Phasor,
     tone: Phasor,
-    /// What each tone has had of the last bit.
+    /// Each tone's part of the values of the last bit length.
     upper: [Phasor; MOST],
     lower: [Phasor; MOST],
     length: usize,
@@ -69,7 +69,7 @@ pub struct Demodulator {
 }
 
 impl Demodulator {
-    /// For samples of this rate, Hz.
+    /// Demodulator of samples at this rate, Hz.
     pub fn new(tones: Tones, sample_hz: f32) -> Self {
         let envelope_hz = (VALUES_PER_BIT * tones.bit_rate).min(sample_hz);
         let values = libm::roundf(FILTER * envelope_hz / tones.bit_rate) as usize;
@@ -98,7 +98,7 @@ impl Demodulator {
         self.downmix.envelope_hz / bit_rate
     }
 
-    /// Takes a sample, mV; gives what the last bit length was.
+    /// Takes a sample, mV; returns what was heard over the last bit length, for each value of the envelope.
     pub fn take(&mut self, sample_mv: f32) -> Option<BitHeard> {
         let value = self.downmix.take(sample_mv)?;
         self.upper[self.place] = value.times_conj(self.tone);
@@ -130,14 +130,14 @@ impl Demodulator {
     }
 }
 
-/// The last bit length.
+/// What was heard over the last bit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BitHeard {
     /// By how much the upper tone was stronger, −1 to 1.
     pub lean: f32,
-    /// Share of the power within the band that the tones have: 1 of a tone, about 0.4 of noise.
+    /// Share of the power within the band that belongs to the tones: 1 for a tone, about 0.4 for noise.
     pub purity: f32,
-    /// Amplitude of all within the band, mV: of the tones, also while one takes the other's place.
+    /// Amplitude of everything within the band, mV: that of the tones, also while one takes over from the other.
     pub amplitude_mv: f32,
 }
 
@@ -148,11 +148,11 @@ pub struct FskReceiver {
     values_per_bit: f32,
     level_min_mv: f32,
     last: f32,
-    /// The bit that is received next, and the values until its end; none between bytes.
+    /// Number of the bit being received, and values until its end; `None` between bytes.
     bit: Option<(u8, f32)>,
     byte: u8,
     ones: u8,
-    /// Sum of the purity of its bits.
+    /// Sum of the purity of the byte's bits.
     purity: f32,
 }
 
@@ -185,7 +185,7 @@ impl FskReceiver {
             self.last = 1.0;
             return None;
         }
-        // A change of the tone is where the lean is zero: half of the last bit length is of each.
+        // A change of the tone is where the lean is zero: each tone has half of the last bit length there.
         let crossing = (last > 0.0) != (lean > 0.0);
         let since = lean / (lean - last);
         let Some((bit, left)) = &mut self.bit else {

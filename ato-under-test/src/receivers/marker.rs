@@ -1,29 +1,29 @@
 //! The receiver of markers: each has a tone of its own, which swells and fades as the train passes over it.
 //!
-//! A marker is passed where its tone was strongest. Noise moves the strongest value, so the place is that of the top of a
-//! parabola through the logarithms of all values near it: a bell is one exactly.
+//! A marker is passed where its tone was strongest. Noise moves the strongest value, so the place is the top of a
+//! parabola through the logarithms of all values near it: the logarithm of a bell curve is exactly a parabola.
 
 use super::downmix::{Downmix, Phasor};
 
-/// Rate of the envelope, about, Hz, and its pass band: a marker at 100 km/h swells within milliseconds.
+/// Nominal sample rate and pass band of the envelope, Hz: a marker at 100 km/h swells within milliseconds.
 const ENVELOPE_HZ: f32 = 1_500.0;
 const PASS_HZ: f32 = 220.0;
-/// Delay of its filter: half of its eight values.
+/// Delay of the envelope's filter: half of its eight values.
 const DELAY_VALUES: f32 = 4.0;
-/// Values that are kept of a passage; of a slow one each stands for several.
+/// Values that are kept of a passage; in a slow one each stands for several values of the envelope.
 const MOST: usize = 128;
 /// Values above this share of the strongest tell the place.
 const NEAR: f32 = 0.6;
-/// The tone has faded when it was below this share of its strongest value, or of the least level, for this part of the
-/// passage: noise on a slow one crosses any level more than once.
+/// The tone has faded when it was below this share of its strongest value, or of the least level, for the last eighth
+/// of the passage: in a slow passage noise crosses any level more than once.
 const FADED: f32 = 0.35;
 const FADED_FOR: u32 = 8;
-/// By how much the logarithm falls from the top to where [`NEAR`] ends, over that of a bell.
+/// Fall of the logarithm from the top to where [`NEAR`] ends, over the fall of a bell curve there.
 const OF_BELL: core::ops::RangeInclusive<f32> = 0.4..=2.5;
-/// Least level of a marker over the others' at the same time, and over all of its passage: noise is in each of them.
+/// Least ratio of a marker's level to the loudest other tone's at its begin, and over its passage: noise is in all.
 const LEAST_RATIO: f32 = 2.0;
 const LEAST_RATIO_OF_ALL: f32 = 4.0;
-/// Most that a marker's tone is off its own, Hz.
+/// Greatest deviation of a marker's tone from its nominal frequency, Hz.
 const OFF_HZ: f32 = 60.0;
 /// Fewest values of a passage: at 120 km/h a marker has nine.
 const FEWEST: u32 = 6;
@@ -58,21 +58,21 @@ struct Passage {
     strongest: f32,
     values: [f32; MOST],
     length: usize,
-    /// Values of the envelope that each stands for, and the sum of those that do not fill one yet.
+    /// Envelope values that each kept value stands for; sum and number of those that do not fill one yet.
     each: usize,
     sum: (f32, usize),
-    /// Sums of its level and of the loudest other's, and how many.
+    /// Sums of the marker's level and of the loudest other tone's, and the number of values in them.
     own: f32,
     others: f32,
     count: u32,
-    /// Values since the tone was not faded.
+    /// Number of values since the tone was last above the faded level.
     faded: u32,
     /// How far the tone's phase turns from value to value.
     turned: Phasor,
 }
 
 impl MarkerReceiver {
-    /// For tones in samples of this rate, Hz. What is weaker than `level_min_mv`, rms, is silence.
+    /// Receiver of tones in samples at this rate, Hz. What is weaker than `level_min_mv`, rms, is silence.
     pub fn new(tones_hz: [f64; 4], sample_hz: f32, level_min_mv: f32) -> Self {
         Self {
             tones: tones_hz.map(|tone| Downmix::new(tone as f32, sample_hz, ENVELOPE_HZ, PASS_HZ)),
@@ -89,7 +89,7 @@ impl MarkerReceiver {
         for (value, tone) in values.iter_mut().zip(&mut self.tones) {
             *value = tone.take(sample_mv);
         }
-        // All are made of the same samples: either each has a value, or none.
+        // All tones are filtered from the same samples: either each has a value, or none.
         let [Some(_), ..] = values else {
             return None;
         };
@@ -111,7 +111,7 @@ impl MarkerReceiver {
             let is_faded = level < FADED * passage.strongest.max(self.level_min_mv);
             passage.faded = if is_faded { passage.faded + 1 } else { 0 };
             if passage.faded * FADED_FOR <= passage.count {
-                // Noise, which is in each of them, never fades.
+                // Noise, which is in all tones, would never fade.
                 if passage.count > FEWEST && passage.own < LEAST_RATIO * passage.others {
                     self.passage = None;
                 }
@@ -220,7 +220,7 @@ impl Passage {
     }
 }
 
-/// Of y = a + b x + c x², by normal equations with the sums of x⁰ to x⁴ and of y x⁰ to y x²: −b / 2c, and c; a line has none.
+/// Top −b / 2c of y = a + b x + c x², and c, by normal equations: sums of x⁰ to x⁴, y x⁰ to y x²; a line has none.
 fn top_of_parabola([s0, s1, s2, s3, s4]: [f32; 5], [t0, t1, t2]: [f32; 3]) -> Option<(f32, f32)> {
     let determinant = |m: [[f32; 3]; 3]| {
         m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])

@@ -1,6 +1,6 @@
 //! What the unit makes of the waveforms in its coils: speed codes, TWC bytes, markers and pulses, from samples in mV.
 //!
-//! No clock, and no allocation once they are made: the caller passes one sample after the other at a known rate.
+//! Once made they need no clock and no allocation: the caller passes one sample after the other at a known rate.
 
 mod code;
 mod coils;

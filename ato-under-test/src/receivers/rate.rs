@@ -11,13 +11,13 @@ use super::window::{hann, mean_of, power_around, wrapped};
 const LEAST_SHARE_OF_HALF: f32 = 0.4;
 /// Least amplitude of a rate in the whole window and its middle half, over that in the other halves: less has a break.
 const WHOLE: f32 = 0.88;
-/// Periods of a rate in half a window with fewer of which its mean and its tone there are told apart step by step.
+/// With fewer periods of a rate in half a window than this, its mean and its tone there are told apart in steps.
 const FEW_PERIODS: f32 = 1.4;
 const STEPS: usize = 3;
-/// Most that the phase of a code that shifts turns more from the middle of the window on than up to it, rad.
+/// Greatest difference between the turns of the phase of a code that shifts, after and before the window's middle, rad.
 const BENDS: f32 = 0.6;
-/// Least amplitude of a rate in the newest half of the window over that in the oldest, and most that it is off a code's, Hz:
-/// else it has just ended.
+/// Least amplitude of a rate in the newest half of the window over that in the oldest, and greatest deviation from the
+/// rate of a code, Hz: beyond these the code has just ended.
 const GOES_ON: f32 = 0.9;
 const GOES_ON_HZ: f32 = 0.15;
 /// Slowest and fastest rate that is looked for besides those of the table, and the step between them, Hz.
@@ -25,8 +25,8 @@ const RATES_HZ: (f32, f32) = (2.5, 42.0);
 const RATE_STEP_HZ: f32 = 2.0;
 
 impl CodeReceiver {
-    /// The strongest rate, what it is exactly, and whether it goes on through the window without a break, and at its end: of
-    /// the table, or of all others.
+    /// The strongest rate of the table, or else of all others: its tone, what the rate is exactly, and whether it goes
+    /// on through the window without a break, and at the window's end.
     pub(super) fn rate(
         &self,
         on: &OnCarrier,
@@ -52,8 +52,8 @@ impl CodeReceiver {
         Some((tone, rate_hz, lasts))
     }
 
-    /// By how much the code rate is above this one, Hz, from how its phase goes on: judged in three halves that overlap,
-    /// since a jump of the phase looks like another rate, and shows in the middle half.
+    /// By how much the code rate is above that of the tone, Hz, from how its phase goes on: judged in three halves that
+    /// overlap, since a jump of the phase looks like another rate, and shows in the middle half.
     fn offset_of_rate(&self, on: &OnCarrier, whole: Tone) -> Option<(f32, [bool; 2])> {
         let half = self.window / 2;
         let half_s = half as f32 / self.downmix.envelope_hz;
@@ -73,13 +73,13 @@ impl CodeReceiver {
                 return None;
             }
         }
-        // The phases are those at the middle of each half, of the nominal rate's own clock.
+        // The phases are those at the middle of each half, against a clock of the nominal rate.
         let turned = wrapped(halves[2].angle - halves[0].angle);
         let offset_hz = turned / TAU / half_s;
         let least = whole.amplitude.min(halves[1].amplitude);
         let is_whole = least >= WHOLE * halves[0].amplitude.max(halves[2].amplitude);
         let as_strong = halves[2].amplitude >= GOES_ON * halves[0].amplitude;
-        // One rate that becomes another next to it has the rate between them on the whole.
+        // Over the whole window, a rate that changes to its neighbour looks like the rate between them.
         let turns = [0, 1].map(|half| wrapped(halves[half + 1].angle - halves[half].angle));
         let bends = self.reception.shift_hz > 0.0 && wrapped(turns[1] - turns[0]).abs() > BENDS;
         let is_whole = is_whole && !bends;
@@ -87,7 +87,7 @@ impl CodeReceiver {
         Some((offset_hz, [is_whole, goes_on]))
     }
 
-    /// Mean of a part of the window beside a tone.
+    /// Mean of a part of the window, the tone left out.
     fn mean_beside(&self, on: &OnCarrier, tone: Tone, from: usize, to: usize) -> f32 {
         let step = TAU * tone.rate_hz / self.downmix.envelope_hz;
         let (mut at, turn) = (

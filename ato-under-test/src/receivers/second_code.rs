@@ -6,9 +6,9 @@ use super::code::{CodeReceiver, Heard, OF_SQUARE_WAVE, OnCarrier, Tone};
 use super::downmix::Phasor;
 use super::window::{mean_of, power_around};
 
-/// Share of what the stronger code leaves unexplained that a weaker one at another rate has, if that is what it is.
+/// Least share of the power that the stronger code leaves unexplained, which a weaker code at another rate must have.
 const EXPLAINED: f32 = 0.7;
-/// Least share of the keying's power that a second code has which a receiver without selection hears.
+/// Least share of the keying's power that is left for a second code, which a receiver without selection then hears.
 const SECOND: f32 = 0.05;
 /// Power of a code's fundamental over its power on the carrier.
 const OF_CARRIER: f32 = 4.0 / (PI * PI);
@@ -20,7 +20,7 @@ impl CodeReceiver {
             return None;
         }
         let on = self.on_carrier();
-        // Whatever the phase between the two carriers, one of both shows the weaker code.
+        // Whatever the phase between both carriers, the part along the carrier or the envelope shows the weaker code.
         let mut envelope = OnCarrier { ..on };
         for (slot, value) in envelope.values.iter_mut().zip(self.values()) {
             *slot = value.abs();
@@ -72,7 +72,7 @@ impl CodeReceiver {
         })
     }
 
-    /// Whether what a code does not explain of the window is a weaker one at another rate.
+    /// Whether the rest of the window that a code does not explain is a weaker code at another rate.
     pub(super) fn is_second_code(
         &self,
         on: &OnCarrier,
@@ -81,14 +81,14 @@ impl CodeReceiver {
         power: f32,
         table_hz: &[f32],
     ) -> bool {
-        // Nearer than this the two are one peak.
+        // Two rates nearer than this are one peak.
         let apart_hz = 2.0 / self.window_s();
         let second = (table_hz.iter())
             .filter(|rate| (*rate - tone.rate_hz).abs() > apart_hz)
             .map(|rate_hz| self.tone(on, mean, *rate_hz, 0, self.window).power())
             .fold(0.0, f32::max);
         let unexplained = power - on.noise - tone.power() / OF_SQUARE_WAVE;
-        // Its carrier may be in quadrature.
+        // The second code's carrier may be in quadrature.
         (second + OF_CARRIER * on.beside) * self.apart <= tone.power()
             && second / OF_SQUARE_WAVE >= EXPLAINED * unexplained
     }

@@ -21,12 +21,12 @@ pub struct SensorInput {
 struct Line {
     high: bool,
     last_mv: f32,
-    /// Samples since it was zero last.
+    /// Samples since the voltage last rose through zero.
     zero: f32,
 }
 
 impl Line {
-    /// Takes a sample; whether the line has become high, which it was since its last zero.
+    /// Takes a sample; whether the line has become high. Its edge is where the voltage rose through zero.
     fn rises(&mut self, sample_mv: f32) -> bool {
         let last = core::mem::replace(&mut self.last_mv, sample_mv);
         self.zero += 1.0;
@@ -56,7 +56,7 @@ impl SensorInput {
         }
     }
 
-    /// Samples since line B was zero last, at the sample at which it became high.
+    /// Samples from where line B rose through zero to the sample at which it became high.
     pub fn since_b(&self) -> f32 {
         self.b.zero
     }

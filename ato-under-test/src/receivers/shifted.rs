@@ -7,17 +7,17 @@ use super::code::{CodeReceiver, Heard, LEAST_SHARE, MOST, OnCarrier};
 use super::downmix::Phasor;
 use super::window::{mean_of, power_around};
 
-/// Values from one to the other of which the phase turns: over fewer noise turns it, over more a fast code is lost.
+/// Values over which a turn of the phase is measured: over fewer noise turns it, over more a fast code is lost.
 const TURNS_OVER: usize = 6;
 /// Most variation of the level, as a share of its square: another signal beats with the carrier, a keyed one has pauses.
 const MOST_VARIATION: f32 = 0.2;
 /// With less noise than this, over the power of the carrier, each break of a rate shows.
 const CLEAR: f32 = 0.02;
-/// Amplitude of the rate over that of a square wave of the whole shift.
+/// Amplitude of the rate over that of a square wave of the whole shift, within which a signal is a code.
 const DEPTH: core::ops::RangeInclusive<f32> = 0.7..=1.3;
-/// Periods that the window holds of a rate that its edges tell.
+/// A rate with fewer periods than this in the window is told by its edges.
 const SLOW: f32 = 1.5;
-/// A frequency that varies by less of the shift is a carrier without a code.
+/// A carrier whose frequency varies by less than this share of the shift has no code.
 const FLAT: f32 = 0.25;
 
 impl CodeReceiver {

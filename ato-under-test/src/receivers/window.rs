@@ -4,14 +4,14 @@ use core::f32::consts::{PI, TAU};
 
 use super::downmix::Phasor;
 
-/// Mean, over a Hann window, of what `of` makes of the values.
+/// Mean of `of(value)` over all values, weighted by a Hann window.
 pub(super) fn mean_of(values: &[f32], of: impl Fn(f32) -> f32) -> f32 {
     let weighted = values.iter().zip(hann(values.len()));
     let sum: f32 = weighted.map(|(value, w)| of(*value) * w).sum();
     sum * 2.0 / values.len() as f32
 }
 
-/// Power of what varies, mV².
+/// Power of the values around their mean, mV², weighted by a Hann window.
 pub(super) fn power_around(values: &[f32], mean: f32) -> f32 {
     mean_of(values, |value| (value - mean) * (value - mean))
 }

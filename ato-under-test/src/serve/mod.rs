@@ -63,8 +63,8 @@ impl fmt::Display for ServeError {
 
 impl std::error::Error for ServeError {}
 
-/// One scan every 10 ms of the monotonic clock, or so many times that, until `served` ends it; a late scan is made up,
-/// not skipped.
+/// Runs one scan every 10 ms of the monotonic clock, or every `slower` times 10 ms, until `served` ends it; a late scan
+/// is made up, not skipped.
 ///
 /// # Errors
 /// The wire broke.
@@ -90,7 +90,7 @@ pub fn in_real_time(
             backlog = Backlog::default();
             served.reset_connection();
         }
-        // A chunk for each of the scans in which it came.
+        // One chunk for this scan, and one for each scan that is late.
         arrived.clear();
         for _ in 0..=behind.as_us() / SCAN.as_us() {
             match wire.read(&mut chunk)? {
@@ -99,7 +99,7 @@ pub fn in_real_time(
             }
         }
         received.clear();
-        // A computer that held up the tester as well gives the unit no time without inputs.
+        // Where the computer held up the tester as well, the scans shift: the unit has no time without inputs.
         let pause = backlog.share(&arrived, behind, &mut received);
         deadlines.shift(pause.as_us() as i64);
         to_send.clear();

@@ -1,4 +1,4 @@
-//! A serial port that is read by the clock.
+//! A serial port that is read scan by scan.
 
 extern crate std;
 
@@ -11,7 +11,7 @@ use super::platform;
 
 pub use platform::PORT_WAITS;
 
-/// An open serial port of which a read takes what is there. It was opened to wait for [`PORT_WAITS`].
+/// An open serial port whose reads take what is there; it was opened with the time-out [`PORT_WAITS`].
 pub struct SerialEnd(pub Box<dyn SerialPort>);
 
 impl Read for SerialEnd {

@@ -24,8 +24,8 @@ const LATENCY_MS: u32 = 20;
 /// Samples that are to wait here, 40 ms: more than a block of the sound server and a scan together.
 const WAITING: usize = 4 * COIL_SAMPLES;
 
-/// The program that plays on a device, or records from it: two channels of 16 bits through its standard streams. The sound
-/// server holds samples for `latency_ms`. Without a program, the names of those that would do.
+/// The program that plays on a device, or records from it: two channels of 16 bits through its standard streams. The
+/// sound server holds samples for `latency_ms`. If there is no such program, the error names those that would do.
 pub fn carrier(
     plays: bool,
     device: &str,
@@ -70,7 +70,7 @@ pub fn carrier(
     Ok(command)
 }
 
-/// Whether there is such a program.
+/// Whether a folder of `PATH` has this program.
 pub fn is_there(program: &str) -> bool {
     let path = std::env::var_os("PATH").unwrap_or_default();
     std::env::split_paths(&path)
@@ -80,12 +80,12 @@ pub fn is_there(program: &str) -> bool {
 /// Listens at a sound card.
 pub struct Listener {
     child: Child,
-    /// Level that was heard, mV; `None` = the program that carries the sound has ended.
+    /// Samples that were heard, mV; `None` = the program that carries the sound has ended.
     heard: Arc<Mutex<Option<Steady>>>,
 }
 
 impl Listener {
-    /// Listens at a device, a whole sample of which stands for this number of mV.
+    /// Listens at a device whose full-scale sample stands for this number of mV.
     ///
     /// # Errors
     /// Nothing here carries sound.

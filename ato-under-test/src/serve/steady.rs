@@ -1,4 +1,4 @@
-//! Samples from one clock to another: a sound card's second is not this computer's.
+//! Passes samples from one clock to another: a sound card's second is not this computer's.
 
 extern crate std;
 
@@ -7,22 +7,22 @@ use std::vec::Vec;
 /// Two channels at one moment.
 pub type Pair = [f32; 2];
 
-/// Values of the filter between samples, and places between two samples at which it is known.
+/// Length of the filter between samples, in samples, and number of places between two samples for which it is computed.
 pub const TAPS: usize = 32;
 const PLACES: usize = 512;
-/// Greatest difference between two clocks, as a share: what is given differs from what came by no more.
+/// Greatest difference between two clocks, as a share: samples given differ in number from those that came by no more.
 const MOST: f64 = 5e-4;
 /// Weight of the newest block in the mean number of samples that wait: the mean is over about 5 s.
 const FOLLOWS: f64 = 0.002;
-/// Samples that wait longer than this multiple of the aim are passed over.
+/// If more samples wait than this multiple of the aim, the oldest are dropped down to the aim.
 const TOO_MUCH: usize = 4;
 
-/// Takes samples as they come and gives as many as are asked for, a little more or less than came, so that about as many
-/// wait as are aimed at.
+/// Takes samples as they come and gives as many as are asked for, at a slightly adapted rate, so that about `aim`
+/// samples wait.
 pub struct Steady {
     waiting: Vec<Pair>,
     aim: usize,
-    /// Place between the first samples that wait.
+    /// Place of the next value between two samples that wait, 0 to 1.
     at: f64,
     mean: f64,
     flows: bool,
@@ -66,7 +66,7 @@ impl Steady {
         self.waiting.len()
     }
 
-    /// Fills `out`, with silence where nothing waits; what comes after that waits until there is enough again.
+    /// Fills `out`, with silence when too few samples wait; from then on samples wait until there are enough again.
     pub fn take(&mut self, out: &mut [Pair]) {
         out.fill([0.0; 2]);
         self.flows |= self.waiting.len() >= self.aim.max(out.len() + TAPS);

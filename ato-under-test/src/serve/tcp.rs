@@ -16,7 +16,7 @@ use socket2::{SockRef, TcpKeepalive};
 
 /// A client of which no frame was accepted for so long is disconnected.
 const SILENT: Duration = Duration::from_ms(10_000);
-/// A connection on which nothing comes is probed after this time, and as often again.
+/// A connection on which nothing comes is probed after this time, and again each time that it passes.
 const PROBED_AFTER: std::time::Duration = std::time::Duration::from_secs(5);
 /// A second client waits this long before it is accepted: its predecessor's last bytes may still have to be read.
 const HANDS_OVER: Duration = Duration::from_ms(100);
@@ -45,12 +45,12 @@ pub fn check_exposed(address: &str, expose: bool) -> Result<(), String> {
     }
 }
 
-/// The listener and those who came.
+/// The listener and its clients.
 pub struct Server {
     listener: TcpListener,
     client: Option<Client>,
     coming: Vec<SecondClient>,
-    /// Where what is not heard is read to.
+    /// Buffer for bytes that are read and thrown away.
     unheard: Vec<u8>,
 }
 
@@ -59,7 +59,7 @@ struct Client {
     stream: TcpStream,
     address: SocketAddr,
     since: Instant,
-    /// Frames accepted when that last grew, and when.
+    /// Count of accepted frames when it last grew, and the time of that.
     accepted: u64,
     heard_at: Instant,
 }
@@ -74,7 +74,7 @@ struct SecondClient {
 }
 
 impl Server {
-    /// Listens, and tells where.
+    /// Listens at this address; returns with the server the address that the system gave it.
     pub fn listen(address: &str) -> io::Result<(Self, SocketAddr)> {
         let listener = TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
@@ -121,7 +121,7 @@ impl Server {
                 Err(error) => return Err(error),
             };
             stream.set_nonblocking(true)?;
-            // What came while this program stood still may be as old as that.
+            // Bytes that came while this program stood still may be as old as its delay.
             if behind > MAX_DELAY {
                 drain(&mut stream, &mut self.unheard);
             }
@@ -140,7 +140,7 @@ impl Server {
             return false;
         };
         let first = self.coming.remove(place);
-        // What cannot be set on a connection that has broken already shows when it is read.
+        // An option that cannot be set on a broken connection is no error: the next read shows the break.
         let _ = first.stream.set_nodelay(true);
         let keepalive = TcpKeepalive::new()
             .with_time(PROBED_AFTER)
@@ -215,7 +215,7 @@ impl Client {
     }
 }
 
-/// Reads what is there and passes it over, not for ever; false when the other end has closed.
+/// Reads and discards what has come, in a limited number of reads; false when the other end has closed.
 fn drain(stream: &mut TcpStream, into: &mut [u8]) -> bool {
     for _ in 0..64 {
         match stream.read(into) {

@@ -62,7 +62,7 @@ enum FarEnd {
 }
 
 impl Wire {
-    /// Opens it.
+    /// Opens the far end at this place.
     ///
     /// # Errors
     /// The system has no such port, or another program has it.

@@ -10,7 +10,7 @@ use crate::signals::AntennaSignal;
 pub struct Defects {
     /// The board makes no signal and does not answer.
     pub dead: bool,
-    /// Pulses made for one that should be.
+    /// Pulses made for each pulse that should be made.
     pub speed_gain: f64,
     level_gain: f64,
     carrier_offset_hz: f64,
@@ -32,7 +32,7 @@ impl Defects {
         }
     }
 
-    /// The signal that leaves the code generator when this one is asked for.
+    /// The signal that leaves the code generator for the signal asked for.
     pub fn leaves(&self, asked: AntennaSignal) -> AntennaSignal {
         let moved = |value: f64, by: f64| {
             if value > 0.0 {

@@ -48,12 +48,12 @@ impl TestBoard {
         }
     }
 
-    /// Sets the way that a pulse stands for, m, while it makes none.
+    /// Sets the way that a pulse stands for, m, while the board makes none.
     pub fn set_pulse(&mut self, pulse_m: f64) {
         self.metres_per_pulse = pulse_m;
     }
 
-    /// Takes over what is wrong with it in this scan; a dead board makes nothing.
+    /// Takes over the board's injected faults of this scan; a dead board makes no signal.
     pub fn suffer(&mut self, faults: &Faults) {
         self.defects = Defects::of(faults);
         if self.defects.dead {

@@ -25,7 +25,7 @@ struct Sending {
 }
 
 impl TestModem {
-    /// Repeats these data from `now` on; answers to others count no more.
+    /// Repeats these data from `now` on; answers to earlier data count no more.
     pub fn send(&mut self, now: Instant, data: TwcWayside) {
         self.sending = Some(Sending {
             data,

@@ -48,8 +48,8 @@ fn arrives(data: &TwcWayside, section: &Section) -> bool {
     data.station == section.to_station && data.loop_id == section.to_loop
 }
 
-/// The next station is the section's end or, at that, the end of the section that follows. Behind the last one the
-/// track database knows nothing.
+/// The next station is the section's end or, in data of the arrival there, the end of the section that follows. Behind
+/// the line's last section the track database knows nothing.
 fn goes_to(data: &TwcWayside, line: &Line, section: &Section) -> bool {
     if departs(data, section) {
         return data.next_station == section.to_station;

@@ -21,7 +21,7 @@ pub use number::OwnNumber;
 #[derive(Clone, Copy, Debug)]
 pub enum FromWayside {
     Station(StationSender, TwcWayside),
-    /// With the sequence number of their frame.
+    /// Orders, with the sequence number of their frame.
     Orders(u16, TwcOrders),
 }
 
@@ -147,7 +147,7 @@ impl Twc {
         true
     }
 
-    /// One cycle. Between loops nothing is heard: station data last, and silence counts from the next loop on.
+    /// One cycle. Between loops nothing can be heard: station data last, and silence counts from the next loop on.
     pub fn step(&mut self, now: Instant, between_loops: bool, log: &mut EventLog) {
         if between_loops && self.up && self.valid {
             self.heard = self.heard.map(|_| now);
@@ -164,7 +164,7 @@ impl Twc {
         }
     }
 
-    /// The modem is used for a test: what was received counts no more, and its end is no loss.
+    /// The modem is used for a test: what was received counts no more, and the silence after it is no loss.
     pub fn forget(&mut self) {
         self.heard = None;
         self.up = false;

@@ -1,5 +1,5 @@
-//! The unit's own train number: of the configuration until another is keyed in at the cab, which the wayside confirms
-//! by sending data for it.
+//! The unit's own train number: that of the configuration until another is keyed in at the cab. The wayside confirms
+//! the number by sending data for it.
 
 use protocol::Instant;
 use protocol::event::Event;

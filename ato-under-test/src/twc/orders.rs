@@ -1,5 +1,5 @@
-//! Orders of the wayside, checked against the track database as station data are. An order is one when it begins: it is
-//! sent on for as long as the train is over the loop, and is given once.
+//! Orders of the wayside, checked against the track database as station data are. An order counts when it first comes:
+//! the wayside repeats it for as long as the train is over the loop, and means it once.
 
 use protocol::Instant;
 use protocol::config::OrdersConfig;
@@ -11,7 +11,7 @@ use super::{Ordered, TrainNumber, Twc};
 use crate::guards::Guards;
 use crate::kernel::EventLog;
 
-/// Metres of the wire's unit of length.
+/// Unit of length in frames, m.
 const DECIMETRE_M: f64 = 0.1;
 
 impl Twc {

@@ -26,7 +26,7 @@ impl Unit {
     pub(super) fn receive_frames(&mut self, now: Instant, out: &mut Vec<u8>) {
         while let Some((port, Received { header, message })) = self.ports.poll(now) {
             if header.channel == Channel::Ptu && port != self.ports.tester_at {
-                // What was asked at the other port is answered there.
+                // Requests of the other port are answered there first.
                 self.send_replies(now, out);
                 self.ports.tester_at = port;
             }
@@ -78,7 +78,7 @@ impl Unit {
         self.send_replies(now, out);
     }
 
-    /// Takes a scan of what is heard by sound: in the ATP antenna, and in those of TWC and markers together.
+    /// Takes a scan of sound: of the ATP antenna, and of the TWC and marker antennas together.
     pub fn hear(&mut self, heard: &[[i16; COIL_SAMPLES]; 2]) {
         let config = &self.setup.config;
         let new = || Box::new(Coils::new(config));
@@ -256,8 +256,8 @@ impl Unit {
         }
     }
 
-    /// The train proves that its brakes are applied: by TCMS, or by a dead emergency brake line while no TCMS says that
-    /// it does not brake.
+    /// The train proves that its brakes are applied: by TCMS, or by a dead EB train line as long as TCMS does not say
+    /// that the train is not braked.
     pub(super) fn brakes_proved(&self) -> bool {
         let inputs = &self.functions.inputs;
         let line_dead = inputs.alive && !inputs.lines.contains(TrainLines::EB_LOOP);

@@ -243,7 +243,7 @@ impl Unit {
             .front_end
             .scan(now, image, board, built_in, &mut self.faults);
         let Some(mode) = &mut self.test_mode else {
-            // Only start-up feeds a code into the receiver then.
+            // Outside test mode only start-up feeds a code into the receiver.
             self.functions.inputs = self.scanned.tested;
             return;
         };
@@ -301,7 +301,7 @@ impl Unit {
         }
     }
 
-    /// The count of markers goes on: to a tester a count that falls has wrapped, and is of many markers more.
+    /// Leaves test mode. The count of markers goes on: a tester takes a lower count for a wrapped one.
     fn leave_test_mode(&mut self) {
         if let Some(mode) = self.test_mode.take() {
             self.functions

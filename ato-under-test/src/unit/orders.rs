@@ -75,8 +75,8 @@ impl Unit {
             && self.test_mode.is_none()
     }
 
-    /// Takes a wheel diameter that is keyed in: what pulses stand for from now on, and what markers showed of the wheels
-    /// before is over. One that no wheel of the train has is refused.
+    /// Takes a wheel diameter that is keyed in: it sets the way per pulse from now on, and what markers showed of the
+    /// wheels before counts no more. A diameter that no wheel of the train has is refused.
     pub(super) fn take_wheel_entry(&mut self, now: Instant, entry: WheelEntry) {
         let frames = self.setup.config.orders.entry_frames;
         if !self.wheel_entry.hear(now, entry.diameter_01mm, frames) {

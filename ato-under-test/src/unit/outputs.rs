@@ -1,5 +1,5 @@
-//! States of the contacts, and frames to TCMS: those that the functions ask for, and while a tester is armed never
-//! more than lets a train stand.
+//! States of the contacts, and frames to TCMS: as the functions ask, but while a tester is armed never more than lets a
+//! train stand.
 
 use protocol::Instant;
 use protocol::message::{Mode, Outputs};
@@ -8,7 +8,7 @@ use super::Unit;
 use super::functions::Functions;
 
 const DOORS: Outputs = Outputs::DOOR_ENABLE_LEFT.union(Outputs::DOOR_ENABLE_RIGHT);
-/// Any of two instances that asks for one of these gets it.
+/// Outputs that are set if either of two instances asks for them.
 const EITHER: Outputs = Outputs::FSB
     .union(Outputs::POWER_CUT)
     .union(Outputs::ALARM)
@@ -80,7 +80,7 @@ impl Unit {
             self.self_tester.vital_passed() && functions.inputs.alive && self.relay_watch.sound();
         let mut outputs = functions.atp.outputs(healthy);
         outputs.set(Outputs::HOLDING_BRAKE, functions.holds());
-        // ATP lets an order to open go a scan after it was taken back: never both.
+        // ATP drops an order to open one scan after it was taken back: both orders are never given at once.
         let opens = outputs.intersects(Outputs::OPEN_LEFT | Outputs::OPEN_RIGHT);
         let closes = functions.station.closes() && functions.atp.lets_close();
         outputs.set(Outputs::CLOSE_DOORS, closes && !opens);

@@ -1,9 +1,9 @@
 //! Test mode: what the unit does while a tester is armed.
 //!
-//! The functions have a second instance then, a copy made at arming, which has the test signals as its inputs
-//! and is what the tester sees. The first instance goes on with the inputs of train and track alone. It knows
-//! nothing of test signals, so that nothing of them is left when the copy is thrown away. At the outputs the more
-//! restrictive of both counts, and the full service brake is held (`outputs`).
+//! While armed, the functions have a second instance, a copy made at arming, which has the test signals as its inputs
+//! and is what the tester sees. The first instance goes on with the inputs of train and track alone. It knows nothing
+//! of test signals, so that nothing of them is left when the copy is thrown away. At the outputs the more restrictive
+//! of both counts, and the full service brake is held (`outputs`).
 //!
 //! Test mode is for a train that stands. It ends, and the emergency brake is applied, when the train moves, when the
 //! speed code in the rail or the mode switch changes, when the maintenance key is taken, and when the train no longer
@@ -26,12 +26,12 @@ const MOST_MOVED_M: f64 = 0.3;
 const MOVES: Speed = Speed::from_kmh(0.5);
 /// Time for which another code must be in the rail: a scan in which the signal is disturbed is no change.
 const CODE_STEADY: Duration = Duration::from_ms(50);
-/// Time without a proof of applied brakes: one brake takes over from the other, and TCMS tells of it, in less [default].
+/// Longest time without a proof of applied brakes [default]: one brake takes over from another, as TCMS tells, in less.
 const UNPROVED: Duration = Duration::from_ms(1000);
 
 #[derive(Debug)]
 pub struct TestMode {
-    /// Fed with the test signals.
+    /// The functions under test, fed with the test signals.
     pub functions: Functions,
     /// Way since arming by each tachometer, m, backward negative.
     moved_m: [f64; 2],

@@ -41,7 +41,7 @@ pub struct StateReport {
 
 impl StateReport {
     /// One scan with a subscribed tester, and the state at its end with the number of frames received through TWC;
-    /// `changes`: the tester wants changes at once. The age of what a frame sent now shows, in scans.
+    /// `changes`: the tester wants changes at once. Returns, if a frame is due, the age in scans of what it shows.
     pub fn step(
         &mut self,
         (state, twc_received): (&TrainState, u16),

@@ -12,11 +12,11 @@ use crate::procedure::{EventSource, UnitEvent, event_text};
 
 /// Share of the highest target that counts as reached.
 const REACHED: f64 = 0.99;
-/// Rows, 1 s, for which a held target counts as driving at the target.
+/// Number of rows (1 s) without a fall of the target after which the target counts as held.
 const HOLDS_ROWS: usize = 20;
-/// Targets up to here are the approach's own, km/h.
+/// Targets up to this one belong to the approach to the stop point and never count as held, km/h.
 const APPROACH_KMH: f64 = 10.0;
-/// Difference of speeds that is more than how frames round, km/h.
+/// Difference of speeds up to which the rounding in frames may be the cause, km/h.
 const DIFFERS_KMH: f64 = 0.1;
 
 /// An event of a run with time and place, as reports list it.
@@ -74,7 +74,7 @@ impl Landmark {
     }
 }
 
-/// Markers, changes of limit, top speed and where the stop begins to govern.
+/// Markers, changes of limit, top speed, and the place where the stop curve takes over.
 pub fn of_rows(rows: &[Row], plan: &DrivePlan) -> Vec<Landmark> {
     let mut found: Vec<_> = changes_of_limit(rows).collect();
     let offsets_m = plan.conditions.marker_offsets_m;
@@ -112,15 +112,15 @@ fn passing(rows: &[Row], x_m: f64, what: Mark) -> Option<Landmark> {
     Some(Landmark { t_s, x_m, what })
 }
 
-/// Where the target begins to fall for good, below what the limit allows less `below_limit_kmh`:
-/// after it, the target neither rises nor holds any more. A target still on its way up to the limit
-/// is not the stop, nor is a slow-down to a speed that is then held, as to PSM1's; one that goes
-/// over into the stop without being held begins it.
+/// Where the target begins to fall for good, below the limit less `below_limit_kmh`: from this row on, the target
+/// neither rises nor holds any more. A target still on its way up to the limit does not begin the stop curve, nor does
+/// a slow-down to a speed that is then held, as to the speed for PSM1; a slow-down that goes over into the stop
+/// without being held does begin the stop curve.
 fn stop_curve(rows: &[Row], below_limit_kmh: f64) -> Option<Landmark> {
     let cruises =
         |row: &Row| target_kmh(row) >= row.value(Signal::Limit) - below_limit_kmh - DIFFERS_KMH;
-    // From each row on, the highest target still to come: equal to one a second later where the
-    // target holds, and where it only dips before it rises again.
+    // From each row on, the highest target still to come: equal to the value a second later where the target holds,
+    // and where the target only dips before it rises again.
     let mut highest = 0.0;
     let mut to_come: Vec<f64> = rows
         .iter()
@@ -142,8 +142,8 @@ fn stop_curve(rows: &[Row], below_limit_kmh: f64) -> Option<Landmark> {
     Some(Landmark::at(row, Mark::StopCurve))
 }
 
-/// What unit and TCMS logged from the first row on, each at its own time since the run's zero, s. The
-/// unit's clock is the bench's less the shortest time an entry took to be read.
+/// Entries that unit and TCMS logged from the first row on, at their own times since the run's zero, s. The offset of
+/// the unit's clock from the bench's is the least difference between reading an entry and the entry's own time.
 pub(super) fn of_log(log: &[(Instant, UnitEvent)], zero_s: f64, rows: &[Row]) -> Vec<Landmark> {
     let own_s = |event: &UnitEvent| f64::from(event.at_ms) / 1000.0;
     let ahead_s = log

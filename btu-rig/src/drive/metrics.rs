@@ -1,7 +1,7 @@
 //! Figures of a run, from its rows.
 //!
-//! All are of the true motion, from the first row in which the train moves to the last. What a
-//! brake does in the instant of standstill cannot be avoided and comes after the last of these.
+//! All figures are of the true motion, from the first row in which the train moves to the last such row. The jerk
+//! with which a braked train comes to rest cannot be avoided; it comes after the last of these rows and does not count.
 
 use protocol::CYCLE;
 use protocol::signal::Signal;
@@ -18,7 +18,7 @@ pub struct Figure {
     pub key: &'static str,
     /// Name for people.
     pub name: &'static str,
-    /// Unit for people: `%` of a share.
+    /// Unit for people: `%` for a share.
     pub unit: &'static str,
     decimals: usize,
     /// Reads the figure's value, in the key's unit, from a run's figures.
@@ -26,7 +26,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// A value of it for people, without unit.
+    /// A value of this figure for people, without unit.
     pub fn shown(&self, value: f64) -> String {
         let scale = if self.unit == "%" { 100.0 } else { 1.0 };
         format!("{:.*}", self.decimals, value * scale)
@@ -83,7 +83,7 @@ figures! {
 }
 
 impl Metrics {
-    /// Figures of a run that took `run_time_s`, if it came to a stop; `None` if the train never
+    /// Figures of a run that took `run_time_s` (`None` = the train did not stop); `None` if the train never
     /// moved.
     pub fn of(rows: &[Row], run_time_s: Option<f64>) -> Option<Self> {
         let moves = |row: &Row| row.speed_kmh != 0.0;
@@ -110,7 +110,7 @@ impl Metrics {
     }
 }
 
-/// Root mean square of what is known.
+/// Root mean square of the finite values.
 fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let known = values.filter(|value| value.is_finite());
     let (sum, count) = known.fold((0.0, 0.0), |(sum, n), v| (sum + v * v, n + 1.0));

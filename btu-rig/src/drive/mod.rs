@@ -42,8 +42,8 @@ use recording::Recording;
 
 /// Time a unit may take from power-up until ATP sets Automatic.
 const READY_WITHIN: Duration = Duration::from_ms(10_000);
-/// The station data of the departure, which come every 250 ms, are heard by then: before it ATP may set Automatic by
-/// those of the arrival, under which no run begins.
+/// Time in which the unit hears the station data of the departure, sent every 250 ms. Before, ATP may set Automatic by
+/// the station data of an arrival, under which no run begins.
 const DEPARTURE_HEARD: Duration = Duration::from_ms(500);
 /// Time from the start button until ATP sets Automatic Run.
 const RUN_WITHIN: Duration = Duration::from_ms(2_000);
@@ -236,7 +236,7 @@ impl Drive {
         Ok(())
     }
 
-    /// The next loop, once the train has left the first.
+    /// Lets the wayside send the station data of the arrival's loop, once the train has left the departure's.
     fn hand_over(
         &mut self,
         now: Instant,

@@ -25,7 +25,7 @@ pub enum PlanError {
     #[error("section {section}: code \"{code}\" is not in the code table; it has {known}")]
     NoCode {
         section: u16,
-        /// Name that the track database has.
+        /// Name of the code in the track database.
         code: String,
         /// Names of the unit's codes, with commas.
         known: String,
@@ -75,7 +75,7 @@ impl FromStr for Load {
 pub enum Codes {
     /// Codes of the section, each from its place on.
     Along,
-    /// One from start to end.
+    /// One code from start to end.
     Fixed(Stimulus),
 }
 
@@ -86,7 +86,7 @@ pub struct DrivePlan {
     pub section: Section,
     /// Station after the arrival station, as the arrival loop says.
     pub onward_station: u16,
-    /// Speed codes on it.
+    /// Speed codes on the section.
     pub codes: Codes,
     /// ATO's target below the limit in normal running, km/h, from the unit's configuration.
     pub below_limit_kmh: f64,
@@ -96,7 +96,7 @@ pub struct DrivePlan {
     pub load_kg: f64,
     /// Differences of train and track from the unit's configuration.
     pub conditions: Conditions,
-    /// The tester listens: unit's own position, refusals and log. Without it a run is quicker.
+    /// The tester listens to the unit's own position, refusals and log. Without the tester a run is computed faster.
     pub tester: bool,
 }
 
@@ -159,7 +159,7 @@ pub(super) fn fixed_code(
     })
 }
 
-/// The code of this name as a stimulus of the antenna; `None` = the table has no such code.
+/// The code called `name` as a stimulus of the antenna; `None` = the unit's code table has no such code.
 pub fn code_in_antenna(config: &UnitConfig, name: &str) -> Option<Stimulus> {
     let code = &config.codes[find_code(&config.codes, name)?];
     let level_mv = config.receiver.level_nominal_mv;

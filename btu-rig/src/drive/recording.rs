@@ -12,7 +12,7 @@ const USUAL_ROWS: usize = 2_500;
 
 #[derive(Debug, Default)]
 pub(super) struct Recording {
-    /// Rows are kept from here on.
+    /// Time from which rows are kept; `None` = no row is kept yet.
     pub began: Option<Instant>,
     pub rows: Vec<Row>,
     /// Work of traction in the present cycle, J.
@@ -22,7 +22,7 @@ pub(super) struct Recording {
 }
 
 impl Recording {
-    /// One scan. Times of rows are the bench's until the run has its zero.
+    /// Records one scan. Rows have bench time, until the end of the run makes it time since the train began to move.
     pub fn scan(&mut self, now: Instant, truth: &TrueMotion, rig: &mut Rig) {
         let read = rig.take_events().into_iter();
         self.log.extend(read.map(|event| (now, event)));
@@ -50,7 +50,7 @@ impl Recording {
         });
     }
 
-    /// What unit and TCMS logged, each at its own time since the run's zero, s.
+    /// Entries that unit and TCMS logged, at their own times since `zero_s`, when the train began to move.
     pub fn logged(&self, zero_s: f64) -> Vec<Landmark> {
         landmarks::of_log(&self.log, zero_s, &self.rows)
     }

@@ -1,4 +1,4 @@
-//! Record of a 50 ms cycle of a drive: every signal, and the truth that no signal has.
+//! Record of a 50 ms cycle of a drive: every signal, and true values that no signal has.
 
 use protocol::signal::Signal;
 
@@ -8,9 +8,9 @@ use crate::recorder;
 pub struct Row {
     /// Every signal.
     pub signals: recorder::Row,
-    /// Time since the run's zero, s.
+    /// Time since the train began to move, s; while the run is under way, bench time.
     pub t_s: f64,
-    /// Head of the train in the section, m; true.
+    /// True position of the train's head in the section, m.
     pub x_m: f64,
     /// True speed, km/h; forward positive.
     pub speed_kmh: f64,

@@ -66,7 +66,7 @@ impl Spread {
         Ok(())
     }
 
-    /// Least and greatest believable value; of a normal distribution all but one in 15 000.
+    /// Least and greatest believable value; of a normal distribution, the bounds of all values but one in 15 000.
     fn range(self) -> (f64, f64) {
         match self {
             Self::Uniform { low, high } => (low, high),
@@ -75,8 +75,8 @@ impl Spread {
     }
 }
 
-/// Refuses spreads that leave their range, each in a line: its key, the least and the greatest value permitted. Every field
-/// of the type has its line.
+/// Refuses spreads that leave their permitted range. Each line has a key with its least and greatest value; each field
+/// of the type must have a line.
 macro_rules! check_spreads {
     ($type:ident = $of:expr; $($key:ident: $low:expr, $high:expr;)+) => {{
         let $type { $($key),+ } = $of;
@@ -86,7 +86,7 @@ macro_rules! check_spreads {
 }
 pub(crate) use check_spreads;
 
-/// All that differs; see `scripts/scatter.toml`.
+/// Quantities that differ from run to run; see `scripts/scatter.toml`.
 #[derive(
     Clone, Copy, Debug, PartialEq, serde::Deserialize, schemars::JsonSchema, serde::Serialize,
 )]
@@ -94,7 +94,7 @@ pub(crate) use check_spreads;
 pub struct Scatter {
     /// Passengers, kg; what the train cannot carry stays behind.
     pub load_kg: Spread,
-    /// Added to every gradient, ‰.
+    /// Gradient added to every gradient of the track, ‰.
     pub gradient_offset_permille: Spread,
     /// Wheel–rail adhesion coefficient at standstill.
     pub adhesion: Spread,
@@ -102,18 +102,18 @@ pub struct Scatter {
     pub delay_factor: Spread,
     /// Factor on braking effort.
     pub brake_factor: Spread,
-    /// True wheel diameter over the configured one.
+    /// Ratio of the true wheel diameter to the configured one.
     pub wheel_factor: Spread,
-    /// Place of each marker's pulse along the track, as laid and as antenna and TRA receive it, m.
+    /// Shift of each marker's pulse along the track, by how the marker is laid and how antenna and TRA receive it, m.
     pub marker_offset_m: Spread,
 }
 
-/// What was drawn for one run.
+/// Values drawn for one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScatterDraw {
     /// Passengers, kg.
     pub load_kg: f64,
-    /// The rest.
+    /// The other quantities.
     pub conditions: Conditions,
 }
 
@@ -141,7 +141,7 @@ impl Scatter {
         }
     }
 
-    /// Draws a run's train and day; the same for the same `seed`.
+    /// Draws the values of one run; equal seeds give equal values. The load is at most `full_load_kg`.
     pub fn draw(&self, seed: u64, full_load_kg: f64) -> ScatterDraw {
         let random = &mut Random::new(seed);
         ScatterDraw {

@@ -128,12 +128,12 @@ impl ActionRun {
         Progress::Done
     }
 
-    /// An answer of the operator is waited for.
+    /// The present action waits for the operator's answer.
     pub(super) fn asks(&self, actions: &[Action]) -> bool {
         self.since.is_some() && actions.get(self.at).is_some_and(Action::asks)
     }
 
-    /// Says what is waited for: prompts at once, the rest if it takes longer than a moment.
+    /// Reports what is waited for: a prompt at once, another action if it takes longer than a moment.
     fn report(&mut self, action: &Action, now: Instant, waited: Duration, out: &mut Vec<RunEvent>) {
         let left = action.worst_case() - waited;
         if let Action::Prompt { text, .. } = action {

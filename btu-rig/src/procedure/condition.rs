@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::Driver;
 use super::names::{Name, Part};
 
-/// Comparison value of a signal, or a limit: a number in the unit of the thing compared.
+/// Number with which a signal is compared, or limit of a measurement, in the unit of the signal or measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Operand {
     /// Written in the script.
@@ -25,17 +25,17 @@ pub enum Operand {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Comparison {
     Equal,
-    /// Recorded steps differ.
+    /// The values differ, rounded to the signal's recorded step.
     NotEqual,
     /// Less.
     Below,
-    /// Less or the same.
+    /// Less or equal.
     AtMost,
     /// Greater.
     Above,
-    /// Greater or the same.
+    /// Greater or equal.
     AtLeast,
-    /// No further away than this.
+    /// The signal is no further from the operand than `tolerance`.
     Near {
         /// Greatest distance, in the signal's unit.
         tolerance: f64,
@@ -74,7 +74,7 @@ pub enum Condition {
 /// Values captured by the procedure's measures so far, by slot.
 pub(super) type Captured = [Option<f64>];
 
-/// The data a condition or limit needed and did not get.
+/// The data that a condition or limit needs and that are missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MissingData {
@@ -133,7 +133,7 @@ impl Condition {
         }
     }
 
-    /// Detail behind the first of the condition's signals that has one.
+    /// Detail that the driver gives for the first of the condition's signals that has a detail.
     pub(super) fn said<'a>(&self, driver: &'a dyn Driver) -> Option<&'a str> {
         let mut said = None;
         self.for_each_signal(&mut |signal| said = said.or_else(|| driver.said(signal)));
@@ -166,7 +166,7 @@ impl Condition {
     }
 }
 
-/// `decisive` as soon as a part gives it; else a lack of data if there is one; else `otherwise`.
+/// `decisive` if any part gives this answer; else `NoData` if any part lacks data; else `otherwise`.
 fn fold(
     parts: &[Condition],
     sample: &Sample,
@@ -213,7 +213,7 @@ fn compare(
         Comparison::AtMost => left <= right,
         Comparison::Above => left > right,
         Comparison::AtLeast => left >= right,
-        // Half a step of grace: the tolerance is about the thing, not about its recording.
+        // Half a recorded step of grace: the tolerance is meant for the true value, not for the rounded one.
         Comparison::Near { tolerance } => (found - wanted).abs() <= tolerance + lsb / 2.0,
         Comparison::Has => bits(found) & bits(wanted) == bits(wanted),
         Comparison::Lacks => bits(found) & bits(wanted) == 0,

@@ -14,7 +14,7 @@ use super::plan::{
 use crate::stimulus::text::number;
 use crate::tcms::{EbSources, Lamps, PowerCuts, names_of};
 
-/// Behaviour of a clock of the unit that is faster than the bench's by this number of thousandths.
+/// What is said of a unit's clock that is faster than the tester's by this number of thousandths; below 0 = slower.
 pub fn clock_wrong(by_permille: i32) -> String {
     let way = if by_permille > 0 { "fast" } else { "slow" };
     let percent = f64::from(by_permille.abs()) / 10.0;
@@ -143,8 +143,8 @@ fn group(f: &mut Formatter<'_>, parts: &[Condition], word: &str) -> fmt::Result 
     write!(f, "({})", parts.collect::<Vec<_>>().join(word))
 }
 
-/// Bits of a signal by their names: causes, lamps, cars. `None` for a signal that is no set, or
-/// bits without a name.
+/// Bits of a signal by their names: causes, lamps, cars. `None` if the signal is no set of bits, or if no bit that
+/// is set has a name.
 pub fn bit_names(signal: Signal, bits: u16) -> Option<String> {
     let names = match signal {
         Signal::PowerCutCauses => names_of::<PowerCuts>(bits),
@@ -339,7 +339,7 @@ fn force(newtons: f64) -> String {
     format!("{:.1} kN", newtons / 1000.0)
 }
 
-/// The bits of the signal that a condition asks for, if that is a set.
+/// The bits of the signal that a condition looks at, if the signal is a set of bits.
 pub(super) fn bits_seen(condition: &Condition, sample: &Sample) -> Option<u16> {
     let Condition::Compare { signal, .. } = condition else {
         return None;

@@ -14,7 +14,7 @@ use protocol::message::{AtoFailure, SelfTest};
 /// Progress of reading the unit's log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LogState {
-    /// Every event the unit says it has logged.
+    /// Every entry that the unit says it has logged is read.
     #[default]
     Read,
     /// Some entries are on their way.
@@ -38,29 +38,29 @@ pub struct LineState {
     pub lost_or_damaged_lately: u64,
     /// Nothing comes now: the line is lost, or the unit starts again.
     pub silent: bool,
-    /// Time by which the last frames came later than others: they show a state of the unit that is as old.
+    /// Time by which the last frames came later than others: the state of the unit that they show is as old.
     pub late: Duration,
 }
 
-/// Stamps of the unit, ms of its clock, after which a change that a scan shows for the first time has happened.
+/// Lower bounds, ms on the unit's clock, of the time of a change that a scan is the first to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnitTimeBounds {
-    /// A change that the unit tells in its scan.
+    /// Of a change that the unit tells in the scan of the change.
     pub scan_ms: u32,
-    /// Another value of a state frame.
+    /// Of a change that the unit tells in its next state frame.
     pub frame_ms: u32,
-    /// A value of `Status`.
+    /// Of a change that the unit tells in its next `Status`.
     pub cycle_ms: u32,
 }
 
-/// When the unit was as the sample of this scan shows it, by its own clock: without a harness frames come when
-/// they come, and only their stamps date what they show.
+/// Time, on the unit's clock, at which the unit was as the sample of this scan shows: without a harness frames come at
+/// no fixed time, and only their stamps date what they show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnitTime {
     /// Stamp of the latest state: what is new in it happened by then, ms.
     pub stamp_ms: u32,
     pub after: UnitTimeBounds,
-    /// Stamp of the latest answer to a request, which acts from that scan on, ms.
+    /// Stamp of the latest answer to a request, ms; the request acts from the scan of this stamp on.
     pub answered_ms: Option<u32>,
 }
 

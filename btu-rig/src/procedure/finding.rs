@@ -1,5 +1,5 @@
-//! Findings of a run, as data: stored as JSON, told in English here and in other languages by whoever shows
-//! it.
+//! Findings of a run, as data: stored as JSON, told in English by `english`; other crates tell them in other
+//! languages.
 
 mod english;
 mod list;
@@ -37,11 +37,11 @@ pub struct LimitMissed {
     pub low: Option<f64>,
     /// Greatest value allowed.
     pub high: Option<f64>,
-    /// Unit of all these; empty for counts and states.
+    /// Unit of value, uncertainty and limits; empty for counts and states.
     pub unit: String,
 }
 
-/// One thing that was found, or why nothing could be.
+/// One thing that was found, or the reason why nothing could be found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Finding {
@@ -70,7 +70,7 @@ pub enum Finding {
     CameTrue {
         condition: Condition,
     },
-    /// Whether a condition that must not come true did is not known.
+    /// It is not known whether a condition came true that must not.
     Unknown {
         condition: Condition,
         missing: MissingData,
@@ -110,7 +110,7 @@ pub enum Finding {
         others: u32,
         why: WhyNoValue,
     },
-    /// A limit of a measurement refers to one without a value.
+    /// A limit of a measurement refers to an earlier measurement without a value.
     LimitUnknown {
         /// Name in its script.
         measurement: String,
@@ -119,19 +119,19 @@ pub enum Finding {
     Refused {
         why: String,
     },
-    /// Others started a unit on a train again while it was tested.
+    /// A unit on a train started again while it was tested, because its supply was interrupted.
     StartedAgain,
     /// A unit on a train ended test mode by itself.
     TestModeEnded {
-        /// The code of why, as the unit gives it.
+        /// The unit's code for the reason.
         refusal: u8,
     },
-    /// A motion or request of the tester did not end in time.
+    /// A motion of the tachometer generators, or a request of the tester, did not end in time.
     NotFinished {
         within: Duration,
     },
-    /// Frames that were lost between tester and unit may be why this event was logged, or, without one, why the
-    /// emergency brake was applied.
+    /// Frames lost between tester and unit may be the reason why `event` was logged; with `None`, why the emergency
+    /// brake was applied.
     LineDisturbed {
         event: Option<LoggedEvent>,
     },
@@ -139,7 +139,7 @@ pub enum Finding {
     FramesLost {
         frames: u64,
     },
-    /// The log could not be read while a step waited for it.
+    /// The unit's log could not be read while a step waited for the log.
     LogNotRead {
         within: Duration,
     },
@@ -147,12 +147,12 @@ pub enum Finding {
     LogNotReadToEnd {
         within: Duration,
     },
-    /// A step took longer than it may.
+    /// A step took longer than its time limit.
     TimeLimit {
         limit: Duration,
         waiting: Option<WaitedFor>,
     },
-    /// The link to the unit cannot be used, or an instrument of the bench.
+    /// The link to the unit, or an instrument of the bench, cannot be used.
     LinkLost {
         why: LinkTrouble,
     },
@@ -172,7 +172,7 @@ pub enum Finding {
     CleanUpTooLong {
         within: Duration,
     },
-    /// The operator cut these actions short.
+    /// The operator cut the clean-up actions short.
     CleanUpCutShort,
     /// Outputs did not become safe in time.
     NotSafe {
@@ -184,15 +184,15 @@ pub enum Finding {
     NotRun(Box<Finding>),
     /// A procedure was not begun.
     NotBegun(Box<Finding>),
-    /// A step before did not pass, after which no other is run.
+    /// An earlier step did not pass, so no step after that one is run.
     NotPassed {
         step: String,
     },
-    /// The step before, from which this one continues, was not tested.
+    /// The step from which this step continues was not tested.
     NotTestedBefore {
         step: String,
     },
-    /// Only a bench with its harness can run the step, procedure or unit.
+    /// Only a bench with its harness can run the step or procedure, or test the unit.
     NeedsHarness,
     /// The condition under which a step is run does not hold.
     ConditionFalse {
@@ -207,7 +207,7 @@ pub enum Finding {
     NoStepToRun,
     NoStepRun,
     ProgramFailed,
-    /// The link was lost, and steps were left.
+    /// The link, or an instrument of the bench, was lost before all steps were run.
     LinkLostAt {
         /// Steps that were run.
         run: u32,
@@ -222,7 +222,7 @@ pub enum Finding {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         bench: Option<String>,
     },
-    /// A search for a fault found none and accepts nothing.
+    /// An adaptive run found no fault, which does not accept the unit.
     NotAcceptance {
         /// Steps that were run.
         run: u32,
@@ -254,7 +254,7 @@ pub enum Finding {
         speed_kmh: f64,
         /// Limit in force at that time, km/h.
         limit_kmh: f64,
-        /// Time of the unit or TCMS that logged it, s.
+        /// Time on the clock of the unit or TCMS that logged the entry, s.
         time_s: f64,
     },
     /// A step that failed, as a fault.
@@ -283,7 +283,7 @@ pub enum Finding {
         english: String,
         korean: String,
     },
-    /// Words of a script.
+    /// A step's note, in the words of the script.
     Told(String),
 }
 
@@ -303,7 +303,7 @@ pub enum WhyNoValue {
 pub enum Before {
     /// The first step of a procedure.
     FirstStep,
-    /// A step that was not tested and is made again.
+    /// A step that was not tested and is run again.
     RepeatedStep,
     /// The next repetition of a procedure.
     Repetition,
@@ -313,7 +313,7 @@ pub enum Before {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WaitedFor {
-    /// The end of its actions.
+    /// The end of the step's actions.
     Actions,
     Expectation(Expectation),
 }

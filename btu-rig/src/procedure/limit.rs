@@ -12,7 +12,7 @@ pub(super) fn resolve(operand: Option<&Operand>, captured: &Captured) -> Limit {
     operand.map(|operand| operand.value(captured)).transpose()
 }
 
-/// Passed if `low <= value <= high`, and while the value is outside by no more than its uncertainty: only what is
+/// Passed if `low <= value <= high`, or if the value is outside by no more than its uncertainty: only what is
 /// proved fails. A value or limit that is missing or not a finite number is an error: nothing but a comparison that
 /// came out right may pass.
 pub(super) fn judge(

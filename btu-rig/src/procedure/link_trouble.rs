@@ -1,5 +1,5 @@
-//! Why nothing that is heard of a unit can be judged, as data: told in English here and in other languages by whoever
-//! shows it.
+//! Reasons why nothing that is heard from a unit can be judged, as data: told in English here; other crates tell them
+//! in other languages.
 
 use std::net::SocketAddr;
 
@@ -31,7 +31,7 @@ pub enum PortFailure {
     /// Nothing can be written.
     #[error("writing failed: {0}")]
     Writing(String),
-    /// The unit goes by the clock, or is not there.
+    /// The unit runs by the clock instead of in lock step, or is not there.
     #[error("the unit does not answer in lock step ({0}); serve it with --pty --lock-step")]
     NotInLockStep(String),
 }
@@ -43,7 +43,7 @@ pub enum LinkTrouble {
     /// Nothing can be sent or received any more.
     #[error(transparent)]
     Broken(LinkFailure),
-    /// An instrument of the bench does not do its part.
+    /// An instrument of the bench failed.
     #[error("instrument {instrument} of the bench: {fault}")]
     Instrument {
         /// Name of the instrument in the bench file.
@@ -53,42 +53,42 @@ pub enum LinkTrouble {
     /// Another tester has the unit.
     #[error("the unit is taken by another tester, {by}, for {:.0} s{}", .held.as_secs(), silent_for(*.silent))]
     Taken {
-        /// Where that tester is.
+        /// Network address of the other tester.
         by: SocketAddr,
         /// Time for which the other tester has had the unit.
         held: Duration,
         /// Time for which the other tester has been silent, if that is long.
         silent: Option<Duration>,
     },
-    /// Not one byte came.
+    /// The unit sent not one byte.
     #[error("unit silent: not one byte in {:.1} s — check the cable, the port and the unit's power", .within.as_secs())]
     NotOneByte {
-        /// The time it had.
+        /// Time in which the unit was to send something.
         within: Duration,
     },
     /// Frames came that another version of this program makes.
     #[error("{frames} frames of another version of the wire — unit and bench programs differ")]
     OtherVersion { frames: u64 },
-    /// Bytes came, and no frame that can be taken.
+    /// Bytes came, but no valid frame.
     #[error("garbage: {bytes} bytes, no valid frame{} — {cause}", refused_for(*.refused))]
     Garbage {
         /// Number of bytes that came.
         bytes: u64,
-        /// The most frequent reason for which frames were refused, and how many were for it.
+        /// Number of frames refused for the most frequent reason, and that reason.
         refused: Option<(u64, Reject)>,
         /// Probable cause.
         cause: GarbageCause,
     },
-    /// The unit was heard before, and is not any more.
+    /// The unit, which was heard before, is silent.
     #[error("unit silent for {:.1} s on the {} channel{}", .silence.as_secs(), channel_name(*.channel), meanwhile(*.refused))]
     Silent {
-        /// Where it is silent.
+        /// Channel on which the unit is silent.
         channel: Channel,
         silence: Duration,
-        /// Refused frames in place of good ones.
+        /// Frames that were refused during the silence.
         refused: Option<Refused>,
     },
-    /// The line loses or damages more than one may.
+    /// The line loses or damages more frames than permitted.
     #[error(
         "the line between tester and unit is bad: within {:.0} s {from_unit} of {came} frames from the unit did not \
          come through, and the unit refused {to_unit} — check the cable, its plugs and whether another program uses \
@@ -96,16 +96,16 @@ pub enum LinkTrouble {
         .within.as_secs()
     )]
     BadLine {
-        /// The time in which it did.
+        /// Time in which these frames were counted.
         within: Duration,
         /// Frames of the unit that did not come through.
         from_unit: u64,
-        /// Frames of the unit, these included.
+        /// All frames that the unit sent, those that did not come through included.
         came: u64,
         /// Frames that the unit refused.
         to_unit: u64,
     },
-    /// The unit that answers differs from the one before.
+    /// The unit that answers is not the unit that answered before.
     #[error("another unit answers: {}", changes(.0))]
     OtherUnit(Vec<Changed>),
     /// The log grows faster than it can be read.
@@ -120,7 +120,7 @@ pub enum LinkTrouble {
         /// Number of questions.
         times: u32,
     },
-    /// The unit answers, and does not give an entry that it says it has.
+    /// The unit answers, but does not give a log entry that it says it has.
     #[error(
         "the unit's log could not be read: asked {times} times for entry {entry} of {of}, which never came"
     )]
@@ -153,7 +153,7 @@ pub enum LinkTrouble {
 }
 
 impl LinkTrouble {
-    /// An instrument of the bench failed: it tells nothing of the unit and of the line to it.
+    /// An instrument of the bench failed, which tells nothing of the unit or of the line to the unit.
     pub const fn is_of_the_bench(&self) -> bool {
         matches!(self, Self::Instrument { .. })
     }
@@ -163,12 +163,12 @@ impl LinkTrouble {
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum InstrumentFault {
-    /// Nobody answers there.
+    /// The instrument cannot be reached.
     #[error("not reached at {at}: {why}")]
     NotThere {
-        /// Where it should be.
+        /// Address or port of the instrument.
         at: String,
-        /// The system's word.
+        /// Error of the operating system.
         why: String,
     },
     /// The connection ended.
@@ -193,7 +193,7 @@ pub enum InstrumentFault {
     OtherModel {
         /// Answer to `*IDN?`.
         found: String,
-        /// Part of the answer to `*IDN?` that its driver names.
+        /// Part of the answer to `*IDN?` by which the driver knows the model.
         expected: String,
     },
     /// The right model with another serial number.
@@ -204,30 +204,30 @@ pub enum InstrumentFault {
         /// `serial` of the bench file.
         expected: String,
     },
-    /// The line of the instrument is locked.
+    /// Another program of this computer has locked the instrument's line.
     #[error("another program of this computer uses it")]
     Taken,
-    /// A carrier without a code was ordered.
+    /// A carrier without a code was ordered, for which the driver has no commands.
     #[error("its driver has no commands for a carrier that is not modulated")]
     NoUnmodulated,
-    /// Samples beyond what the sound card makes at most.
+    /// The waveform has samples beyond the greatest that the sound card makes.
     #[error("the waveform is louder than it can play")]
     TooLoud,
-    /// Samples pile up.
+    /// The sound device does not take samples as fast as they are made.
     #[error("the device takes no samples")]
     TakesNoSamples,
-    /// No program of the system plays.
+    /// Neither of the programs that could play sound is installed.
     #[error("no program carries sound here: neither {server} nor {alsa} is installed")]
     NoPlayer {
-        /// Error of the sound server.
+        /// Name of the sound server's program.
         server: String,
-        /// Error of ALSA.
+        /// Name of ALSA's program.
         alsa: String,
     },
-    /// The card plays, and is not heard.
+    /// What the sound card plays is not heard at this input.
     #[error("nothing that it plays is heard at {0}")]
     NotHeard(String),
-    /// The program ended without a word.
+    /// The program that plays sound has ended without an error message.
     #[error("the program that plays on it has ended")]
     PlayerEnded,
     /// The instrument reports an error after a command.
@@ -235,22 +235,22 @@ pub enum InstrumentFault {
     Refused {
         /// Command as it was sent.
         command: String,
-        /// The entry of its error queue, as it answered.
+        /// Entry of the instrument's error queue, as received.
         error: String,
     },
     /// The instrument has more errors than its queue holds.
     #[error("its error queue is full: {0}")]
     QueueFull(String),
-    /// A value beyond what its driver states.
+    /// A value is outside the range that the driver states.
     #[error("{value} is out of range for {what}, which takes {low} to {high}")]
     OutOfRange {
         /// The driver's name of the value.
         what: String,
         /// Value that the driver would have set.
         value: String,
-        /// Least that the driver states.
+        /// Least value that the driver states.
         low: String,
-        /// Greatest that the driver states.
+        /// Greatest value that the driver states.
         high: String,
     },
     /// The instrument's answer cannot be read.
@@ -261,12 +261,12 @@ pub enum InstrumentFault {
         /// Answer as it came.
         found: String,
     },
-    /// The contact that proves a relay says otherwise.
+    /// The contact that proves a relay's position contradicts the order.
     #[error("the relay of {contact} is stuck: it was ordered {ordered} and is proved {}", 1 - .ordered)]
     Stuck {
         /// Stimulus of the bench file that the relay makes.
         contact: String,
-        /// 1 = it was to close, 0 = to open.
+        /// 1 = the relay was ordered to close, 0 = to open.
         ordered: u8,
     },
 }
@@ -279,13 +279,13 @@ fn ms(duration: Duration) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GarbageCause {
-    /// No check sequence fits.
+    /// No frame has a right check sequence.
     #[error("wrong baud rate?")]
     BaudRate,
-    /// Frames come that this end has sent.
+    /// The tester receives the frames that it has sent.
     #[error("the tester's own frames come back: is the unit on this port?")]
     Echo,
-    /// Frames are whole, and of something else.
+    /// Frames are undamaged, but not from a unit.
     #[error("check the cable and what is connected to this port")]
     OtherDevice,
 }
@@ -294,14 +294,14 @@ pub enum GarbageCause {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Refused {
-    /// Number of frames that do not continue those before, as from a unit that starts again and
-    /// again.
+    /// Number of frames whose sequence number or time stamp does not continue the earlier ones, as from a unit that
+    /// starts again and again.
     OfStarts(u64),
     /// Number of frames refused for any reason.
     Frames(u64),
 }
 
-/// A property of a unit that is not what it was.
+/// A property of a unit that has changed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Changed {
     /// The property that differs.
@@ -312,7 +312,7 @@ pub struct Changed {
     pub is: String,
 }
 
-/// Property of its identity by which a unit is seen to be another one.
+/// Property of a unit's identity that shows when another unit answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Property {

@@ -1,7 +1,8 @@
 //! One measurement while its step runs: watches each scan and yields the value when the step ends.
 //!
 //! Without a bench harness a time is measured by the unit's own stamps, as the time between two moments of which each
-//! is known within bounds: the value is the middle of what it may be, its uncertainty half of that span.
+//! is known within bounds: the value is the middle between the shortest and the longest time that these bounds
+//! permit, its uncertainty half of their difference.
 
 use protocol::Instant;
 use protocol::message::SelfTestItem;
@@ -17,8 +18,8 @@ use super::report::Measurement;
 use super::scan::Scan;
 use super::unit_clock::Moment;
 
-/// Watches for a condition to *become* true: it must have been seen false first. A brake that is
-/// applied already when its time is taken has no reaction time, it must not get one of 0 ms.
+/// Watches for a condition to *become* true: the condition must have been seen false first. A brake that is
+/// applied before its reaction time is measured has no reaction time, and must not get one of 0 ms.
 #[derive(Clone, Copy, Debug, Default)]
 struct Edge {
     was_false: bool,
@@ -74,8 +75,8 @@ pub(super) struct MeasurementRun {
 }
 
 impl MeasurementRun {
-    /// Looks at one scan; `actions_end` as in [`super::expectation_run::ExpectationRun::look`], `request_last`: what
-    /// ended them was the unit's answer to a request.
+    /// Looks at one scan; `actions_end` as in [`super::expectation_run::ExpectationRun::look`], `request_last`: the
+    /// last of the actions ended with the unit's answer to a request.
     pub(super) fn look(
         &mut self,
         measure: &Measure,
@@ -119,7 +120,7 @@ impl MeasurementRun {
         measure.is_awaited() && !self.done && !self.late
     }
 
-    /// Takes what the self-test found of the item, with its limits and their unit.
+    /// Takes the self-test's result for the item, with the item's limits and their unit.
     pub(super) fn take_item(&mut self, item: Option<SelfTestItem>) {
         self.item = item;
     }
@@ -219,7 +220,7 @@ impl MeasurementRun {
                 self.value = between.map(|(value_ms, _)| value_ms);
                 self.uncertainty = between.map(|(_, uncertainty_ms)| uncertainty_ms);
             }
-            // Without a state frame at the beginning nothing dates it by the unit's clock.
+            // Without a state frame at the beginning nothing dates the beginning by the unit's clock.
             (None, Some(_)) => {}
             (_, None) => self.value = Some(scan.now.since(start.at).as_us() as f64 / 1000.0),
         }
@@ -231,8 +232,8 @@ impl MeasurementRun {
         }
     }
 
-    /// The value of a signal whose change is taken: a counter is followed from scan to scan, as it may begin
-    /// again more than once.
+    /// The value of a signal whose change is taken: a counter is followed from scan to scan, as the counter may wrap
+    /// to 0 more than once.
     fn follow(&mut self, signal: Signal, scan: Scan<'_>) -> Option<f64> {
         let value = self.known(signal, scan)?;
         let before = self.latest.replace(value);

@@ -1,4 +1,4 @@
-//! Check procedures: scripts become plans when they are loaded, plans are run by a polled machine.
+//! Check procedures: scripts become plans when they are loaded, plans are run by a state machine that is polled.
 //!
 //! * [`plan`]: what a procedure is, as plain data: actions, conditions, expectations, measures;
 //! * [`loader`]: Starlark scripts in, plans or errors with file, line and column out;
@@ -56,7 +56,7 @@ pub trait Driver {
     /// Begins a stimulus.
     ///
     /// # Errors
-    /// The bench cannot or may not do it.
+    /// The bench cannot or may not carry out the stimulus.
     fn apply(&mut self, now: Instant, stimulus: &Stimulus) -> Result<(), Refusal>;
 
     /// Whether no ramp, travel or tester request is under way any more.
@@ -65,7 +65,7 @@ pub trait Driver {
     /// A request was refused, for instance "unit refused arming: key_off".
     fn settled(&mut self) -> Result<bool, Refusal>;
 
-    /// Takes all generators and test signals away at once; may be called again and again.
+    /// Begins to take all generators and test signals away; may be called again and again.
     fn make_safe(&mut self, now: Instant);
 
     /// Whether [`Driver::make_safe`] has taken effect.
@@ -86,7 +86,7 @@ pub trait Driver {
         None
     }
 
-    /// Detail behind a signal which says only whether the unit matches its record.
+    /// Detail behind a signal that says only whether the unit matches its record; `None` for other signals.
     fn said(&self, _signal: Signal) -> Option<&str> {
         None
     }
@@ -97,7 +97,7 @@ pub trait Driver {
 #[error("{0}")]
 pub struct Refusal(pub String);
 
-/// Unit that logs an event.
+/// Who logs an event: the unit, or TCMS on the train.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EventSource {
@@ -109,13 +109,13 @@ pub enum EventSource {
 /// An entry of the unit's event log as received, or of TCMS's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitEvent {
-    /// Unit that logs it.
+    /// Who logged the entry.
     pub source: EventSource,
     /// Place in the log.
     pub index: u32,
     /// Number in the event dictionary, kept even if this version does not know it.
     pub code: u16,
-    /// Time of the unit or TCMS that logged it, ms since its start.
+    /// Time on the clock of the unit or TCMS that logged the entry, ms since its start.
     pub at_ms: u32,
     /// Parameter; its meaning is in the dictionary of events.
     pub parameter: i32,
@@ -132,7 +132,7 @@ pub struct UnitEvent {
 }
 
 impl UnitEvent {
-    /// An entry of the unit's log with this event, made standing.
+    /// An entry of the unit's log with this event, logged while the train stood.
     pub fn at_stand(index: u32, event: Event, at_ms: u32) -> Self {
         Self {
             source: EventSource::Unit,
@@ -172,7 +172,7 @@ impl UnitEvent {
         )
     }
 
-    /// The car, items or reason that its parameter names; `None` for a measured one or none.
+    /// The car, items or reason that the parameter names; `None` if the parameter is a measured value or unused.
     pub fn named(&self) -> Option<String> {
         event_text::named(Event::from_code(self.code)?, self.parameter)
     }

@@ -6,7 +6,7 @@ use std::fmt::{self, Display, Formatter};
 const CAPITALS: [&str; 9] = [
     "eb", "fsb", "atp", "ato", "cpu", "twc", "psm", "tcms", "tra",
 ];
-/// Before the name of an item of the unit's self-test.
+/// Prefix of the names of self-test items.
 const SELF_TEST: &str = "self_test.";
 
 pub fn spoken(name: &str) -> String {
@@ -32,7 +32,7 @@ impl Display for Name<'_> {
     }
 }
 
-/// A part of a text that has its names as the whole.
+/// A part of a text; the flag says whether its names are given as people say them.
 pub(super) struct Part<T>(pub T, pub bool);
 
 impl<T: Display> Display for Part<T> {

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 
 /// Where the numbers of a limit come from.
 ///
-/// Quantities read from the configuration know it, and keep it through sums and products; what a script writes
-/// as a number gets it from the script's `source`.
+/// Quantities read from the configuration carry their origin, and keep it through sums and products; a number
+/// that a script writes gets its origin from the script's `source`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Origin {
     /// Each as a script writes it, for instance `S3 eq. 4` or `default: half the stop tolerance`.
     sources: BTreeSet<String>,
-    /// A number among them has no source.
+    /// At least one of the limit's numbers has no source.
     pub lacks: bool,
 }
 
@@ -87,7 +87,7 @@ pub enum SourceKind {
     Default,
 }
 
-/// Word before the name of each kind; a paper has its number there.
+/// Word with which a source of each kind begins; a source that is a paper begins as in [`PAPERS`].
 const WORDS: [(&str, SourceKind); 7] = [
     ("configuration ", SourceKind::Configuration),
     ("track database ", SourceKind::Track),

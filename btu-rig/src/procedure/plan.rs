@@ -65,7 +65,7 @@ pub struct Step {
     /// Actions of the step, in order.
     pub actions: Vec<Action>,
     pub expectations: Vec<Expectation>,
-    /// Where the numbers of its expectations come from: times, and what signals are compared with.
+    /// Where the numbers of the step's expectations come from: times, and values with which signals are compared.
     pub origin: Origin,
     pub measures: Vec<Measure>,
     /// Events this step is meant to cause.
@@ -126,7 +126,7 @@ pub enum Action {
     },
     /// Done only where the bench harness is there: on a train the cab is as its people left it.
     OnBench(Box<Action>),
-    /// Done only without the bench harness: what people do there.
+    /// Done only on a train, without the bench harness: what people do there.
     OnTrain(Box<Action>),
 }
 
@@ -215,16 +215,16 @@ pub enum What {
 pub struct Measure {
     /// Name, unique in its step.
     pub name: String,
-    /// Where its value is kept for later steps.
+    /// Place among the captured values, where later steps find the measured value.
     pub slot: usize,
     pub what: What,
     /// Least value allowed, in the unit of [`unit`](Self::unit).
     pub low: Option<Operand>,
-    /// Greatest value allowed, in the same unit.
+    /// Greatest value allowed, in the unit of [`unit`](Self::unit).
     pub high: Option<Operand>,
     /// Time allowed from the end of the actions; unused by values taken at the step's end.
     pub within: Duration,
-    /// Where its limits come from.
+    /// Where the limits come from.
     pub origin: Origin,
 }
 
@@ -273,7 +273,7 @@ impl Measure {
         self.high.iter_mut().for_each(|high| shift(high, by));
     }
 
-    /// Unit of its value; that of a self-test's item comes with the result.
+    /// Unit of the measured value; the unit of a self-test's item comes with the result.
     pub fn unit(&self) -> &'static str {
         match &self.what {
             What::Time { .. } => "ms",
@@ -281,7 +281,7 @@ impl Measure {
         }
     }
 
-    /// Whether the step must wait for it.
+    /// Whether the step must wait for the measurement.
     pub fn is_awaited(&self) -> bool {
         matches!(self.what, What::Time { .. } | What::At { .. })
     }
@@ -300,7 +300,7 @@ pub(super) fn of_self_test() -> impl Iterator<Item = Measure> {
 }
 
 impl Action {
-    /// The action itself, and whether it is done `with_harness` or without.
+    /// The action without `OnBench` or `OnTrain`, and whether the action is done `with_harness` (else: on a train).
     pub fn where_done(&self, with_harness: bool) -> (&Self, bool) {
         match self {
             Self::OnBench(action) => (action, with_harness),
@@ -314,7 +314,7 @@ impl Action {
         matches!(self.where_done(true).0, Self::Prompt { .. })
     }
 
-    /// Calls `f` with each signal it looks at.
+    /// Calls `f` with each signal that the action looks at on a train.
     fn for_each_signal(&self, f: &mut impl FnMut(Signal)) {
         match self {
             Self::Until { condition, .. } => condition.for_each_signal(f),
@@ -343,7 +343,7 @@ impl Step {
         }
     }
 
-    /// Numbers that have no source so far have these.
+    /// Gives `sources` to the numbers of the step that have no source so far.
     pub(super) fn fill(&mut self, sources: &[String]) {
         self.origin.fill(sources);
         for measure in &mut self.measures {
@@ -351,7 +351,7 @@ impl Step {
         }
     }
 
-    /// Events it is meant to cause or waits for.
+    /// Events that the step is meant to cause or waits for.
     pub fn provoked(&self) -> impl Iterator<Item = Event> + '_ {
         let awaited = self.expectations.iter().filter_map(|e| match e {
             Expectation::Logs { event, .. } => Some(*event),
@@ -362,7 +362,7 @@ impl Step {
 }
 
 impl Procedure {
-    /// Each limit that names no source: where it stands, and that it has none.
+    /// One line for each limit that names no source: script, line and step.
     pub fn without_source(&self) -> Vec<String> {
         let of_step = |step: &Step| {
             let expected = step.origin.lacks.then(|| "what it expects".to_owned());

@@ -1,8 +1,8 @@
-//! Why an action did not succeed.
+//! Why an action, an expectation or a measurement did not succeed.
 
 use super::finding::Finding;
 
-/// Why an action did not succeed.
+/// Why an action, an expectation or a measurement did not succeed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Problem {
     /// The unit did not do its part.
@@ -11,7 +11,7 @@ pub(super) enum Problem {
     NoData(Finding),
     /// The unit refused a request of the tester, or did not answer it.
     Refused(Finding),
-    /// The bench, the link or the operator did not do theirs.
+    /// The bench, the link or the operator did not do their part.
     Bench(Finding),
 }
 

@@ -56,9 +56,9 @@ pub struct StepResult {
     pub verdict: Verdict,
     /// Findings for which the step did not pass, or notes.
     pub findings: Findings,
-    /// Part to suspect if it failed: one that an event of the unit or of TCMS named, else the script's.
+    /// Part to suspect if the step failed: named by an event of unit or TCMS or by a self-test, else by the script.
     pub suspect: Option<LruId>,
-    /// Bench time at which it began.
+    /// Bench time at which the step began.
     pub started: Instant,
     /// Time that the step took on the bench.
     pub bench_time: Duration,
@@ -68,7 +68,7 @@ pub struct StepResult {
 }
 
 protocol::labelled! {
-    /// Where something failed that is no step of the procedure. Reports have its [`name`](Outside::name).
+    /// Place of a failure outside the steps of a procedure. Reports show the place's [`name`](Outside::name).
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Outside: name {
         /// While the unit was brought up, or settled between two procedures.
@@ -170,7 +170,7 @@ pub enum RunEvent {
         /// Bench time.
         at: Instant,
     },
-    /// The unit's clock goes wrong, as the bench's tells.
+    /// The unit's clock runs faster or slower than the bench's.
     UnitClockWrong {
         /// Excess of the unit's clock, thousandths.
         by_permille: i32,

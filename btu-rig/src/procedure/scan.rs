@@ -1,4 +1,4 @@
-//! What one scan gives to everything that watches.
+//! Data of one scan for whatever watches it: expectations, measurements, actions.
 
 use protocol::Instant;
 use protocol::signal::Sample;
@@ -6,7 +6,7 @@ use protocol::signal::Sample;
 use super::condition::Captured;
 use super::{Evidence, UnitTime};
 
-/// What one scan gives to everything that watches.
+/// Data of one scan for whatever watches it.
 #[derive(Clone, Copy)]
 pub(super) struct Scan<'a> {
     pub now: Instant,

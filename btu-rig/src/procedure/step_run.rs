@@ -17,15 +17,15 @@ use super::scan::Scan;
 use super::step_verdict::{findings, verdict};
 use super::{Driver, UnitEvent, Verdict};
 
-/// Further behind than this, a bench fails what a unit does in time: limits are tens of milliseconds.
+/// Delay beyond which the bench may fail a unit that reacts in time: limits are tens of milliseconds.
 const TOO_LATE: Duration = CYCLE;
 /// Time after a refused request for which the frame with the unit's reason may still be on its way.
 const SAYS_WHY_WITHIN: Duration = Duration::from_ms(150);
 /// Time after a refused request for which the log entry with the unit's reason may still be on its way.
 const LOGS_WHY_WITHIN: Duration = Duration::from_ms(2_000);
-/// A step whose unit is silent at its end waits no longer for the unit; a link is lost before.
+/// Longest time that a step waits at its end for a silent unit; a lost link is noticed earlier.
 const SPEAKS_WITHIN: Duration = Duration::from_ms(10_000);
-/// A step waits no longer for the unit's log; the reader of the log gives up before.
+/// Longest time that a step waits for the unit's log; the reader of the log gives up earlier.
 const LOG_WITHIN: Duration = Duration::from_ms(60_000);
 
 #[derive(Debug, Default)]
@@ -35,21 +35,21 @@ pub(super) struct StepRun {
     actions_done: Option<Instant>,
     expectations: Vec<ExpectationRun>,
     measurements: Vec<MeasurementRun>,
-    /// Each once, with how often it came.
+    /// Each problem once, with the number of times it came.
     problems: Vec<(Problem, u32)>,
     /// Logged events with their parameters.
     logged: Vec<(Event, i32)>,
-    /// Suspected part of the first event that no step provoked.
+    /// Suspected part of the first event that no step provoked, or of a failed item of the self-test.
     named_part: Option<LruId>,
     /// The step was given up: its remaining expectations are not judged.
     given_up: bool,
-    /// When a request of it was refused.
+    /// When the unit refused a request of the step.
     refused_at: Option<Instant>,
-    /// The unit has restarted by itself in this procedure, as its log says: it refuses what it no longer knows.
+    /// The unit has restarted by itself in this procedure, as its log says: a refused request is the unit's failure.
     restarted: bool,
     /// Nothing is measured any more: what is seen now is not the unit's doing.
     broken_off: bool,
-    /// How far the bench was behind at most.
+    /// Greatest delay of the bench behind the unit in this step.
     behind: Duration,
     /// How far the unit's log is read.
     log: LogState,
@@ -59,7 +59,7 @@ pub(super) struct StepRun {
     silent_at: Option<Instant>,
     /// Since when the step waits for nothing but a unit that is silent.
     awaits_unit: Option<Instant>,
-    /// Frames that had not come through when the step began, and by now.
+    /// Number of frames lost or damaged until the step began, and until now.
     lost_or_damaged: Option<(u64, u64)>,
 }
 
@@ -68,9 +68,9 @@ pub(super) struct StepEnd {
     pub findings: Findings,
     pub bench_time: Duration,
     pub measurements: Vec<Measurement>,
-    /// Suspected part of an event that no step provoked.
+    /// Suspected part of an event that no step provoked, or of a failed item of the self-test.
     pub named_part: Option<LruId>,
-    /// How far the tester was behind, where that alone may have failed it.
+    /// Delay of the tester, if the delay alone may have failed the step.
     pub too_late: Option<Duration>,
 }
 
@@ -84,7 +84,7 @@ impl StepRun {
         }
     }
 
-    /// An answer of the operator is waited for.
+    /// The step waits for the operator's answer.
     pub(super) fn asks(&self, step: &Step) -> bool {
         self.actions.asks(&step.actions)
     }
@@ -94,16 +94,16 @@ impl StepRun {
         self.logged.push((event, parameter));
     }
 
-    /// Counts an event that was not asked for against the step. Whoever logged it saw what happened, so the
-    /// part it names counts for more than the one a failure of the step would point at.
+    /// Counts an event that no step provoked against the step. The unit or TCMS, which logged the event, saw what
+    /// happened, so the part that the event names counts for more than the part at which a failed step points.
     pub(super) fn fail_by_event(&mut self, entry: &UnitEvent) {
         let part = || Event::from_code(entry.code)?.suspect(entry.parameter);
         self.named_part = self.named_part.take().or_else(part);
         self.hold(Problem::Failed(Finding::Unprovoked(entry.into())));
     }
 
-    /// An event, or an emergency brake, that frames lost between tester and unit may have caused: the step says nothing
-    /// about the unit.
+    /// Notes an event (`None` = an emergency brake) that frames lost between tester and unit may have caused: the step
+    /// says nothing about the unit.
     pub(super) fn hold_against_line(&mut self, event: Option<LoggedEvent>) {
         self.hold(Problem::Bench(Finding::LineDisturbed { event }));
     }
@@ -164,7 +164,7 @@ impl StepRun {
         problem.into_iter().for_each(|problem| self.hold(problem));
     }
 
-    /// What it has failed for so far.
+    /// Findings for which the step has failed so far.
     pub(super) fn failures(&self) -> impl Iterator<Item = &Finding> {
         let problems = self.problems.iter().map(|(problem, _)| problem);
         let failed = problems.filter(|problem| problem.is_failure());
@@ -177,7 +177,8 @@ impl StepRun {
             .any(|(problem, _)| problem.is_failure())
     }
 
-    /// Whether a step that was given up is over. A unit that refused a request may have restarted: its log says so.
+    /// Whether a step that was given up is over. A unit that refused a request may have restarted, so the step waits
+    /// until the unit's log can say so.
     fn is_told_why(&self, now: Instant) -> bool {
         let Some(since) = self.refused_at.filter(|_| !self.broken_off) else {
             return true;
@@ -185,13 +186,13 @@ impl StepRun {
         self.has_said_why(now.since(since))
     }
 
-    /// Whether the unit has had its time to say why it refused a request or was silent, `waited` after that.
+    /// Whether the unit, `waited` after it refused a request or was silent, has had its time to say why.
     fn has_said_why(&self, waited: Duration) -> bool {
         (self.log).has_waited(waited, SAYS_WHY_WITHIN, LOGS_WHY_WITHIN)
     }
 
-    /// Whether the step is held back until the unit's log is read: what it logged in the step's time is
-    /// not known before.
+    /// Whether the step is held back until the unit's log is read: before, it is not known what the unit logged during
+    /// the step.
     fn waits_for_log(&mut self, now: Instant) -> bool {
         if self.log != LogState::Unanswered {
             self.awaits_log = None;
@@ -258,7 +259,7 @@ impl StepRun {
             return !self.waits_for_log(scan.now) && !self.waits_for_unit(scan.now);
         }
         let late = scan.now.since(self.started) >= step.time_limit;
-        // What it waits for may stand in a log that is not answered: its reader reports that.
+        // What the step waits for may stand in a log that the unit does not give: the reader of the log reports that.
         if late && !self.waits_for_log(scan.now) && !self.given_up {
             self.give_up(Problem::Bench(Finding::TimeLimit {
                 limit: step.time_limit,
@@ -318,8 +319,8 @@ impl StepRun {
             }
             measurements.push(measurement);
         }
-        // Events and brakes are as they are; what was judged by the bench's clock may be its delay, and what
-        // did not come about a frame that did not come through.
+        // An unprovoked event or brake, noted before, is a failure all the same. What fails only now may come from the
+        // bench's delay, or from a frame that did not come through.
         let failed_now = !failed_before && self.has_failed() && !aborted;
         let too_late = (failed_now && self.behind > TOO_LATE).then_some(self.behind);
         if !failed_before && self.has_failed() {

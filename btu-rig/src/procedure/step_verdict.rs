@@ -5,8 +5,8 @@ use super::finding::{Finding, Findings, WhyNoValue};
 use super::plan::Step;
 use super::problem::Problem;
 
-/// A bench problem outranks all: then the step says nothing about the unit. A request that was refused is one, unless
-/// the unit has `restarted` by itself and no longer knows what was sent to it.
+/// A bench problem outranks all: then the step says nothing about the unit. A refused request is a bench problem,
+/// unless the unit has `restarted` by itself and has forgotten what was sent to it: then the step has failed.
 pub(super) fn verdict(problems: &[(Problem, u32)], restarted: bool, aborted: bool) -> Verdict {
     let any = |wanted: fn(&Problem) -> bool| problems.iter().any(|(problem, _)| wanted(problem));
     let refused = any(|p| matches!(p, Problem::Refused(_)));
@@ -31,7 +31,7 @@ pub(super) fn findings(problems: &[(Problem, u32)], step: &Step, aborted: bool) 
         return all;
     }
     all.extend(aborted.then_some(Finding::Stopped));
-    // Measurements wait for the same thing more often than not: it is said once.
+    // Measurements without a value mostly lack it for one reason, which is told once.
     let mut without_value: Vec<(&str, &WhyNoValue, u32)> = Vec::new();
     for (problem, times) in problems {
         let Finding::NoValue {

@@ -1,7 +1,7 @@
 //! Moments by the unit's own clock, each known within bounds.
 //!
-//! What is new in a frame of state happened after the frame before, and by its stamp; what the unit tells in the
-//! scan of its change, within that scan. Bounds are in ms and wrap as stamps do.
+//! A change that a state frame is the first to show happened after the frame before, and by the frame's stamp; a change
+//! that the unit tells in the scan of the change happened within that scan. Bounds are in ms and wrap as stamps do.
 
 use protocol::SCAN;
 use protocol::signal::Signal;
@@ -9,7 +9,7 @@ use protocol::signal::Signal;
 use super::UnitTime;
 use super::plan::Condition;
 
-/// A moment after `after_ms` and, if that is known, by `by_ms`.
+/// A moment later than `after_ms` and, if `by_ms` is known, not later than `by_ms`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Moment {
     after_ms: u32,
@@ -19,16 +19,16 @@ pub(super) struct Moment {
 /// How a signal's change is dated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Dating {
-    /// Told in its scan.
+    /// The unit tells the change in the scan of the change.
     Scan,
-    /// Told in the next frame of state.
+    /// The unit tells the change in its next state frame.
     Frame,
-    /// Told in the next `Status`.
+    /// The unit tells the change in its next `Status`.
     Cycle,
 }
 
 impl Moment {
-    /// When a condition became true that is so first in the sample of this scan.
+    /// When a condition became true that the sample of this scan is the first to show as true.
     pub fn of_edge(time: &UnitTime, condition: &Condition) -> Self {
         let mut dating = Dating::Scan;
         condition.for_each_signal(&mut |signal| dating = dating.max(Dating::of(signal)));
@@ -53,7 +53,7 @@ impl Moment {
         }
     }
 
-    /// A moment of the tester's: after the latest frame of state was sent and before the next one is.
+    /// A moment at the tester: after the latest state frame was sent and before the next one is sent.
     pub fn before_the_next(time: &UnitTime) -> Self {
         Self {
             after_ms: time.stamp_ms,
@@ -61,7 +61,7 @@ impl Moment {
         }
     }
 
-    /// A moment that waits for the next frame, which this may be.
+    /// Ends a moment that has no end yet at the stamp of the latest state frame, if that frame is a later one.
     pub fn ended_by(self, time: &UnitTime) -> Self {
         let next = (time.stamp_ms != self.after_ms).then_some(time.stamp_ms);
         Self {
@@ -70,10 +70,10 @@ impl Moment {
         }
     }
 
-    /// Time from `start` to this, and how far it may be off, ms; `None` if the clock went back meanwhile.
+    /// Time from `start` to this moment, and its uncertainty, ms; `None` if the clock went back meanwhile.
     pub fn since(self, start: Self) -> Option<(f64, f64)> {
         let by_ms = self.by_ms.unwrap_or(self.after_ms);
-        // What has not ended is bounded by the end of what it is the start of.
+        // A start without a known end is bounded by the end of the measured time.
         let start_by_ms = start.by_ms.unwrap_or(by_ms);
         let span = |from: u32, to: u32| f64::from(to.wrapping_sub(from) as i32);
         let least = span(start_by_ms, self.after_ms).max(0.0);

@@ -11,11 +11,11 @@ pub const TIME_LIMIT_MARGIN: Duration = Duration::from_ms(1000);
 pub const REQUEST_TIME: Duration = Duration::from_ms(5000);
 /// Time allowed to a tachometer ramp or travel beyond what its speeds need.
 const MOTION_MARGIN_S: f64 = 2.0;
-/// Highest speed a generator may have to come down from.
+/// Highest speed from which the time allowed for a ramp lets a generator come down.
 const TOP_SPEED: Speed = Speed::from_kmh(120.0);
 
 impl Expectation {
-    /// Longest time it takes after the actions.
+    /// Longest time that the expectation takes after the actions.
     pub fn worst_case(&self) -> Duration {
         match self {
             Self::Becomes { within, .. } | Self::Logs { within, .. } => *within,
@@ -26,7 +26,7 @@ impl Expectation {
 }
 
 impl Action {
-    /// Longest time it takes.
+    /// Longest time that the action takes.
     pub fn worst_case(&self) -> Duration {
         match self {
             Self::Stimulus(_) => Duration::ZERO,
@@ -61,7 +61,7 @@ impl Action {
 }
 
 impl Step {
-    /// Longest time its actions, expectations and measures can take, cut by `limit` if one is set.
+    /// Longest time that the step's actions, expectations and measures can take, cut by `limit` if one is set.
     pub fn compute_worst_case(&self, limit: Option<Duration>) -> Duration {
         let after = self
             .expectations
@@ -81,7 +81,7 @@ impl Step {
 }
 
 impl Procedure {
-    /// Longest time it can take: setup, all steps with repetitions, clean-up.
+    /// Longest time that the procedure can take: setup, all steps with repetitions, clean-up.
     pub fn worst_case(&self) -> Duration {
         let mut total = total_worst_case(&self.setup) + total_worst_case(&self.cleanup);
         for step in &self.steps {

@@ -17,13 +17,13 @@ pub trait UnitLink {
         from_unit: &mut Vec<u8>,
     ) -> Result<(), LinkTrouble>;
 
-    /// How long unit and bench both stood still since this was last asked, as two programs do on a computer that is
-    /// held up: time that neither of them lived through.
+    /// Time for which unit and bench both stood still since the last call, as two programs do on a computer that is
+    /// held up. This time counts for neither.
     fn take_pause(&mut self) -> Duration {
         Duration::ZERO
     }
 
-    /// How late an instrument of the bench was since this was last asked: what the unit did then is not judged.
+    /// How late an instrument of the bench was since the last call: what the unit did then is not judged.
     fn take_late(&mut self) -> Duration {
         Duration::ZERO
     }

@@ -5,8 +5,8 @@ use crate::procedure::finding::Finding;
 use crate::procedure::plan::Connection;
 
 impl Rig {
-    /// What was done to the unit on a train since this was last asked, by others than this tester, after which nothing
-    /// can be judged: it was started again, or ended the session by itself. On a bench there is no other tester. A unit that
+    /// What others than this tester did to the unit on a train since the last call, after which nothing can be judged:
+    /// the unit was started again, or ended the session by itself. On a bench there is no other tester. A unit that
     /// restarts by itself says so in its log, which is read first.
     pub fn take_intervention(&mut self) -> Option<Finding> {
         let restarts = self.tester.restarts;

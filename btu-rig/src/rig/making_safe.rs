@@ -8,8 +8,8 @@ use crate::stimulus::{TachoCondition, WaysideCondition};
 use crate::train::EquipmentFaults;
 
 impl Rig {
-    /// Goes back to the quiescent state: at once what can be, and what a turning wheel needs so
-    /// that the unit sees nothing implausible (code, reverser, tachometers) at standstill.
+    /// Goes back to the quiescent state: at once where possible; what a turning wheel needs (code, reverser,
+    /// tachometers) only at standstill, so that the unit sees nothing implausible.
     pub fn make_safe(&mut self, now: Instant) {
         self.train_driven = false;
         self.wheel.stop();
@@ -30,8 +30,8 @@ impl Rig {
         !self.making_safe && !self.train_driven && self.wheel.standing() && self.tester.safe()
     }
 
-    /// Once the wheels stand and the unit is disarmed, the rest of the bench rests, too: an armed unit takes a key, a
-    /// mode switch or a code that changes for a train that is no longer tested, and brakes.
+    /// Once the wheels stand and the unit is disarmed, the rest of the bench rests, too. An armed unit that saw key,
+    /// mode switch or code change would conclude that the train is no longer being tested, and brake.
     pub(super) fn finish_making_safe(&mut self) {
         if self.making_safe && self.wheel.standing() && self.tester.safe() {
             self.rest_quiescent();

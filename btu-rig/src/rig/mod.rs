@@ -3,8 +3,8 @@
 //!
 //! A scan is [`Rig::step`], the exchange of bytes, [`Rig::receive`]. Read in this order: this
 //! file, `apply` (what each stimulus does), `train_side/wheel` and `train_side/tacho` (pulses), `session/tester`.
-//! The files of this folder act on the whole rig; its parts know neither the rig nor each other but downwards:
-//! `session` uses `link` and `wayside`, `wayside` uses `train_side`.
+//! The files of this folder act on the whole rig. Its subfolders do not know the rig, and depend on each other in one
+//! direction: `session` uses `link` and `wayside`, `wayside` uses `train_side`.
 //!
 //! Terms: *distance* is what the wheels have rolled, never falling; *position* is distance run, forward positive;
 //! *quiescent* is the state after [`Rig::new`] and after making safe, in which a healthy unit logs
@@ -71,7 +71,7 @@ pub struct Rig {
     antenna: Antenna,
     /// The antenna signal follows the codes of the section laid along the way.
     codes_along: bool,
-    /// Place in the code table of the code that was put into the antenna last that way.
+    /// Index in the code table of the code that was last put into the antenna from the section.
     code_put_in: Option<usize>,
     wheel: Wheel,
     tachos: [Tacho; 2],
@@ -88,7 +88,7 @@ pub struct Rig {
     markers: Markers,
     /// Codes, TWC, markers and pulses are waveforms instead of numbers.
     coils: Option<Coils>,
-    /// What the wayside sends in a scan through the loop as waveform.
+    /// Bytes that the wayside sends in a scan, where the loop is a waveform.
     in_loop: Vec<u8>,
     wayside: Wayside,
     train_number: u16,
@@ -98,7 +98,7 @@ pub struct Rig {
     tcms_port: TcmsPort,
     /// Motor cars and trailers whose demands make up each signal of [`PAIR_DEMANDS`].
     pair_cars: [(CarSet, CarSet); 4],
-    /// Events of TCMS that were not taken yet, and how many there were.
+    /// Events of TCMS that were not taken yet; `tcms_logged` counts all so far.
     tcms_events: Vec<UnitEvent>,
     tcms_logged: u32,
     /// Number of TCMS's events that were not taken in time.
@@ -116,7 +116,7 @@ pub struct Rig {
     making_safe: bool,
     /// The rig was made safe, and nothing was asked of the bench since.
     quiescent: bool,
-    /// The last thing begun that takes its time is a motion.
+    /// The stimulus begun last that takes time is a motion.
     awaits_motion: bool,
     braking: bool,
     link: Link,
@@ -215,7 +215,7 @@ impl Rig {
         self.injected.begin(modes, power_at);
     }
 
-    /// Makes what is in these coils waveforms from now on, for a unit of this configuration.
+    /// Makes the signals in these coils as waveforms from now on, for a unit of this configuration.
     pub fn use_waveforms(
         &mut self,
         config: &UnitConfig,
@@ -236,8 +236,8 @@ impl Rig {
         self.line_watch.step(now, self.link.counters());
         self.latest.step(now, self.harness.is_there());
         if self.quiescent {
-            // The unit may ask for the holding brake a little longer: the next procedure knows nothing
-            // of it.
+            // The unit may ask for the holding brake a little longer: without this its latch would last into the next
+            // procedure.
             self.tcms.unlatch();
         }
         self.door_gear.step(
@@ -317,7 +317,7 @@ impl Rig {
         self.watch.note_stalled(now);
     }
 
-    /// Bench and unit both stood still for so long, which is no time for either.
+    /// Bench and unit both stood still for `pause`: this time counts for neither.
     pub fn note_pause(&mut self, now: Instant, pause: Duration) {
         self.note_stalled(now);
         self.tester.clock.put_off(pause);

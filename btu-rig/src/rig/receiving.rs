@@ -50,7 +50,7 @@ impl Rig {
                     let counters = &self.link.counters();
                     self.subscription.on_state(stamp_ms, state, counters);
                     if !harness {
-                        // The next one is for the next scan, so that each scan's sample has one stamp.
+                        // The next `TrainState` is for the next scan, so that each scan's sample has one stamp.
                         break;
                     }
                 }

@@ -39,7 +39,7 @@ impl Rig {
         self.conditions = conditions;
     }
 
-    /// Changes how what sensors and antenna give differs from the ideal, from now on.
+    /// Changes how sensors and antenna differ from ideal ones, from now on.
     pub fn set_sensors(&mut self, sensors: &Sensors) {
         self.antenna.set_sensors(*sensors);
         let random = &mut Random::new(sensors.teeth_seed);
@@ -48,7 +48,7 @@ impl Rig {
         }
     }
 
-    /// Passengers aboard unless a procedure says otherwise, kg; what the train cannot carry stays behind.
+    /// Passengers aboard unless a procedure says otherwise, kg; never more than the train can carry.
     pub fn set_usual_load(&mut self, passengers_kg: f64) {
         let load_kg = passengers_kg.clamp(0.0, self.train.full_load_kg);
         self.tcms_port.usual_load_kg = load_kg;
@@ -97,7 +97,7 @@ impl Rig {
         self.speeds.push(self.wheel.velocity_mps());
     }
 
-    /// What acts on the train besides its orders.
+    /// Adds what acts on the train besides its orders.
     fn on_track(&mut self, mut inputs: TrainInputs) -> TrainInputs {
         if inputs.load_kg != self.cars_load_kg {
             self.cars_load_kg = inputs.load_kg;

@@ -40,7 +40,7 @@ impl Rig {
         Ok(())
     }
 
-    /// Puts the code at the head into the antenna when it is another than before.
+    /// Puts the code at the head of the train into the antenna when the code changes.
     pub(super) fn follow_codes(&mut self) {
         let Some(track) = self.track.as_ref().filter(|_| self.codes_along) else {
             return;

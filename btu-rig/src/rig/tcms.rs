@@ -76,7 +76,7 @@ impl Rig {
         orders
     }
 
-    /// Keeps TCMS's new events with what stood around them.
+    /// Keeps TCMS's new events, each with speed, limit, position, mode and brake cause at this moment.
     fn log_tcms(&mut self) {
         let events = self.tcms.take_events();
         let sample = &self.latest.sample;
@@ -84,7 +84,7 @@ impl Rig {
         for TcmsEvent { event, parameter } in events {
             let index = self.tcms_logged;
             self.tcms_logged += 1;
-            // Nobody takes them while no procedure runs; the newest are of no use without the first.
+            // Nobody takes events while no procedure runs; the newest are of no use without the first.
             if self.tcms_events.len() >= MAX_EVENTS {
                 self.tcms_dropped += 1;
                 continue;

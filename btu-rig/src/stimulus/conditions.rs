@@ -9,7 +9,7 @@ pub enum TachoCondition {
     Good,
     /// No pulses.
     Dead,
-    /// Spurious pulses on top, mean per second.
+    /// Spurious pulses beside the true ones.
     Noisy {
         /// Mean spurious pulses per second.
         per_s: f64,
@@ -28,7 +28,7 @@ pub enum TachoCondition {
 pub enum WaysideCondition {
     /// Sends nothing.
     Silent = 0,
-    /// Sends sound frames every 250 ms.
+    /// Sends undamaged frames every 250 ms.
     Good = 1,
     /// Sends frames with bit errors.
     Corrupt = 2,
@@ -66,7 +66,7 @@ protocol::labelled! {
 }
 
 impl DoorLine {
-    /// The line that scripts call so.
+    /// The line that scripts call `label`.
     pub fn from_label(label: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|line| line.label() == label)
     }
@@ -80,7 +80,7 @@ pub enum TcmsCondition {
     Good,
     /// Sends nothing.
     Silent,
-    /// Sends with a standing alive counter.
+    /// Sends frames whose alive counter stands still.
     Stale,
 }
 

@@ -10,7 +10,7 @@ use crate::stored::train_order;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub struct OrderData {
-    /// Section that the length is of; 0 = none is given.
+    /// Section whose length is given; 0 = no section is given.
     pub section: u16,
     /// Length of the section, 0.1 m.
     pub length_dm: u32,
@@ -19,12 +19,12 @@ pub struct OrderData {
     /// Order to the train beside running.
     #[serde(with = "train_order")]
     pub order: TrainOrder,
-    /// Train number; 0 = that of the train.
+    /// Train number; 0 = the train's own number.
     pub train_number: u16,
 }
 
 impl OrderData {
-    /// An order that tells of a section, whose length is `length_m`; of none it tells 0.
+    /// An order that tells a section and its length, `length_m`; without a section the order tells section 0.
     pub fn of_section(order: TrainOrder, section: Option<&Section>, length_m: f64) -> Self {
         Self {
             section: section.map_or(0, |section| section.section),

@@ -22,7 +22,7 @@ pub struct StationData {
     #[serde(with = "door_side")]
     pub door_side: DoorSide,
     pub departure: bool,
-    /// Train number; 0 = that of the train.
+    /// Train number; 0 = the train's own number.
     pub train_number: u16,
 }
 
@@ -43,7 +43,7 @@ impl StationData {
         }
     }
 
-    /// Station data of its arrival loop; `next_station` is the one after it.
+    /// Station data of a section's arrival loop; `next_station` is the station after the arrival station.
     pub fn at_arrival(section: &Section, next_station: u16) -> Self {
         Self {
             station: section.to_station,

@@ -1,5 +1,5 @@
 //! The table of stimuli: each row has a stimulus with its values, the way on which it reaches the unit, and its text.
-//! The script language has verbs that make them, the rig's `apply` carries them out.
+//! Verbs of the script language make stimuli, the rig's `apply` carries them out.
 
 use std::fmt;
 
@@ -29,7 +29,7 @@ pub enum Way {
 }
 
 impl Way {
-    /// The tester asks it of the unit on the maintenance channel; all else goes through the harness.
+    /// The tester asks the unit for the stimulus on the maintenance channel; other stimuli go through the harness.
     pub fn by_tester(self) -> bool {
         matches!(self, Self::Tester | Self::TestBoard)
     }
@@ -43,7 +43,7 @@ macro_rules! stimuli {
             $(($(#[$value_meta:meta])* $value:ident: $value_kind:ty))?
             [$way:ident] => $text:expr;
     )*) => {
-        /// One thing done to the unit, through the bench harness or, for `Ptu…`, through the TEST board.
+        /// One thing done to the unit, through the bench harness or, for `Ptu…`, on the maintenance channel.
         #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
         pub enum Stimulus {
@@ -54,7 +54,7 @@ macro_rules! stimuli {
         }
 
         impl Stimulus {
-            /// The way on which it reaches the unit.
+            /// The way on which this stimulus reaches the unit.
             pub fn way(&self) -> Way {
                 match self {
                     $(Self::$name { .. } => Way::$way,)*
@@ -98,7 +98,7 @@ stimuli! {
     /// The antenna signal follows the speed codes of the section that lies along the way, until
     /// another signal is put into the antenna.
     CodesAlong {
-        /// On, or keeping what is there.
+        /// On; off keeps the signal that is in the antenna.
         on: bool,
     } [Harness] => format!("speed codes along the way {}", on_off(on));
     /// Tachometer generators go to a speed at this acceleration.
@@ -132,12 +132,12 @@ stimuli! {
     } [Harness] => format!("tachometer {channel} {}", tacho_text(condition));
     /// Tachometers and markers follow the train model, which obeys the unit through TCMS.
     TrainDriven {
-        /// On or back to the generators.
+        /// On; off gives tachometers and markers back to the generators.
         on: bool,
     } [Harness] => format!("train model {}", on_off(on));
     /// Adhesion between the train's wheels and the rail.
     Adhesion {
-        /// Coefficient at standstill; `None` = that of the run's conditions.
+        /// Coefficient at standstill; `None` = the coefficient of the run's conditions.
         coefficient: Option<f64>,
     } [Harness] => format!("adhesion {}", coefficient.map_or("as always".into(), number));
     /// One pulse of a marker coil.
@@ -165,7 +165,7 @@ stimuli! {
     };
     /// Station data the wayside sends.
     Station(data: StationData) [Harness] => format!("wayside sends {}", station_text(&data));
-    /// Orders that the wayside sends beside them; `None` = none.
+    /// Orders that the wayside sends beside the station data; `None` = no orders.
     Orders(orders: Option<OrderData>) [Harness] => match orders {
         None => "wayside gives no orders".into(),
         Some(orders) => format!("wayside orders {}", order_text(&orders)),
@@ -183,7 +183,7 @@ stimuli! {
         left: bool,
         state: DoorState,
     } [Cab] => format!("doors on the {} {}", side(left), state.label());
-    /// The doors follow the unit's contacts, until a hand moves one.
+    /// The doors follow the unit's contacts, until a stimulus moves a door.
     DoorsFollow {
         /// Follow, or stay as they are.
         on: bool,
@@ -192,14 +192,14 @@ stimuli! {
     DoorObstacle {
         /// On the left, else on the right.
         left: bool,
-        /// Closings that it stops; 0 = it is gone.
+        /// Number of closings that the obstacle stops; 0 = the obstacle is gone.
         times: u8,
     } [Cab] => format!("obstacle in the doors on the {} for {times} closings", side(left));
-    /// A door train line says this to the unit, whatever the doors are.
+    /// State that a door train line has at the unit, whatever the doors do.
     DoorLine {
         /// Door line.
         line: DoorLine,
-        /// Energised; `None` = as the doors have it.
+        /// Energised; `None` = as the doors' contacts make it.
         on: Option<bool>,
     } [Harness] => format!("door line {}: {}", line.label(), match on {
         None => "as the doors have it",
@@ -281,9 +281,9 @@ stimuli! {
         /// Failed.
         on: bool,
     } [Harness] => format!("{} on car {car}: {}", what.label(), on_off(on));
-    /// Gradient added to the track's.
+    /// Gradient added to the gradient of the track.
     Gradient {
-        /// ‰, uphill positive; `None` = that of the run's conditions.
+        /// ‰, uphill positive; `None` = the gradient of the run's conditions.
         permille: Option<f64>,
     } [Harness] => match permille {
         None => "gradient as always".into(),
@@ -314,7 +314,7 @@ stimuli! {
     PtuArm [Tester] => "arm the unit";
     /// Ask the unit to arm: a refusal is no error, the signal `arm_refusal` says why.
     PtuAskToArm [Tester] => "ask the unit to arm";
-    /// Disarm it.
+    /// Disarm the unit.
     PtuDisarm [Tester] => "disarm the unit";
     /// The tester falls silent, or speaks again.
     PtuSilent {
@@ -329,7 +329,7 @@ stimuli! {
         channels: u8,
         /// Turning backward.
         backward: bool,
-        /// Speed.
+        /// Test speed to reach.
         #[serde(rename = "to_mps", with = "mps")]
         to: Speed,
         /// Size of the acceleration, m/s²; 0 = at once.

@@ -50,8 +50,7 @@ impl AtcLink {
         }
     }
 
-    /// Takes a frame. One that contradicts itself is taken, too: [`driving_control`] reads it by its
-    /// safe side.
+    /// Takes a frame. A frame that contradicts itself is taken, too: [`driving_control`] acts on the safe side.
     ///
     /// [`driving_control`]: super::driving_control()
     pub fn receive(&mut self, now: Instant, frame: &AtcToTcms) {

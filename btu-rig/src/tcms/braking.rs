@@ -3,13 +3,12 @@
 //!
 //! Each MT pair is asked for its share of the train's effort, weighed by its load. Its inverter gives
 //! what the electric pattern and adhesion allow, air on its trailers makes up for the rest, and air on
-//! its motor cars for what is still missing, each up to its own maximum. The share of a car without
-//! brake goes to the other pairs, the same to each. Where that is more than a pair's own maximum by air [S3 table 1: B7
-//! of the full train], its cars give the rest, up to what their emergency brake gives: the printed maxima of seven
-//! cars are 11.2 % short of a full train's demand, which S3 has the others give.
+//! its motor cars for what is still missing, each up to its own maximum. The share of a car without a brake is divided
+//! equally among the other pairs. Where a pair is then asked for more than its own maximum by air [S3 table 1: B7 of
+//! the full train], its cars give the rest, up to the force of their emergency brake: the printed maxima of seven cars
+//! are 11.2 % short of the demand on a full train, which S3 takes from the others.
 //!
-//! Who can give what changes with load and cut-outs only, so it is kept ([`Sharing`]) from scan to
-//! scan.
+//! What each car can give changes with load and cut-outs only, so [`Sharing`] keeps it from scan to scan.
 
 use std::ops::Range;
 
@@ -17,7 +16,7 @@ use crate::train::{CarSet, MAX_CARS, PerCar};
 
 use super::consist::Consist;
 
-/// Greatest efforts of the pairs' parts, N, at one load and with the same cars cut out.
+/// Greatest efforts of the MT pairs and of their cars, N, at one load and with one set of cars cut out.
 #[derive(Clone, Debug)]
 pub struct Sharing {
     shares: Vec<PairShares>,
@@ -28,7 +27,7 @@ pub struct Sharing {
     full_n: f64,
 }
 
-/// Part of each of its pair's brakes that a car gives.
+/// One car, and its share of each brake of its MT pair, 0..1.
 #[derive(Clone, Copy, Debug)]
 struct CarPart {
     car: usize,
@@ -38,15 +37,15 @@ struct CarPart {
     more_air: f64,
 }
 
-/// One MT pair, N.
+/// Greatest efforts of one MT pair, N.
 #[derive(Clone, Debug)]
 struct PairShares {
-    /// Full service, with what it takes over for others.
+    /// Full service brake, with what the pair takes over for cars without a brake.
     full_n: f64,
     electric_n: f64,
     trailer_air_n: f64,
     motor_air_n: f64,
-    /// Effort that the pair's air brakes add in place of cars without one, N.
+    /// Effort that the air brakes of the pair add beyond their maximum in service when other cars have no brake, N.
     more_air_n: f64,
     /// Places of the pair's cars among the parts.
     parts: Range<usize>,
@@ -57,26 +56,26 @@ struct PairShares {
 pub struct BrakingInputs<'a> {
     /// Share of full service, 0..1 (BE_s), jerk limited.
     pub share: f64,
-    /// Electric brake there is, share of its greatest (DBE_v).
+    /// Electric brake available, share of its greatest (DBE_v).
     pub pattern: f64,
-    /// Electric brake at the time at which air that is asked for now arrives, share of its greatest.
+    /// Electric brake available when air that is asked for now arrives, share of its greatest.
     /// Air takes longer than an inverter, and would come too late to a brake that fades.
     pub pattern_ahead: f64,
-    /// Efforts that inverters should give by now, and that their electric brakes give (EFM of S3);
-    /// none where they give what they are asked for.
+    /// Efforts that inverters should give by now, and those that they report (EFM of S3); `None` where inverters give
+    /// what they are asked for.
     pub inverters: Option<Inverters<'a>>,
 }
 
 /// Inverters as asked and as they answer.
 #[derive(Clone, Copy, Debug)]
 pub struct Inverters<'a> {
-    /// Effort of each that should be there by now, N, electric brake below 0.
+    /// Effort that each inverter should give by now, N; negative = electric brake.
     pub due_n: &'a PerCar,
-    /// Electric brake of each, N, a size.
+    /// Electric brake that each inverter reports, N, never negative.
     pub electric_n: &'a PerCar,
 }
 
-/// Demand on each car, N, as sizes.
+/// Demand on each car, N, never negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrakeDemands {
     pub train_n: f64,
@@ -139,7 +138,7 @@ impl Sharing {
         sharing
     }
 
-    /// Demands of one scan. It keeps nothing.
+    /// Demands of one scan; they depend on nothing but `inputs` and the shares.
     pub fn braking(&self, inputs: &BrakingInputs<'_>) -> BrakeDemands {
         let lost_n = self.lost(inputs.inverters);
         let mut demands = BrakeDemands {
@@ -165,8 +164,8 @@ impl Sharing {
         demands
     }
 
-    /// Electric brake of each pair that should be there and is not, N. A report that is no number is of
-    /// no brake.
+    /// Electric brake that the inverters of each pair should give and do not report, N. A report that is not a number
+    /// counts as no brake.
     fn lost(&self, inverters: Option<Inverters<'_>>) -> PerCar {
         let mut lost_n = [0.0; MAX_CARS];
         let Some(inverters) = inverters else {
@@ -210,7 +209,7 @@ fn moved(consist: &Consist, pair: usize, train_n: f64, no_air: CarSet) -> f64 {
     moved_n
 }
 
-/// DBE_v: electric brake there is at a speed, share of the greatest.
+/// DBE_v: electric brake available at a speed, share of the greatest.
 pub fn pattern(consist: &Consist, speed_mps: f64) -> f64 {
     let electric = &consist.data.electric_brake;
     let kmh = speed_mps * 3.6;
@@ -222,7 +221,7 @@ pub fn pattern(consist: &Consist, speed_mps: f64) -> f64 {
     }
 }
 
-/// `value` as a share of `whole`; nothing of nothing is nothing.
+/// `value` as a share of `whole`; 0 where `whole` is 0.
 fn part(value: f64, whole: f64) -> f64 {
     if whole > 0.0 { value / whole } else { 0.0 }
 }

@@ -31,12 +31,12 @@ impl CabChange {
         }
     }
 
-    /// One that is under way is left; another begins when it is asked for again.
+    /// Ends a change that is under way; another begins when the unit asks for it again.
     pub fn leave(&mut self) {
         self.taken_up_at = None;
     }
 
-    /// One scan; it begins when it is asked for on a train that stands.
+    /// One scan; a change begins when it is asked for while the train stands.
     pub fn step(&mut self, now: Instant, asked: bool, stands: bool) -> Option<CabOrder> {
         let begins = asked && stands && !self.asked;
         self.asked = asked && (stands || self.asked);

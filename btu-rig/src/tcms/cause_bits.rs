@@ -21,7 +21,7 @@ bitflags! {
         const HCR = 1 << 1;
         /// Reverser in neutral.
         const REVERSER = 1 << 2;
-        /// Emergency brake train line de-energised.
+        /// Emergency brake: its train line is open and not cut out.
         const EMERGENCY = 1 << 3;
         /// Full service brake by TCMS, or the controller at B7 (BCYPCUT).
         const FULL_SERVICE = 1 << 4;
@@ -39,7 +39,7 @@ bitflags! {
         const NOT_RELEASED = 1 << 10;
         /// Main reservoir pressure low.
         const MAIN_RESERVOIR = 1 << 11;
-        /// No mode, or more than one.
+        /// No mode: no cab is active, or its mode switch is off.
         const MODE = 1 << 12;
         /// Driverless initialisation or turn-back.
         const TURN_BACK = 1 << 13;

@@ -56,9 +56,9 @@ pub struct Consist {
     pub full_inertia_kg: f64,
     /// Full service brake, m/s².
     pub service_mps2: f64,
-    /// Full power, m/s², of the train's braking mass.
+    /// Acceleration of the train's braking mass at full power, m/s².
     pub power_mps2: f64,
-    /// Passengers it is weighed with, kg.
+    /// Passengers aboard, by which the cars are weighed, kg.
     pub load_kg: f64,
 }
 
@@ -96,7 +96,7 @@ impl Consist {
     pub fn weigh(&mut self, load_kg: f64) {
         self.load_kg = load_kg;
         let full_kg: f64 = self.data.cars.iter().map(|car| car.full_load_kg).sum();
-        // `max` also takes what is not a number for an empty train.
+        // `max` turns not-a-number into an empty train.
         let share = (load_kg.max(0.0) / full_kg.max(1.0)).min(1.0);
         let service_mps2 = self.service_mps2;
         for pair in &mut self.pairs {
@@ -120,7 +120,7 @@ impl Consist {
         }
     }
 
-    /// Effort of each car's air brake beyond its greatest service brake, N: its emergency brake gives it, at the
+    /// Effort of each car's air brake beyond its greatest service brake, up to that of its emergency brake, N, at the
     /// present load.
     pub fn more_air_n(&self) -> PerCar {
         let emergency = self.data.emergency_brake.kmh_per_s / self.data.service_brake.kmh_per_s;

@@ -7,8 +7,8 @@ use super::data::TcmsData;
 
 pub const FULL_BRAKE: i16 = -1024;
 pub const FULL_POWER: i16 = 1023;
-/// Distance of the end positions inside the break points, V: outside of them the controller counts
-/// as failed.
+/// Distance by which the end positions lie inside the outer break points, V: outside of those the controller counts as
+/// failed.
 const INSIDE_V: f64 = 0.001;
 
 /// Inputs of TCMS from a master controller.
@@ -57,7 +57,7 @@ impl TcmsData {
         }
     }
 
-    /// Value of a voltage, −1024..1023: both failure ranges are a full brake, and so is no number.
+    /// Value of a voltage, −1024..1023: a voltage in a failure range, or not-a-number, is a full brake.
     pub fn value(&self, volts: f64) -> i16 {
         let [a, b, c, d] = self.controller_v;
         if self.controller_failed(volts) {
@@ -71,7 +71,7 @@ impl TcmsData {
         }
     }
 
-    /// The voltage is in a failure range, or none at all.
+    /// The voltage is in a failure range, or is not a number.
     pub fn controller_failed(&self, volts: f64) -> bool {
         let [a, _, _, d] = self.controller_v;
         !(volts > a && volts < d)

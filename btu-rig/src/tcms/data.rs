@@ -19,15 +19,15 @@ pub struct TcmsData {
     pub controller_v: [f64; 4],
     /// Age at which orders of ATO no longer count, s.
     pub order_timeout_s: f64,
-    /// Refused frames of the unit that are logged when they come within `refused_within_s`.
+    /// Number of refused frames of the unit that is logged when they come within `refused_within_s`.
     pub refused_frames: u32,
-    /// See `refused_frames`, s.
+    /// Time within which `refused_frames` must come, s.
     pub refused_within_s: f64,
     /// Time the dead man may be released, s.
     pub dead_man_s: f64,
     /// Speed below which a brake that lasts becomes the holding brake, km/h (S4).
     pub holding_below_kmh: f64,
-    /// Time it has to last, s (S4).
+    /// Time for which this brake has to last, s (S4).
     pub holding_after_s: f64,
     /// Traction of one motor car that releases the holding brake, % of its greatest (S4: motor
     /// current).
@@ -39,7 +39,7 @@ pub struct TcmsData {
     /// Difference between a car's air brake and its demand, % of its full service, that counts as
     /// not following.
     pub not_following_above: f64,
-    /// Time it has to last, s.
+    /// Time for which this difference has to last, s.
     pub not_following_after_s: f64,
     /// Time an inverter or a brake control unit may be silent, s.
     pub silent_after_s: f64,

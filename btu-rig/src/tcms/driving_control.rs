@@ -50,14 +50,14 @@ pub struct DrivingOutputs {
     pub drytebe: i16,
 }
 
-/// One cycle of the module. It keeps nothing.
+/// One cycle of the module: outputs depend on the present inputs alone.
 ///
 /// Automatic and driverless: P, B and value of ATO. Manual, yard and emergency: contacts and value of
 /// the master controller. P and B both: B, and the value is taken as B's.
 ///
 /// The paper is silent on the rest, and the safe side is taken. The neutral contact takes P away, not
 /// B. Powering with powering cut is coasting. A value against its contact, or without one, brakes if it
-/// can: P with a value that brakes brakes, a value that powers without P is none. A value beyond
+/// can: with P, a value that brakes brakes; without P, a value that powers counts as 0. A value beyond
 /// −1024..1023 is a full brake, and so is no mode, or more than one.
 pub fn driving_control(inputs: &DrivingInputs) -> DrivingOutputs {
     let driver = Driver::of(

@@ -23,7 +23,7 @@ pub struct Order {
     pub no_inverters: bool,
     /// Powering is cut: traction goes at once, not by the jerk limit (S3, S4).
     pub power_cut: bool,
-    /// Speed, m/s, a size.
+    /// Speed, m/s, never negative.
     pub speed_mps: f64,
     /// Inverters that are cut out or failed.
     pub inverters_out: CarSet,
@@ -38,11 +38,11 @@ pub struct Demands {
     pub motor_n: PerCar,
     /// Air brakes.
     pub air_n: PerCar,
-    /// Braking effort wanted of the whole train, a size.
+    /// Braking effort asked of the whole train, N, never negative.
     pub brake_n: f64,
 }
 
-/// The sharing out of effort.
+/// Turns the ordered effort into demands on the cars, scan by scan.
 #[derive(Clone, Debug)]
 pub struct Effort {
     /// Cars and their load.
@@ -59,7 +59,7 @@ pub struct Effort {
     air_due: Actuators,
     /// Time since air was last asked for, s.
     air_rests_s: f64,
-    /// Longer answer of air than of inverters, s.
+    /// Time by which air answers later than inverters, s.
     air_later_s: f64,
     sharing: Sharing,
     shared_for: SharingInputs,
@@ -94,7 +94,7 @@ impl Effort {
         }
     }
 
-    /// Asks for nothing.
+    /// Starts again without any effort.
     pub fn reset(&mut self) {
         self.effort_mps2 = 0.0;
         self.held_mps2 = 0.0;
@@ -103,13 +103,13 @@ impl Effort {
         self.air_due.reset();
     }
 
-    /// Traction there is at a speed with the present load, N.
+    /// Traction available at a speed with the present load, N.
     pub fn power_n(&self, speed_mps: f64) -> f64 {
         let most_n: f64 = self.consist.power_n.iter().sum();
         most_n * powering::pattern(&self.consist, speed_mps)
     }
 
-    /// Air brake each car should have by now, N, by what it was asked for and the times it takes.
+    /// Force that each car's air brake should have by now, N, from past demands and its response times.
     pub fn air_due_n(&self) -> &PerCar {
         &self.air_due.effort_n
     }
@@ -159,13 +159,13 @@ impl Effort {
         let powers = self.effort_mps2 > 0.0 || order.no_inverters;
         let no_electric = if powers { self.consist.motors } else { cut_out };
         self.share_between(no_electric.with(order.inverters_out), order.brakes_out);
-        // Speed goes down by what is braked: gradients and resistance change little in this time.
+        // Speed when air arrives: it falls by the braking; gradients and resistance change little in this time.
         let ahead_mps = order.speed_mps - brake_mps2 * self.air_later_s;
         let brakes = self.sharing.braking(&BrakingInputs {
             share: brake_mps2 / self.consist.service_mps2,
             pattern: braking::pattern(&self.consist, order.speed_mps),
             pattern_ahead: braking::pattern(&self.consist, ahead_mps),
-            // S3 eq. 8: DBE1 − EFM, less what is only on its way.
+            // S3 eq. 8: DBE1 − EFM, without the effort that is only delayed.
             inverters: equipment.map(|equipment| Inverters {
                 due_n: &self.motors_due.effort_n,
                 electric_n: &equipment.electric_n,
@@ -191,9 +191,9 @@ impl Effort {
         }
     }
 
-    /// Lets the effort asked for go to the ordered one.
+    /// Moves the effort asked for toward the ordered one by the jerk limit.
     fn limit_jerk(&mut self, dt_s: f64, order: &Order, equipment: Option<&Equipment>) {
-        // What is not a number is no order to trust: full service.
+        // An order that is not a number is not trusted: full service.
         let share = if order.share.is_nan() {
             -1.0
         } else {
@@ -204,8 +204,8 @@ impl Effort {
         } else {
             self.consist.power_mps2
         };
-        // What cuts powering, the emergency brake's contacts among it, takes it off without a ramp; only
-        // brakes then build up by the jerk limit.
+        // A cut of powering, by the emergency brake's contacts too, takes traction off without a ramp; only brakes then
+        // build up by the jerk limit.
         if order.no_inverters || order.power_cut {
             self.effort_mps2 = self.effort_mps2.min(0.0);
         }
@@ -222,8 +222,8 @@ impl Effort {
         }
     }
 
-    /// Greatest rise of effort in a scan, m/s²: while the holding brake's air goes out under traction,
-    /// what its going leaves of the jerk limit.
+    /// Greatest rise of effort in a scan, m/s²: while the holding brake's air goes out under traction, its fall uses up
+    /// a part of the jerk limit.
     fn rise_at_departure(
         &mut self,
         step: f64,

@@ -32,7 +32,7 @@ pub struct Line {
     pub fed: bool,
 }
 
-/// One scan. It keeps nothing.
+/// State of the line in one scan, from its contacts alone.
 pub fn emergency_line(inputs: &LineInputs) -> Line {
     let mut sources = EbSources::default();
     for (source, opens) in [

@@ -1,9 +1,8 @@
 //! Monitoring of the train's equipment: inverters and brake control units that do not answer, cylinders that
 //! do not follow their demand, brakes that are not released (S4).
 //!
-//! What was found is kept until the opposite has lasted as long, so that it does not come and go: a
-//! unit that answers again, cylinders that follow a full demand. Cutting the car's equipment out ends
-//! it at once.
+//! A failure that was found is kept until its opposite has lasted as long (a unit answers again, cylinders follow a
+//! full demand), so that it does not come and go. Cutting out the equipment of the car ends it at once.
 
 use protocol::{Duration, Instant};
 
@@ -21,10 +20,10 @@ const FULL_DEMAND: f64 = 0.9;
 #[derive(Clone, Copy, Debug)]
 pub struct MonitorInputs<'a> {
     pub equipment: &'a Equipment,
-    /// Air TCMS asks of each car, N.
+    /// Air brake that TCMS asks of each car, N.
     pub air_n: &'a PerCar,
-    /// Nothing brakes but what this monitor itself has found: no brake, holding, full service, emergency,
-    /// security or parking brake.
+    /// No brake is ordered but by this monitor itself: no service, holding, full service, emergency, security or
+    /// parking brake.
     pub nobody_brakes: bool,
     /// Cars without a brake: cut out.
     pub brakes_cut_out: CarSet,
@@ -44,7 +43,7 @@ pub struct EquipmentFailures {
     pub cylinders: CarSet,
     /// Cars whose brake is not released.
     pub not_released: CarSet,
-    /// Brakes that are not released bring the full service brake (BCXNRB): not while they are asked
+    /// Brakes that are not released order the full service brake (BCXNRB), except while they are asked to release
     /// again.
     pub not_released_brakes: bool,
 }
@@ -162,13 +161,13 @@ impl EquipmentMonitor {
         }
     }
 
-    /// Cars whose cylinders hold less than they were asked for. Other brakes hide it.
+    /// Cars whose cylinders hold less than they were asked for. While other brakes act, this cannot be seen.
     fn cylinders(&mut self, now: Instant, inputs: &MonitorInputs<'_>, asked: CarSet) -> CarSet {
         let (mut low, mut full) = (CarSet::NONE, CarSet::NONE);
         if !inputs.equipment.other_brakes {
             let (air_n, demands_n) = (&inputs.equipment.air_n, inputs.air_n);
             let (full_n, part) = (&self.full_service_n, self.not_following_above);
-            // Written so that what is no number does not follow.
+            // Written so that not-a-number counts as not following.
             let follows = |car: usize| air_n[car] >= demands_n[car] - part * full_n[car];
             low = cars(|car| !follows(car));
             if !self.cylinders.found.is_empty() {

@@ -8,9 +8,9 @@ use super::effort::Effort;
 use super::inputs::TcmsInputs;
 use super::speed::train_speed;
 
-/// Speed, m/s, a size: mean of the inverters' axles (S3), or of the generators' wheels. What is no
-/// number counts as standing, and so does a train whose inverters are all silent: a brake that lasts
-/// becomes the holding brake then, at whatever speed, which is the safe side.
+/// Speed, m/s, never negative: mean of the inverters' axles (S3), or of the generators' wheels. Not-a-number counts as
+/// standstill, and so does a train whose inverters are all silent: a brake that lasts then becomes the holding brake,
+/// at whatever speed, which is the safe side.
 pub(super) fn speed_mps(
     inputs: &TcmsInputs<'_>,
     effort: Option<&Effort>,
@@ -35,8 +35,8 @@ pub(super) fn speed_mps(
 }
 
 /// Greatest traction of any motor car, share of the greatest it can give: what S4 takes from the
-/// motors' current. Without reports the order counts as followed; a report that is no number is of no
-/// traction, and releases no holding brake.
+/// motors' current. Without reports the order counts as followed; a report that is not a number counts as no traction,
+/// and releases no holding brake.
 pub(super) fn traction(
     equipment: Option<&Equipment>,
     effort: Option<&Effort>,
@@ -55,8 +55,7 @@ pub(super) fn traction(
     }
 }
 
-/// Effort the train gives as it is reported to the unit, −1024..1023, of what there is at this speed and
-/// load.
+/// Effort that the train gives, as reported to the unit, −1024..1023, of the effort available at this speed and load.
 pub(super) fn given(
     equipment: Option<&Equipment>,
     effort: Option<&Effort>,

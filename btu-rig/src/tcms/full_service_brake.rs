@@ -47,11 +47,11 @@ pub struct BrakeOutputs {
     pub bcypcut: bool,
 }
 
-/// One cycle of the module. It keeps nothing.
+/// One cycle of the module: outputs depend on the present inputs alone.
 ///
 /// The dead man counts in manual, yard and emergency mode only, a failed ATO in automatic and
 /// driverless mode only; with no mode, or more than one, both count. The controller at B7 is the
-/// maximum service brake and cuts powering, but is nothing abnormal.
+/// maximum service brake and cuts powering, but does not count as abnormal.
 pub fn full_service_brake(inputs: &BrakeInputs) -> BrakeOutputs {
     let driver = Driver::of(
         [inputs.bcxemod, inputs.bcxymod, inputs.bcxmmod],

@@ -10,13 +10,13 @@ use super::timer::OnDelay;
 pub struct HoldingInputs {
     /// Automatic or driverless mode.
     pub by_ato: bool,
-    /// Driverless mode, which orders it when it begins at standstill.
+    /// Driverless mode, which orders the holding brake when the mode begins at standstill.
     pub driverless: bool,
-    /// ATO asks for it, by contact or by message.
+    /// ATO asks for the holding brake, by contact or by message.
     pub requested: bool,
     /// The train brakes by the driver's or ATO's order (DRYINB).
     pub braking: bool,
-    /// Speed, m/s, a size.
+    /// Speed, m/s, never negative.
     pub speed_mps: f64,
     /// Greatest traction of any motor car, share of the greatest it can give; stands for motor
     /// current.
@@ -37,7 +37,7 @@ pub struct HoldingBrake {
 }
 
 impl HoldingBrake {
-    /// Released.
+    /// A released holding brake.
     pub fn new(data: &TcmsData) -> Self {
         Self {
             below_mps: data.holding_below_kmh / 3.6,
@@ -49,14 +49,14 @@ impl HoldingBrake {
         }
     }
 
-    /// Released; whatever asks for it has to ask again.
+    /// Releases the holding brake; whatever asks for it has to ask again.
     pub fn reset(&mut self) {
         self.lasts = OnDelay::default();
         self.driverless = false;
         self.applied = false;
     }
 
-    /// One scan: whether it is ordered.
+    /// One scan; returns whether the holding brake is ordered.
     ///
     /// On by ATO's request, when driverless mode begins at standstill, at a driverless turn-back, and by
     /// hand when a brake has lasted at low speed. Off when nothing asks for it and one motor car at

@@ -52,7 +52,7 @@ pub struct TcmsInputs<'a> {
     /// State of the equipment; `None` = generators turn the wheels, and the equipment counts as
     /// sound.
     pub equipment: Option<&'a Equipment>,
-    /// Speed of the wheels while generators turn them, m/s, a size.
+    /// Speed of the wheels while generators turn them, m/s, never negative.
     pub speed_mps: f64,
     /// Frames of the unit that were refused so far.
     pub frames_refused: u32,
@@ -70,7 +70,7 @@ impl TcmsInputs<'_> {
         }
     }
 
-    /// One of the unit's contacts is closed. Contacts that are not heard are open.
+    /// Whether a contact of the unit is closed. Contacts that are not heard count as open.
     pub(super) fn contact(&self, output: Outputs) -> bool {
         self.contacts.is_some_and(|on| on.contains(output))
     }

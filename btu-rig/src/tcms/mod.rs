@@ -1,13 +1,12 @@
 //! The train control and monitoring system around the unit, as the standard EMU (S4) and line 6 (S3)
-//! have it. Sans-IO: stepped once a scan with what cabs, train lines, the unit and the train's equipment
-//! give it.
+//! have it. Sans-IO: stepped every 20 ms, which is a scan of TCMS, with what cabs, train lines, the unit and the
+//! train's equipment give it.
 //!
-//! A scan, in this order (`system`): the cab that counts (`inputs`), orders of the unit (`atc_link`), the change of
-//! cabs (`cab_change`), the `mode`, the emergency brake train line (`emergency_line`), what equipment has failed (`equipment_monitor`,
-//! `not_released`), the full service brake (`full_service_brake`), the holding brake
-//! (`holding_brake`), what cuts powering (`causes`), the value (`driving_control`, `controller`), the
-//! effort of each car (`effort`: `powering`, `braking`, `consist`), and what is reported (`view`,
-//! `feedback`, `report`).
+//! A scan, in this order (`system`): orders of the unit (`atc_link`), the active cab (`inputs`), the `mode`, the
+//! emergency brake train line (`emergency_line`), what equipment has failed (`equipment_monitor`, `not_released`), the
+//! full service brake (`full_service_brake`), the holding brake (`holding_brake`), what cuts powering (`causes`), the
+//! value of powering or braking (`driving_control`, `controller`), the effort of each car (`effort`: `powering`,
+//! `braking`, `consist`), the change of cabs (`cab_change`), and what is reported (`view`, `feedback`, `report`).
 
 mod atc_link;
 mod braking;

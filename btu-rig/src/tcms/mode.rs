@@ -29,7 +29,7 @@ impl Driver {
 /// Mode TCMS drives in (S4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TcmsMode {
-    /// No cab counts, or its mode switch is off.
+    /// No cab is active, or the mode switch of the active cab is off.
     #[default]
     None,
     /// Mode switch at emergency: the driver has the train.
@@ -45,7 +45,7 @@ pub enum TcmsMode {
 }
 
 impl TcmsMode {
-    /// Mode of the cab that counts. Automatic and driverless only while the unit is in automatic: until
+    /// Mode of the active cab. Automatic and driverless only while the unit is in automatic: until
     /// then, and after it, the driver has the train.
     pub(super) fn of(cab: Option<&CabInputs>, order: &AtoOrder) -> Self {
         match cab.map_or(ModeSwitch::Off, |cab| cab.mode_switch) {

@@ -18,8 +18,8 @@ use super::timer::OnDelayCars;
 /// Inputs of a scan.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ReleaseCheck {
-    /// Nothing brakes but what was found here: no brake, holding, full service, emergency, security
-    /// or parking brake.
+    /// No brake is ordered but by this search itself: no service, holding, full service, emergency, security or parking
+    /// brake.
     pub nobody_brakes: bool,
     /// Brakes are released by force.
     pub by_force: bool,
@@ -35,7 +35,7 @@ pub(super) struct NotReleased {
     after: Duration,
     pressed: OnDelayCars,
     found: CarSet,
-    /// Somebody has braked since it was found.
+    /// Driver or ATO has braked since a brake was found not released.
     braked: bool,
     asks_again: bool,
 }
@@ -144,7 +144,7 @@ mod tests {
         assert_eq!(train.run(9000, true, false), (false, false));
     }
 
-    /// The full service brake it orders itself neither hides nor ends it.
+    /// The full service brake that the search itself orders neither hides nor ends its finding.
     #[test]
     fn stays_found_while_its_own_brake_holds() {
         let mut train = Train::new();
@@ -154,7 +154,8 @@ mod tests {
         assert_eq!(train.run(1000, false, true), (true, true));
     }
 
-    /// ReleaseCheck again after a brake: gone if it is released, back on if it is not.
+    /// After driver or ATO has braked, units are asked again: the finding ends if the brake has released, else it is
+    /// back.
     #[test]
     fn is_asked_again_after_a_brake() {
         let mut train = Train::new();

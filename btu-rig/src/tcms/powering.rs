@@ -4,8 +4,8 @@ use crate::train::{CarSet, PerCar};
 
 use super::consist::Consist;
 
-/// Demand on each inverter, N, for a share of full effort at a speed, m/s. Inverters `without` give
-/// nothing, and the others no more than their own.
+/// Demand on each inverter, N, for a share of full effort at a speed, m/s. Inverters `without` give nothing, and the
+/// others give no more than their own share.
 ///
 /// TE1 = TE_v·TE_s, TE2 = TE_w·TE1: load compensation for each MT pair, so that acceleration is the
 /// same from empty to full.
@@ -18,7 +18,7 @@ pub fn powering(consist: &Consist, share: f64, speed_mps: f64, without: CarSet) 
     demands
 }
 
-/// TE_v: traction there is at a speed, share of the greatest.
+/// TE_v: traction available at a speed, share of the greatest.
 pub fn pattern(consist: &Consist, speed_mps: f64) -> f64 {
     consist.data.traction.share_at(speed_mps)
 }

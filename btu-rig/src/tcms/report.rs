@@ -1,4 +1,4 @@
-//! Events TCMS logs: once when something begins.
+//! Events that TCMS logs, each once when its condition begins.
 
 use protocol::event::{ALL_CARS, Event};
 use protocol::{Duration, Instant};
@@ -33,7 +33,7 @@ pub(super) struct Report {
     pub lost: u32,
     found: EquipmentFailures,
     regeneration: CarSet,
-    /// All inverters have cut out together: the line takes nothing.
+    /// All inverters have cut out together: the contact line takes no power.
     line_takes_nothing: bool,
     /// Conditions of the last scan.
     conditions: [bool; 5],
@@ -75,7 +75,7 @@ impl Report {
         self.link(now, scan);
     }
 
-    /// Equipment, car by car.
+    /// Logs failures of the equipment, car by car.
     fn found(&mut self, scan: &Scan<'_>) {
         let (before, found) = (self.found, scan.view.found);
         if found != before {
@@ -108,7 +108,7 @@ impl Report {
         }
     }
 
-    /// Electric brakes that were cut out: by their inverters, or all at once by the line.
+    /// Logs electric brakes that were cut out: by their inverters, or all at once by the contact line.
     fn regeneration(&mut self, cut_out: CarSet, scan: &Scan<'_>) {
         let new = cut_out.without(self.regeneration);
         self.regeneration = cut_out;
@@ -121,7 +121,7 @@ impl Report {
             .without(silent)
             .without(scan.inputs.inverters_cut_out);
         let all = answering.without(cut_out).is_empty();
-        // An inverter that is cut in again finds the line as it was.
+        // An inverter that is put back while the contact line takes no power is no new event.
         let line = all && (self.line_takes_nothing || new.iter().count() > 1);
         match (line, self.line_takes_nothing) {
             (true, false) => self.note(Event::RegenerationCutOut, ALL_CARS),
@@ -157,7 +157,7 @@ impl Report {
         self.conditions = conditions.map(|(holds, _)| holds);
     }
 
-    /// The link to the unit.
+    /// Logs what becomes of the link to the unit.
     fn link(&mut self, now: Instant, scan: &Scan<'_>) {
         let contradictions = scan.atc.contradictions;
         if contradictions != self.contradictions {
@@ -187,7 +187,7 @@ impl Report {
     }
 
     fn note(&mut self, event: Event, parameter: i32) {
-        // If they are not taken, the newest are lost: what began first says more.
+        // When events are not taken, the newest are lost: what began first says more.
         if self.events.len() < MAX_WAITING {
             self.events.push(TcmsEvent { event, parameter });
         } else {

@@ -25,7 +25,7 @@ use super::view::{TcmsEvent, TcmsView};
 
 /// Speed below which the train stands: its direction may change, and its cabs, m/s [default].
 const STANDS_MPS: f64 = 0.1;
-/// Longest time effort goes on by in one step, s: after a gap it goes on from where it was.
+/// Longest time by which effort moves on in one step, s: after a gap it goes on from where it was.
 const LONGEST_STEP_S: f64 = 0.05;
 
 /// Train control and monitoring system of one train, stepped every 20 ms of virtual time.
@@ -34,7 +34,7 @@ pub struct Tcms {
     /// Times and thresholds of the train's file.
     pub data: TcmsData,
     pub atc: AtcLink,
-    /// Sharing out of effort; a point mass has nothing to share it over.
+    /// Sharing of effort among the cars; `None` for a train that is a point mass.
     effort: Option<Effort>,
     full_load_kg: f64,
     /// Holding brake, share of full service.
@@ -46,9 +46,9 @@ pub struct Tcms {
     dead_man_acts: bool,
     /// ATO's direction: backward. It changes at standstill.
     backward: bool,
-    /// Something else than brakes found not released orders the full service brake.
+    /// The full service brake is ordered for another reason than brakes that are not released.
     full_service_otherwise: bool,
-    /// When it was stepped last.
+    /// Time of the last scan.
     stepped: Option<Instant>,
     /// Result of the last scan.
     pub view: TcmsView,
@@ -98,8 +98,8 @@ impl Tcms {
         }
     }
 
-    /// No effort, nothing found and nothing latched, as when the train is newly put on the track. A
-    /// holding brake that is asked for is on again in the next scan; one by hand has to last its time again.
+    /// No effort, nothing found and nothing latched, as when the train is newly put on the track. A holding brake that
+    /// the unit asks for is on again in the next scan; a brake of the driver has to last its time again.
     pub fn rest(&mut self) {
         if let Some(effort) = &mut self.effort {
             effort.reset();
@@ -108,8 +108,7 @@ impl Tcms {
         self.unlatch();
     }
 
-    /// Clears what is latched: the holding brake is on for as long as it is asked for, and no change of cabs
-    /// goes on.
+    /// Clears latches: the holding brake is on only while it is asked for, and a change of cabs under way ends.
     pub fn unlatch(&mut self) {
         self.holding.reset();
         self.cab_change.leave();
@@ -219,7 +218,7 @@ impl Tcms {
             scan.now,
             &MonitorInputs {
                 equipment,
-                // Air takes its time: what cylinders hold is judged by what they should by now.
+                // Air takes its time: cylinders are compared with the force that they should hold by now.
                 air_n: self
                     .effort
                     .as_ref()

@@ -39,7 +39,7 @@ impl Default for OnDelayCars {
 }
 
 impl OnDelayCars {
-    /// Takes the cars for which the condition holds now; those for which it has held for `at_least`.
+    /// Takes the cars for which the condition holds now; returns those for which it has held for `at_least`.
     pub fn update(&mut self, now: Instant, holds: CarSet, at_least: Duration) -> CarSet {
         let before = std::mem::replace(&mut self.holds, holds);
         let mut lasting = CarSet::NONE;
@@ -56,7 +56,7 @@ impl OnDelayCars {
         lasting
     }
 
-    /// Starts again, as if it had held for no car.
+    /// Starts again, as if the condition had held for no car.
     pub fn clear(&mut self) {
         self.holds = CarSet::NONE;
     }
@@ -67,14 +67,14 @@ impl OnDelayCars {
 pub(super) struct BurstDetector {
     at_least: u32,
     within: Duration,
-    /// Begin of the time looked at, and the count then.
+    /// Begin of the time that is watched, and the count then.
     from: Option<(Instant, u32)>,
     count: u32,
     told: bool,
 }
 
 impl BurstDetector {
-    /// `at_least` times `within` a time.
+    /// A burst is at least `at_least` events within the time `within`.
     pub fn new(at_least: u32, within: Duration) -> Self {
         Self {
             at_least,
@@ -85,7 +85,7 @@ impl BurstDetector {
         }
     }
 
-    /// Takes the count so far; whether a burst begins. It ends when the time passes without any.
+    /// Takes the count of events so far; true when a burst begins. A burst ends when `within` passes without an event.
     pub fn begins(&mut self, now: Instant, count: u32) -> bool {
         let came = count != self.count;
         if !came && self.from.is_none() {
@@ -96,7 +96,7 @@ impl BurstDetector {
             .is_some_and(|(from, _)| now.since(from) > self.within)
         {
             self.told &= self.from.is_some_and(|(_, before)| before != self.count);
-            // Looking goes on for as long as something was reported, so that its end is seen.
+            // After a burst the count is watched on, so that the end of the burst is seen.
             self.from = self.told.then_some((now, self.count));
         }
         if came && self.from.is_none() {

@@ -28,7 +28,7 @@ pub struct TcmsView {
     /// Lamps that are lit.
     pub lamps: Lamps,
     pub found: EquipmentFailures,
-    /// Voltage of the controller that counts, V.
+    /// Voltage of the controller in the active cab, V.
     pub volts: f64,
     /// Speed as TCMS sees it, m/s.
     pub speed_mps: f64,
@@ -36,7 +36,7 @@ pub struct TcmsView {
     pub demands: Demands,
     /// Effort the train gives, −1024..1023, for the unit.
     pub given: i16,
-    /// Powering drives the train backward: by the reverser that counts, or by ATO.
+    /// Powering drives the train backward: by the reverser of the active cab, or by ATO.
     pub backward: bool,
     /// Order to a head control relay in this scan.
     pub cab_order: Option<CabOrder>,

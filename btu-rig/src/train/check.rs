@@ -96,7 +96,7 @@ fn check_cars(data: &CarsData) -> Result<(), ConfigError> {
     data.tcms.check()
 }
 
-/// Checks the efforts that other programs give in place of constants.
+/// Checks the list of efforts by speed that stands in place of `base_speed_kmh`.
 fn check_efforts(data: &CarsData) -> Result<(), ConfigError> {
     let count = data.traction.efforts.as_ref().map_or(1, Vec::len);
     within("traction.efforts", count as f64, 1.0, 1_000.0)?;

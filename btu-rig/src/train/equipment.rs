@@ -5,10 +5,10 @@ use crate::stimulus::CarFailure;
 
 use super::{CarSet, PerCar};
 
-/// Reports of the train's equipment to TCMS in each scan. Efforts are sizes.
+/// Reports of the train's equipment to TCMS in each scan. Efforts and speeds are never negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Equipment {
-    /// Speed of the rims of each motor car, m/s, a size.
+    /// Speed of the rims of each motor car, m/s.
     pub axle_mps: PerCar,
     /// Traction of each inverter, N.
     pub traction_n: PerCar,

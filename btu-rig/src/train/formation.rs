@@ -1,4 +1,4 @@
-//! Model of a train of cars: demands of TCMS become forces of each car, and those the motion of the train.
+//! Model of a train of cars: demands of TCMS become forces of each car, and the forces become the train's motion.
 
 use crate::conditions::Conditions;
 
@@ -328,7 +328,7 @@ impl Formation {
     fn weigh(&mut self, load_kg: f64) {
         self.load_kg = load_kg;
         let full_kg: f64 = self.data.cars.iter().map(|car| car.full_load_kg).sum();
-        // `max` also takes what is not a number for an empty train.
+        // `max` turns not-a-number into an empty train.
         let share = load_kg.max(0.0) / full_kg.max(1.0);
         let (mut weight_kg, mut inertia_kg) = ([0.0; MAX_CARS], [0.0; MAX_CARS]);
         for (i, car) in self.data.cars.iter().enumerate() {

@@ -19,11 +19,11 @@ pub(super) struct Ideal {
     seconds: f64,
     /// Efforts of the last step, N: traction and brake.
     efforts_n: (f64, f64),
-    /// The step and damping the discretisation is for.
+    /// Coefficients for the latest step and damping.
     discrete: Discrete,
 }
 
-/// A and B/(1/M) of [S0 eq. 9] for one step and damping.
+/// A and B·M of [S0 eq. 9] for one step and damping.
 #[derive(Clone, Copy, Debug, Default)]
 struct Discrete {
     dt_s: f64,
@@ -87,7 +87,7 @@ impl Ideal {
 
     pub(super) fn step(&mut self, dt_s: f64, inputs: &TrainInputs) -> TrainState {
         let mass_kg = self.data.mass_kg + inputs.load_kg;
-        // The middle of the step stands for it, as the trapezoidal rule would have it.
+        // The disturbance at the middle of the step stands for the whole step (midpoint rule).
         let damping_n_s_per_m = self.disturbance.at(self.seconds + 0.5 * dt_s);
         self.seconds += dt_s;
         let damping_per_s = self.data.drag_per_s + damping_n_s_per_m / mass_kg;
@@ -132,7 +132,7 @@ impl Ideal {
         }
     }
 
-    /// Powering and braking, m/s², both sizes.
+    /// Powering and braking, m/s², never negative.
     fn efforts_mps2(&self, inputs: &TrainInputs) -> (f64, f64) {
         let share = inputs.demand.clamp(-1.0, 1.0);
         let fade = self.data.base_speed_kmh.map_or(1.0, |base_kmh| {

@@ -1,12 +1,12 @@
-//! The train: commands become forces on the rails, and those its motion.
+//! The train: commands become forces on the rails, and the forces its motion.
 //!
 //! Two models behind [`Train::step`]: the papers' ideal point mass (`ideal`), and a train of cars
 //! (`formation`): demands of TCMS for each car → what its inverters and brakes give (`equipment`,
 //! `actuator`) → what the rails carry (`wheels`) → motion against `resistance`. Its data is
 //! [`TrainData`].
 //!
-//! Terms: *weight* is the mass gravity acts on, *inertia* that and the rotating parts (S3's braking
-//! mass); an *axle* is the one the tachometers sit on. Forward is positive, efforts are sizes.
+//! Terms: *weight* is the mass that gravity acts on, *inertia* the weight plus the rotating parts (S3's braking mass);
+//! the *axle* is the one with the tachometers. Forward is positive, efforts are never negative.
 
 mod actuator;
 mod car_set;
@@ -39,7 +39,7 @@ use ideal::Ideal;
 #[derive(Clone, Debug)]
 pub struct Train {
     model: Model,
-    /// Passengers it can carry, kg.
+    /// Passengers that the train can carry, kg.
     pub full_load_kg: f64,
 }
 
@@ -62,7 +62,7 @@ impl Train {
         }
     }
 
-    /// Changes what it differs from its data in, from now on.
+    /// Changes how train and track differ from their data, from now on.
     pub fn set_conditions(&mut self, conditions: &Conditions) {
         match &mut self.model {
             Model::Ideal(train) => train.set_conditions(conditions),

@@ -53,7 +53,7 @@ impl RunningResistance {
         self.curve_n_m = d.curve_kgf_m_t * n_per_kgf_t;
     }
 
-    /// Resistance at a speed, N, both sizes, of a train of which a share is in the open air.
+    /// Resistance, N, at a speed (both never negative) of a train of which a share is in the open air.
     pub fn at(&mut self, speed_mps: f64, curvature_per_m: f64, open_air: f64) -> f64 {
         if speed_mps == 0.0 {
             self.starting = true;

@@ -4,19 +4,19 @@ use super::car_set::{CarSet, PerCar};
 use super::piece::Piece;
 use crate::conditions::Disturbance;
 
-/// One kilogram-force per tonne, N/kg; also what 1 ‰ of gradient takes.
+/// One kilogram-force per tonne, N/kg; also the force per mass on a gradient of 1 ‰.
 pub const KGF_PER_T: f64 = 9.80665e-3;
 
 /// Everything that acts on the train in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrainInputs {
-    /// Share of full effort, −1 full service brake .. 1 full power: what the point mass goes by.
+    /// Share of full effort, −1 full service brake .. 1 full power; only the point mass uses it.
     pub demand: f64,
     /// Demand of TCMS on each car's inverter, N: powering above 0, electric brake below.
     pub motor_n: PerCar,
     /// Demand of TCMS on each car's air brake, N.
     pub air_n: PerCar,
-    /// Emergency brake: its train line is de-energised. Hard-wired, air on all cars (S3).
+    /// Emergency brake: its train line is open and not cut out. Hard-wired, air on all cars (S3).
     pub emergency: bool,
     /// Security brake, hard-wired (S3).
     pub security: bool,
@@ -24,7 +24,7 @@ pub struct TrainInputs {
     pub parking: bool,
     /// Brakes are released by force (S4).
     pub forced_release: bool,
-    /// The line takes no regenerated power.
+    /// The contact line takes no regenerated power.
     pub regeneration_refused: bool,
     pub brakes_cut_out: CarSet,
     pub inverters_cut_out: CarSet,
@@ -41,7 +41,7 @@ pub struct TrainInputs {
 }
 
 impl TrainInputs {
-    /// Takes the voltage of the contact line away: nothing drives, and nothing is regenerated.
+    /// Takes the voltage away from the contact line: nothing drives, and nothing is regenerated.
     pub fn without_voltage(&mut self) {
         self.regeneration_refused = true;
         self.demand = self.demand.min(0.0);
@@ -57,11 +57,11 @@ pub struct TrainState {
     /// Motion at the rim of the axle with the tachometers; equal to the train's unless the wheel
     /// slips or slides.
     pub axle: [Piece; 2],
-    /// Traction on the rails, N, a size.
+    /// Traction on the rails, N, never negative.
     pub traction_n: f64,
-    /// Electric brake, N, a size.
+    /// Electric brake, N, never negative.
     pub electric_brake_n: f64,
-    /// Air brake, N, a size.
+    /// Air brake, N, never negative.
     pub air_brake_n: f64,
     /// Running, starting and curve resistance and the disturbance, N, against the motion.
     pub resistance_n: f64,

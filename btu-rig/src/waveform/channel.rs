@@ -1,5 +1,5 @@
-//! Disturbances of the signals on their way into a coil: gain, noise, hum of the supply, lines of an inverter that
-//! sweep with its frequency, dropouts and clipping.
+//! Disturbances of the signals on their way into a coil: gain, noise, hum of the supply, a line of an inverter that
+//! sweeps in frequency, dropouts and clipping.
 
 use protocol::Random;
 use protocol::config::{ConfigError, within};
@@ -7,24 +7,24 @@ use serde::{Deserialize, Serialize};
 
 use super::{Phase, cosine};
 
-/// Disturbances of all coils; those that are left out are none.
+/// Disturbances of all coils; a disturbance that is left out does not act.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChannelConfig {
-    /// Level behind the channel over that before it.
+    /// Ratio of the level behind the channel to the level before it.
     pub gain: f64,
     /// White noise, mV rms over all frequencies up to half of the sample rate.
     pub noise_mv: f64,
-    /// Hum of the supply: level of its first line, mV rms; the nth has an nth of it.
+    /// Hum of the supply: level of its first line, mV rms; line n has 1/n of this level.
     pub hum_mv: f64,
     /// Frequency of the supply, Hz.
     pub hum_hz: f64,
     pub hum_lines: u32,
-    /// A line of the traction inverter, mV rms.
+    /// Level of the traction inverter's line, mV rms.
     pub inverter_mv: f64,
-    /// Limits of the line's sweep, Hz, up and down.
+    /// Least and greatest frequency of the inverter's line, Hz, which sweeps up and down between them.
     pub inverter_hz: [f64; 2],
-    /// Time of a sweep of that line, s.
+    /// Time of one sweep of the inverter's line, up and down, s.
     pub inverter_sweep_s: f64,
     /// Mean number of dropouts, 1/s.
     pub dropouts_per_s: f64,
@@ -158,7 +158,7 @@ impl Channel {
     }
 }
 
-/// A number of standard deviation 1 whose distribution is near to the normal one: the sum of four even ones.
+/// A number of standard deviation 1 whose distribution is nearly normal: the sum of four uniform numbers.
 fn nearly_normal(bits: u64) -> f64 {
     let parts = [0, 16, 32, 48].map(|shift| f64::from((bits >> shift) as u16));
     (parts.iter().sum::<f64>() / 65_536.0 - 2.0) * 3f64.sqrt()

@@ -12,13 +12,13 @@ pub struct CodeWave {
     carrier_step: f64,
     keying: Phase,
     keying_step: f64,
-    /// Cycles of a sample by which the carrier is shifted up and down; 0 = it is keyed.
+    /// Cycles per sample by which the carrier is shifted up and down; 0 = the carrier is keyed.
     shift_step: f64,
     amplitude_mv: f64,
 }
 
 impl CodeWave {
-    /// A carrier of this level, mV rms while it is on, keyed at `rate_hz`; a rate of 0 keys nothing.
+    /// A carrier of this level, mV rms while it is on, keyed at `rate_hz`; at a rate of 0 the carrier stays on.
     pub fn new(carrier_hz: f64, rate_hz: f64, level_mv: f64, sample_hz: f64) -> Self {
         Self {
             carrier: Phase::default(),
@@ -30,7 +30,7 @@ impl CodeWave {
         }
     }
 
-    /// Deviation of the carrier by the code, up and down, with one phase; 0 keys the carrier.
+    /// Shifts the carrier by `shift_hz` up and down at the code rate, with continuous phase; 0 = the carrier is keyed.
     #[must_use]
     pub fn shifted(self, shift_hz: f64, sample_hz: f64) -> Self {
         Self {
@@ -50,7 +50,7 @@ impl CodeWave {
         self.amplitude_mv = level_mv * std::f64::consts::SQRT_2;
     }
 
-    /// Share of the carrier that is on: half of the time all, with edges of a raised cosine.
+    /// Share of the carrier's amplitude at this phase of the keying: on for half of the time, with raised-cosine edges.
     fn keyed(cycles: f64) -> f64 {
         let edge = |from: f64| 0.5 - 0.5 * cosine(0.5 * (from / EDGE).clamp(0.0, 1.0));
         match cycles {

@@ -15,8 +15,8 @@ pub struct MarkerWave {
 }
 
 impl MarkerWave {
-    /// A tone of this level, mV rms, over the middle of the marker; `reach_m` away from it 61 % of that are left (a bell,
-    /// 1σ).
+    /// A tone of this level, mV rms, over the middle of the marker; `reach_m` away from the middle 61 % of the level
+    /// are left (a bell curve, 1σ).
     pub fn new(tone_hz: f64, level_mv: f64, reach_m: f64, sample_hz: f64) -> Self {
         Self {
             tone: Phase::default(),
@@ -26,14 +26,14 @@ impl MarkerWave {
         }
     }
 
-    /// The next sample, `away_m` from the middle of the marker; none where it is not heard any more.
+    /// The next sample, `away_m` from the middle of the marker; `None` where the marker is not heard any more.
     pub fn at(&mut self, away_m: f64) -> Option<f64> {
         let tone = cosine(self.tone.step(self.step));
         let bell = (-0.5 * (away_m / self.reach_m).powi(2)).exp();
         (bell > NOTHING).then_some(self.amplitude_mv * bell * tone)
     }
 
-    /// Farthest from its middle that a marker is heard, m.
+    /// Greatest distance from the marker's middle at which the marker is heard, m.
     pub fn heard_within_m(&self) -> f64 {
         self.reach_m * (-2.0 * NOTHING.ln()).sqrt()
     }

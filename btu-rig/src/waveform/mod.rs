@@ -24,7 +24,7 @@ pub use toothed_wheel::{Teeth, ToothedWheel};
 struct Phase(f64);
 
 impl Phase {
-    /// Moves the phase on by a part of a cycle; the phase before.
+    /// Moves the phase on by a part of a cycle; returns the phase before.
     fn step(&mut self, cycles: f64) -> f64 {
         let before = self.0;
         self.0 = (before + cycles).fract();

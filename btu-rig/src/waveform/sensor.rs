@@ -1,11 +1,11 @@
-//! A speed sensor: two lines with a square wave each, line B a quarter of a period behind line A, before it when the wheel
-//! turns backward.
+//! A speed sensor: two lines with a square wave each, line B a quarter of a period behind line A, or ahead of line A
+//! when the wheel turns backward.
 
 use std::collections::VecDeque;
 
 /// Time in which a line goes from low to high, samples of the line.
 const RISE: f64 = 2.5;
-/// Longest time for which a line stays high, s: of a wheel that just moves.
+/// Longest time for which a line stays high, s, at a wheel that only just moves.
 const LONGEST_S: f64 = 0.02;
 /// A line is this much above or below the middle, mV.
 const AMPLITUDE_MV: f64 = 1_000.0;
@@ -57,7 +57,7 @@ impl SensorWave {
             return;
         }
         let count = f64::from(count);
-        // All of them are still to come.
+        // The longest period with which all pulses are still to come.
         let fits = if count > 1.0 {
             last / (count - 1.0)
         } else {
@@ -81,7 +81,7 @@ impl SensorWave {
         self.since = -last;
     }
 
-    /// The pulse of `began` is over at `at`, when the next begins, also of a wheel that turns much faster meanwhile.
+    /// Ends the pulse that began at `began` before the next one begins at `at`, even if the wheel now turns faster.
     fn end_pulse(&mut self, began: f64, at: f64) {
         let middle = ((began + at) / 2.0).max(0.0);
         let late = |line| {

@@ -9,9 +9,9 @@ const RISE: f64 = 2.5;
 pub struct Teeth {
     /// Teeth of a turn.
     pub per_turn: u32,
-    /// One of them is missing.
+    /// One tooth is missing.
     pub lacks_one: bool,
-    /// Line B behind line A, as a share of a period; backward its negative.
+    /// How far line B is behind line A, as a share of a period; negative when the wheel turns backward.
     pub phase: f64,
     /// Share of a period for which a line is high.
     pub duty: f64,
@@ -21,7 +21,7 @@ pub struct Teeth {
 #[derive(Clone, Debug)]
 pub struct ToothedWheel {
     teeth: Teeth,
-    /// Teeth passed, and in each sample.
+    /// Teeth passed so far, and (`step`) teeth that pass in each sample.
     at: f64,
     step: f64,
     amplitude_mv: f64,

@@ -31,10 +31,10 @@ pub struct Belief<'m, 'd> {
     /// Logarithm of the likelihood of all steps on a healthy unit, with their signs.
     healthy: f64,
     signs: SignsSeen,
-    /// What deviated first in each trace.
+    /// The signal that deviated first, for each trace.
     residuals: Vec<String>,
     suspicion: Suspicion,
-    /// What each check showed last.
+    /// Last outcome of each check that was made.
     shown: BTreeMap<usize, StepOutcome>,
     steps: Vec<WeighedStep>,
 }
@@ -42,7 +42,7 @@ pub struct Belief<'m, 'd> {
 /// A step that the dictionary knows, with its likelihoods.
 #[derive(Clone, Debug)]
 pub(super) struct WeighedStep {
-    /// Index of the step in the observation, or among the steps added.
+    /// Index of the step in the run, as given to [`Belief::see`].
     pub seen: usize,
     /// Index of its check in the dictionary.
     pub place: usize,
@@ -110,7 +110,7 @@ impl<'m, 'd> Belief<'m, 'd> {
         &self.steps
     }
 
-    /// What a check showed last.
+    /// Last outcome of a check.
     pub(super) fn shown(&self, place: usize) -> Option<&StepOutcome> {
         self.shown.get(&place)
     }
@@ -147,12 +147,12 @@ impl<'m, 'd> Belief<'m, 'd> {
         of.collect()
     }
 
-    /// The signals that deviated first.
+    /// The signal that deviated first, for each trace.
     pub(super) fn residuals(&self) -> &[String] {
         &self.residuals
     }
 
-    /// Logarithm of the likelihood of what deviated first, each caused by one of these effects.
+    /// Logarithm of the likelihood of the first deviations, where any of these effects may cause each.
     pub(super) fn ln_residuals(&self, effects: &[usize]) -> f64 {
         self.model.residuals.ln_under(effects, &self.residuals)
     }
@@ -162,8 +162,8 @@ impl<'m, 'd> Belief<'m, 'd> {
         self.effects[effect]
     }
 
-    /// The values of `like_effects` with the steps so far weighed by `foresight`: they say less of what checks to come will
-    /// show, as a mode that was not seen yet is no twin of another, however alike the two were so far.
+    /// Like `like_effects()`, with the steps so far weighed by `foresight`: a mode that was not seen yet is no twin of
+    /// a known one, so likeness so far says less about checks to come.
     pub(super) fn vaguely_like_effects(&self, part: usize) -> Vec<f64> {
         let alike = self.model.resemblance(part).iter();
         let like = alike.zip(&self.like_effects);
@@ -171,7 +171,7 @@ impl<'m, 'd> Belief<'m, 'd> {
             .collect()
     }
 
-    /// Index of the effect that a fault has, or most likely acts like.
+    /// Index of the effect of a hypothesis; of an unseen mode, the effect that it most likely acts like.
     pub(super) fn acts_like(&self, hypothesis: Hypothesis) -> Option<usize> {
         match hypothesis {
             Hypothesis::Mode { .. } => self.model.effect(hypothesis),
@@ -191,7 +191,7 @@ impl<'m, 'd> Belief<'m, 'd> {
         alike.zip(&self.like_effects).map(|(alike, ln)| alike + ln)
     }
 
-    /// What is settled; `None` while the question is open.
+    /// What the evidence has settled; `None` while nothing is settled.
     pub fn answer(&self) -> Option<Settled<'d>> {
         let model = self.model;
         let probabilities = self.probabilities();

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::observation::{ObservedStep, Sign, observed};
 
-/// The result of a step with the signs that showed: what can be compared as equal or not.
+/// The result of a step with the signs that showed: the part of an observation that is compared for equality.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct StepOutcome {
     /// The step's verdict.
@@ -18,7 +18,7 @@ pub struct StepOutcome {
 }
 
 impl StepOutcome {
-    /// The signature of an observed step.
+    /// The outcome of an observed step.
     pub fn of(step: &ObservedStep) -> Self {
         Self {
             result: step.result,
@@ -60,7 +60,7 @@ impl Values {
         self.squares += off * (value - self.mean);
     }
 
-    /// Statistics of these values as at most so many runs would have them: with the same mean and standard deviation.
+    /// Statistics of these values as at most `runs` runs would have them, with the same mean and standard deviation.
     fn of_runs(self, runs: u32) -> Self {
         if self.n + self.missing <= runs {
             return self;
@@ -98,9 +98,10 @@ impl Values {
         }
     }
 
-    /// Whether they agree with those of a healthy unit, as far as so few values can tell.
+    /// Whether these values agree with a healthy unit's, as far as so few values can tell.
     fn is_like(&self, healthy: &Self) -> bool {
-        /// Limits in standard deviations, of one value, and of the mean of several.
+        /// Greatest distance from the healthy mean in standard deviations, of a single value and of the mean of
+        /// several.
         const FAR: f64 = 3.0;
         let sd = healthy.sd() + 1e-9 * healthy.mean.abs();
         let of_mean = (FAR / f64::from(self.n.max(1)).sqrt()).max(1.0);
@@ -124,7 +125,7 @@ impl Values {
 /// The counts of one check under one hypothesis.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
-    /// How often each signature occurred.
+    /// How often each outcome occurred.
     pub signatures: Vec<(StepOutcome, u32)>,
     /// Mean bench time, s.
     pub time_s: f64,
@@ -147,7 +148,7 @@ impl Cell {
         }
     }
 
-    /// The counts of both together.
+    /// The counts of both cells together.
     pub fn with(&self, other: &Self) -> Self {
         let mut both = self.clone();
         let [here, there] = [self, other].map(|cell| f64::from(cell.runs()));
@@ -165,7 +166,7 @@ impl Cell {
         both
     }
 
-    /// What most of these runs showed, as so many runs would have it.
+    /// The most frequent outcome of these runs, as if it had been counted in `runs` runs.
     pub fn of_runs(&self, runs: u32) -> Self {
         let most = self.signatures.iter().max_by_key(|(_, count)| *count);
         Self {
@@ -174,7 +175,7 @@ impl Cell {
         }
     }
 
-    /// These counts with the values of at most so many runs: values taken from a healthy unit are of many more.
+    /// These counts, with the values of at most `runs` runs: values taken from a healthy unit are of many more runs.
     pub fn with_values_of(mut self, runs: u32) -> Self {
         self.values
             .values_mut()
@@ -182,12 +183,12 @@ impl Cell {
         self
     }
 
-    /// How often it was run.
+    /// How often the check was run.
     pub fn runs(&self) -> u32 {
         self.signatures.iter().map(|(_, count)| count).sum()
     }
 
-    /// How often it had this result.
+    /// How often the check had this result.
     pub fn count(&self, result: Verdict) -> u32 {
         let of = self.signatures.iter().filter(|(s, _)| s.result == result);
         of.map(|(_, count)| count).sum()
@@ -202,7 +203,7 @@ impl Cell {
         of.map(|(_, count)| count).sum()
     }
 
-    /// Share of runs in which it did not pass.
+    /// Share of runs in which the check did not pass.
     pub fn not_passed(&self) -> f64 {
         match self.runs() {
             0 => 0.0,
@@ -210,17 +211,17 @@ impl Cell {
         }
     }
 
-    /// Whether it did not pass in some run, or showed a sign.
+    /// Whether the check did not pass in some run, or showed a sign.
     pub fn shows_a_fault(&self) -> bool {
         let mut signatures = self.signatures.iter();
         signatures.any(|(s, _)| s.result != Verdict::Passed || !s.signs.is_empty())
     }
 
-    /// Whether it equals a healthy unit's: no other signatures, and values that agree.
+    /// Whether the cell is like a healthy unit's: no other outcomes, and values that agree.
     pub fn is_like(&self, healthy: &Self) -> bool {
         let known = |(signature, _): &(StepOutcome, u32)| {
             let of_healthy = healthy.signatures.iter().find(|(s, _)| s == signature);
-            // A signature seen once in many healthy runs is an accident.
+            // An outcome seen in less than half of the healthy runs is not what a healthy unit shows.
             of_healthy.is_some_and(|(_, count)| 2 * count >= healthy.runs())
         };
         let lies_there = |(name, values): (&String, &Values)| {

@@ -1,7 +1,7 @@
-//! One cause at several parts: a supply, a ground or a link that two of the parts which it reaches suffer from.
+//! One cause at several parts: a supply, a ground or a link whose failure shows at two of the parts that share it.
 //!
-//! A check passes under two effects only if it passes under each, and fails if either makes it fail. So a passed
-//! check has the lesser of the two likelihoods; any other result is that of one of them.
+//! A check passes under two effects at once only if it passes under each, and fails if either makes it fail. So a
+//! passed check has the lesser of the two likelihoods; any other result is caused by one of the two effects.
 
 use std::collections::BTreeMap;
 
@@ -11,11 +11,11 @@ use super::belief::Belief;
 use super::model::{Hypothesis, Model};
 use super::observation::{Observation, ObservedStep};
 
-/// Number of best explaining modes, each of which is combined with all others.
+/// Number of modes that explain the run best; each of them is combined with all others.
 const MOST_EXPLAINING: usize = 12;
 
-/// By how much two effects at once, of parts that a part reaches, explain a run better than any effect alone: logarithm of
-/// the likelihoods' ratio, by the part.
+/// For each shared part, how much better effects at two of the parts that share it explain a run than any one effect:
+/// logarithm of the likelihood ratio.
 pub fn gains<'m>(belief: &Belief<'m, '_>, seen: &Observation) -> BTreeMap<&'m LruId, f64> {
     let model = belief.model;
     let effects = model.effects();
@@ -57,7 +57,7 @@ pub fn gains<'m>(belief: &Belief<'m, '_>, seen: &Observation) -> BTreeMap<&'m Lr
     gains
 }
 
-/// What the steps tell of each two effects.
+/// The steps' likelihoods under each effect, from which those under two effects follow.
 struct Steps<'b> {
     /// Logarithms of the likelihood of each passed step under each effect.
     passed: Vec<&'b [f64]>,
@@ -98,8 +98,8 @@ impl<'b> Steps<'b> {
         Self { passed, strange }
     }
 
-    /// Indexes of the effects that explain the failures better than a healthy unit, one for each mode at its best level, the best
-    /// first.
+    /// Indexes of the effects that explain the failures better than a healthy unit does, the best first; of each mode
+    /// only its best level.
     fn explaining(&self, model: &Model<'_>) -> Vec<usize> {
         let explained = |effect: usize| -> f64 {
             let strange = self.strange.iter();

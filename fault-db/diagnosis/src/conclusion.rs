@@ -1,4 +1,4 @@
-//! What a diagnosis comes to, as data; whoever shows it has the sentences.
+//! The conclusion of a diagnosis, as data; whoever shows it adds the sentences.
 
 use protocol::LruId;
 use serde::Serialize;
@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::groups::Measure;
 use super::verdict::{Finding, PartProbability};
 
-/// The answer of a diagnosis. Every probability is the one that the answer tells.
+/// The answer of a diagnosis. Each probability is that of the answer itself.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Conclusion {
@@ -25,34 +25,34 @@ pub enum Conclusion {
     OneOf {
         /// The likeliest first.
         parts: Vec<PartProbability>,
-        /// What tells which; empty where nothing is known to.
+        /// The measurement that tells which part has failed; empty if none is known.
         measure: Measure,
     },
     NoFault {
         /// How likely that is.
         probability: f64,
     },
-    /// Nothing wrong was seen in what was run, which is not enough to say that nothing is.
+    /// The steps that were run show nothing wrong, and are not enough to say that nothing is.
     NothingSeen {
-        /// Checks that were made.
+        /// Number of different checks that were made.
         made: usize,
-        /// Checks there are.
+        /// Number of checks in the dictionary.
         of: usize,
     },
     /// Something is wrong, and it cannot be told in which part.
     CannotTell {
         /// The likely parts, the likeliest first.
         likely: Vec<PartProbability>,
-        /// What was seen is like nothing that was counted.
+        /// The run is unlike every fault that the dictionary has counted.
         is_unlike_any: bool,
     },
-    /// The run was broken off before anything was seen to be wrong.
+    /// The run was broken off before it showed anything wrong.
     BrokenOff,
-    /// The run did not pass, and nothing that could be weighed was seen to be wrong.
+    /// The run did not pass, but shows nothing that the diagnosis can weigh.
     NotWeighed,
-    /// An instrument of the bench failed, and nothing was seen to be wrong with the unit.
+    /// An instrument of the bench failed, and the run shows nothing wrong with the unit.
     BenchFailed {
-        /// The bench, as its file is called.
+        /// Name of the bench file.
         bench: String,
     },
 }
@@ -71,7 +71,7 @@ impl Conclusion {
         }
     }
 
-    /// The parts that it names: those for certain, or those that are likely.
+    /// The parts that the conclusion names: the failed one, those of which one has failed, or the likely ones.
     pub fn parts(&self) -> Vec<LruId> {
         match self {
             Self::Found { part, .. } | Self::OfBench { part, .. } => vec![part.clone()],
@@ -82,7 +82,7 @@ impl Conclusion {
         }
     }
 
-    /// What tells the parts apart that were not told apart.
+    /// The measurement that tells apart the parts of [`Conclusion::OneOf`].
     pub fn measure(&self) -> Option<&Measure> {
         match self {
             Self::OneOf { measure, .. } => Some(measure),

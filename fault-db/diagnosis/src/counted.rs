@@ -1,5 +1,5 @@
-//! How likely it is that the fault of a run is one that was counted: judged by how far results, values, first deviations and
-//! signs are from the counts under the likeliest fault of the dictionary.
+//! Probability that the fault of a run is one that the dictionary has counted: judged by how far results, values, first
+//! deviations and signs are from the counts under the likeliest fault.
 //!
 //! The question is that of a posterior-predictive check (Rubin 1984); the weights are those of a logistic regression over
 //! runs of modes that were counted and of modes that were left out.
@@ -14,19 +14,19 @@ use super::settings::CountedSettings;
 /// What in a run differs from the counts under the likeliest fault of the dictionary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misfit {
-    /// Checks that end with a verdict they seldom had.
+    /// Number of checks with a verdict that was seldom counted.
     results: usize,
-    /// Values far from those counted, and values missing that never were.
+    /// Number of values far from those counted, or missing though none was missing.
     values: usize,
-    /// Share of the traces that deviate first at a signal which seldom was the first.
+    /// Share of the traces whose first deviation is at a signal that was seldom the first.
     first: f64,
-    /// Signs that never showed.
+    /// Number of signs that never showed in a counted run.
     signs: usize,
 }
 
 impl Misfit {
-    /// How far a run is from what was counted; `ln` has the logarithms of its hypotheses' probabilities. `None` of a dictionary
-    /// without faults.
+    /// How far a run is from the counts; `ln` are the logarithms of the hypotheses' probabilities. `None` if the
+    /// dictionary has no faults.
     pub fn of(belief: &Belief<'_, '_>, seen: &Observation, ln: &[f64]) -> Option<Self> {
         let model = belief.model;
         let settings = &model.settings.counted;
@@ -56,7 +56,7 @@ impl Misfit {
         })
     }
 
-    /// Probability that the fault was counted.
+    /// Probability that the fault is one that the dictionary has counted.
     pub fn counted(&self, settings: &CountedSettings) -> f64 {
         let against = settings.results * (self.results as f64).ln_1p()
             + settings.values * (self.values as f64).ln_1p()

@@ -1,7 +1,7 @@
 //! The fault dictionary: what each fault mode does to each check, counted in a campaign.
 //!
-//! A mode is counted at each of its levels (the number of its effect); a level's cells that are like those of a
-//! healthy unit are left out, so that the dictionary holds what differs.
+//! A mode is counted at each of its levels (the number of its effect). Cells of a level that are like a healthy unit's
+//! are left out, so that the dictionary holds only the differences.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Read as _};
@@ -22,7 +22,7 @@ const MAX_BYTES: u64 = 64 << 20;
 /// Provenance of a dictionary. For a unit, scripts or a line of other provenance the dictionary may be wrong.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Basis {
-    /// SHA-256 over everything below and all other inputs, in hex.
+    /// SHA-256 over the fields below and all other inputs, in hex.
     pub sha256: String,
     /// SHA-256 of the unit configuration.
     pub unit_config_sha256: String,
@@ -37,7 +37,7 @@ pub struct Basis {
     pub app_version: String,
 }
 
-/// Value of a file that does not say how the units were reached: on a bench.
+/// Default of `connection`, for older files without that field: the units were on a bench.
 fn harness() -> String {
     "harness".into()
 }
@@ -53,7 +53,7 @@ pub struct ModeName {
     pub text: String,
     /// `permanent`, `intermittent` or `degraded`.
     pub kind: String,
-    /// Whether it can leave the train less protected.
+    /// Whether the mode can leave the train less protected.
     #[serde(rename = "unsafe")]
     pub unsafe_: bool,
     /// Relative prior weight.
@@ -61,7 +61,7 @@ pub struct ModeName {
 }
 
 impl ModeName {
-    /// Kind of a mode that stands for the confirmed repairs of a part; its text names their units.
+    /// Kind of a mode made of the confirmed repairs of a part; the mode's text names the repaired units.
     pub const CONFIRMED: &str = "confirmed";
 }
 
@@ -72,9 +72,9 @@ pub struct Column {
     pub level: String,
     /// Number of runs of the suite.
     pub runs: u32,
-    /// Counts by the index of the check; those equal to a healthy unit's are left out.
+    /// Counts by the index of the check; cells like a healthy unit's are left out.
     pub cells: BTreeMap<usize, Cell>,
-    /// In how many runs each sign showed anywhere.
+    /// Number of runs in which each sign showed in any check.
     pub signs: Vec<(Sign, u32)>,
     /// In how many traces each signal was the first to deviate.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -102,7 +102,7 @@ pub struct Dictionary {
     pub healthy: Column,
     /// Fault modes.
     pub modes: Vec<Mode>,
-    /// All parts that can be replaced, those without a mode among them.
+    /// All replaceable parts, including those without a mode.
     #[serde(default)]
     pub parts: Vec<LruId>,
     /// Index of each check by its name.
@@ -135,7 +135,7 @@ impl Dictionary {
     /// Decompresses and validates a dictionary.
     ///
     /// # Errors
-    /// It is no dictionary, or inconsistent.
+    /// The bytes are no dictionary, or an inconsistent one.
     pub fn from_bytes(packed: &[u8]) -> Result<Self, String> {
         let json = unpack(packed).map_err(|error| error.to_string())?;
         let mut read: Self = serde_json::from_slice(&json).map_err(|error| error.to_string())?;
@@ -196,8 +196,9 @@ impl Dictionary {
         }
     }
 
-    /// Adds a level between two of a mode, as if runs of both had been one level's: a check that ends in one way at the one and
-    /// in another at the other may end in either, and values lie about the middle. Nothing where one of them has no runs.
+    /// Adds a level between two levels of a mode, as if the runs of both were runs of one level: a check that ends
+    /// differently at both may end either way, and values scatter about the middle. Does nothing if a level has no
+    /// runs.
     pub fn add_between(&mut self, mode: &str, levels: [usize; 2]) {
         let mode = self.modes.iter_mut().find(|known| known.name.id == mode);
         let Some(mode) = mode else { return };
@@ -233,8 +234,8 @@ impl Dictionary {
         mode.columns.push(between);
     }
 
-    /// Adds real runs with a fault of a part, as a mode of their own: so many runs are so many observations. Checks that
-    /// passed in all of them tell of these units rather than of the fault, and count as a healthy unit's.
+    /// Adds real runs with a fault of a part as a mode of its own; each run counts as one observation. A check that
+    /// passed in all of them says more about these units than about the fault, and counts as a healthy unit's.
     pub fn add_cases(&mut self, mode: &ModeName, runs: &[Observation]) {
         self.add(mode, CASES.into(), runs);
         let added = self.modes.last_mut();
@@ -271,7 +272,7 @@ impl Dictionary {
         }
     }
 
-    /// The parts of the unit and of its modes, each once, in order.
+    /// All parts, those of modes included, each once, in order.
     pub fn lrus(&self) -> Vec<&LruId> {
         let of_modes = self.modes.iter().map(|mode| &mode.name.lru);
         let all: BTreeSet<_> = self.parts.iter().chain(of_modes).collect();
@@ -302,7 +303,7 @@ fn unpack(packed: &[u8]) -> io::Result<Vec<u8>> {
 mod tests {
     use super::*;
 
-    /// Content that decompresses well may still be anything.
+    /// Goal: bytes that decompress without error, but are no dictionary, are refused.
     #[test]
     fn any_bytes_can_be_decompressed_or_are_refused() {
         let mode = ModeName {

@@ -1,4 +1,4 @@
-//! What the likeliest fault explains of a run: the consequences of one cause.
+//! What a part's fault explains of a run: the signs and failed checks that are its consequences.
 
 use std::collections::BTreeSet;
 
@@ -9,19 +9,19 @@ use super::model::Hypothesis;
 use super::observation::{CheckName, Observation, Sign};
 use super::weights::Weights;
 
-/// The likeliest of the parts that an answer names for certain, and what it explains of the run.
+/// The likeliest of the parts of which one has failed for certain, with what its fault explains of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cause {
     pub lru: LruId,
-    /// Probability that it has failed.
+    /// Probability that the part has failed.
     pub probability: f64,
-    /// Signs that its fault shows.
+    /// Signs of the run that the part's fault shows.
     pub signs: BTreeSet<Sign>,
-    /// Checks that its fault makes fail.
+    /// Failed checks of the run that the part's fault makes fail.
     pub checks: BTreeSet<CheckName>,
 }
 
-/// The part of the answer's set that is likelier than all other parts together, with what it explains; `None` where no part is.
+/// The part with a probability above 0.5 among those of which one has failed for certain; `None` if there is none.
 pub fn cause(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) -> Option<Cause> {
     let model = belief.model;
     let found = weights.set.first().filter(|part| part.probability > 0.5)?;
@@ -39,7 +39,7 @@ pub fn cause(belief: &Belief<'_, '_>, weights: &Weights, seen: &Observation) -> 
         if step.result == Verdict::Passed {
             return false;
         }
-        // A check may fail under several faults; what it measured tells which.
+        // A check may fail under several faults; its measured values tell under which.
         let values = |effect| model.likelihood_of_values(effect, weighed.place, step);
         let likeliest = (0..model.effects().len()).map(values);
         let likeliest = likeliest.fold(f64::MIN_POSITIVE, f64::max);

@@ -1,5 +1,5 @@
-//! How parts depend on each other, and the measurements that tell parts apart which checks alone do not: parts in a row, such
-//! as an antenna, its modem and its processor, and what several parts share.
+//! How parts depend on each other, and the measurements that tell parts apart where checks alone do not: parts in a
+//! row, such as an antenna, its modem and its processor, or parts that share something.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,14 +8,14 @@ use serde::Serialize;
 
 use super::belief::Belief;
 
-/// What to measure, and where, as the file of relations has it.
+/// What to measure, and where: a text of the file of relations.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Measure {
     pub english: String,
     pub korean: String,
 }
 
-/// Parts that are not always told apart, and what tells which has failed.
+/// An ambiguity group: parts that checks do not always tell apart, and the measurement that does.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Group {
     pub parts: Vec<LruId>,
@@ -25,9 +25,9 @@ pub struct Group {
 /// What several parts share: a supply, a ground, a link or an air pipe.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Shared {
-    /// Part to replace where it has failed.
+    /// Part to replace if the shared supply, ground, link or pipe has failed.
     pub part: LruId,
-    /// Parts that it reaches.
+    /// Parts that share it.
     pub reaches: Vec<LruId>,
     pub measure: Measure,
 }
@@ -40,12 +40,12 @@ pub struct Relations {
     pub shared: Vec<Shared>,
     /// Parts that belong to the bench, not to the unit or its train.
     pub of_bench: BTreeSet<LruId>,
-    /// Procedures in which the bench has no part.
+    /// Procedures that use no part of the bench.
     pub without_bench: Vec<String>,
     /// The parts that make each signal out of other signals.
     pub makers: BTreeMap<String, BTreeSet<LruId>>,
-    /// For each signal the signals that it is made of and that the bench records on their way to the unit. A wire of the bench
-    /// that breaks behind the place of recording shows first at the signal that the unit makes.
+    /// By signal: its input signals that the bench records on their way to the unit. Where a wire of the bench breaks
+    /// behind the recording, the first signal to deviate is the one that the unit makes.
     pub on_the_way: BTreeMap<String, BTreeSet<String>>,
 }
 
@@ -60,21 +60,21 @@ pub static NO_RELATIONS: Relations = Relations {
 };
 
 impl Relations {
-    /// Whether a part makes a signal of others.
+    /// Whether a part makes this signal out of other signals.
     pub fn makes(&self, part: &LruId, signal: &str) -> bool {
         let makers = self.makers.get(signal);
         makers.is_some_and(|makers| makers.contains(part))
     }
 
-    /// Whether two parts are of one group.
+    /// Whether two parts are in one group.
     pub fn are_near(&self, one: &LruId, other: &LruId) -> bool {
         let mut groups = self.groups.iter();
         groups.any(|group| group.parts.contains(one) && group.parts.contains(other))
     }
 
-    /// The measurement that tells `parts` (the likeliest first) apart: the one of the smallest group that has them all; else,
-    /// where one of the parts is what the others share, the one for what they share; else the one of the group that tells the
-    /// likeliest from most others. Empty where there is none.
+    /// The measurement that tells `parts` (the likeliest first) apart: of the smallest group with all of them; else, if
+    /// one of the parts is shared by the others, the one for that shared part; else of the group that tells the
+    /// likeliest from most others. Empty if there is none.
     pub fn measure(&self, parts: &[&LruId]) -> Measure {
         let told = |group: &&Group| {
             let told = parts.iter().filter(|part| group.parts.contains(part));
@@ -105,9 +105,9 @@ impl Relations {
     }
 }
 
-/// Parts of the bench that stand in one group with a part of the unit: a stimulus that does not arrive may be the fault of
-/// either. There are none where traces deviate first at signals that a fault of the bench does not touch, or where a step
-/// failed that judges the part of the unit without the bench.
+/// Parts of the bench in one group with `part` of the unit: a stimulus that does not arrive may be the fault of either.
+/// None if traces deviate first at signals that a fault of the bench does not touch, or if a step failed that judges
+/// `part` without the bench.
 pub fn rivals<'m>(belief: &Belief<'m, '_>, part: &LruId) -> BTreeSet<&'m LruId> {
     let relations = belief.model.relations;
     if relations.of_bench.contains(part) || fails_without_bench(belief, part) {
@@ -123,8 +123,8 @@ pub fn rivals<'m>(belief: &Belief<'m, '_>, part: &LruId) -> BTreeSet<&'m LruId> 
         .collect()
 }
 
-/// Whether a trace deviates first at a signal that the part of the bench makes, or at a signal that is made of one which the
-/// bench records on its way to the part of the unit. True where no trace was held against a sound unit's, or none deviated.
+/// Whether a trace deviates first at a signal that `bench` makes, or at one made of a signal that the bench records on
+/// its way to `part`. True if no trace was compared with a sound unit's, or none deviated.
 fn may_deviate_at(belief: &Belief<'_, '_>, bench: &LruId, part: &LruId) -> bool {
     let relations = belief.model.relations;
     let reaches = |from: &String| relations.makes(bench, from) && relations.makes(part, from);
@@ -136,7 +136,7 @@ fn may_deviate_at(belief: &Belief<'_, '_>, bench: &LruId, part: &LruId) -> bool 
     deviating.is_empty() || deviating.iter().any(shows)
 }
 
-/// Whether a step failed that judges the part in a procedure without the bench.
+/// Whether a step that judges `part` failed in a procedure without the bench.
 fn fails_without_bench(belief: &Belief<'_, '_>, part: &LruId) -> bool {
     let dictionary = belief.model.dictionary;
     let procedures = &belief.model.relations.without_bench;

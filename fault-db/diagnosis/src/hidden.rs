@@ -1,13 +1,14 @@
-//! Unsafe modes that no check so far would have shown: a unit is not called healthy while there are any.
+//! Unsafe modes that the checks so far might not have shown: while there are any, a unit is not called healthy.
 
 use super::model::{Hypothesis, Model};
 
 /// An unsafe mode at one level.
 #[derive(Clone, Debug)]
 struct UnsafeMode {
-    /// Share of runs that did not pass each check that acts otherwise than on a healthy unit, by its index.
+    /// For checks that act otherwise than on a healthy unit, by index: share of the mode's runs in which the check did
+    /// not pass.
     shown_in: Vec<(usize, f64)>,
-    /// Probability that the checks made so far would all have passed with it.
+    /// Probability that all checks made so far would have passed with this mode.
     hidden: f64,
 }
 
@@ -15,12 +16,12 @@ struct UnsafeMode {
 #[derive(Clone, Debug)]
 pub struct Hidden {
     modes: Vec<UnsafeMode>,
-    /// A mode that hides with this probability at most has been looked for.
+    /// A mode has been looked for once `hidden` is at most this.
     enough: f64,
 }
 
 impl Hidden {
-    /// Before any check.
+    /// The state before any check.
     pub fn new(model: &Model<'_>) -> Self {
         let unsafe_modes = model.effects().iter().filter_map(|effect| {
             let Hypothesis::Mode { mode, column } = *effect else {
@@ -40,15 +41,15 @@ impl Hidden {
         }
     }
 
-    /// The check with this index was made.
+    /// Notes that the check with index `place` was made.
     pub fn see(&mut self, place: usize) {
         for mode in &mut self.modes {
             mode.hidden *= 1.0 - mode.shows(place);
         }
     }
 
-    /// By how much the check with this index makes the modes that still hide likelier to be shown, over all of them; `None` if
-    /// that is not worth a check.
+    /// Sum, over the modes that still hide, of the probability that the check with index `place` shows them; `None` if
+    /// it is too small to be worth the check.
     pub fn worth(&self, place: usize) -> Option<f64> {
         let hiding = self.modes.iter().filter(|mode| mode.hidden > self.enough);
         let worth: f64 = hiding.map(|mode| mode.hidden * mode.shows(place)).sum();

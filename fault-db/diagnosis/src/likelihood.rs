@@ -20,7 +20,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// The range of a healthy unit's values.
+    /// Begins with the range of a healthy unit's values.
     pub fn of_healthy(values: &Values) -> Self {
         Self {
             low: values.low,
@@ -29,7 +29,7 @@ impl Scale {
         }
     }
 
-    /// Widens the range to the values under another hypothesis.
+    /// Widens the range to the values counted under another hypothesis.
     pub fn widen(&mut self, values: &Values) {
         if values.n > 0 {
             self.low = self.low.min(values.low);
@@ -52,7 +52,7 @@ impl Scale {
 pub struct Expected<'a> {
     /// Counts.
     pub cell: &'a Cell,
-    /// Runs of the hypothesis: fewer than the cell's if a healthy unit's counts stand in.
+    /// Counted runs of the hypothesis: fewer than the cell's if a healthy unit's counts stand in.
     pub runs: u32,
     /// See [`super::Settings::doubt_runs`].
     pub doubt: f64,
@@ -75,7 +75,7 @@ impl Expected<'_> {
         self.cell.runs() > 0
     }
 
-    /// Share of the counted runs.
+    /// `count` as a share of the counted runs.
     pub fn share(&self, count: u32) -> f64 {
         match self.cell.runs() {
             0 => 0.0,
@@ -98,7 +98,7 @@ impl Expected<'_> {
         self.smoothed(self.share(self.cell.count_sign(sign)), self.settings.sign)
     }
 
-    /// Probability of a signature: as counted, or, if never seen, the product of its parts.
+    /// Probability of an outcome: as counted, or, if never seen, the product of the probabilities of result and signs.
     pub fn signature(&self, signature: &StepOutcome) -> f64 {
         let counted = self.cell.signatures.iter().find(|(s, _)| s == signature);
         let share = self.share(counted.map_or(0, |(_, count)| *count));
@@ -118,9 +118,9 @@ impl Expected<'_> {
         self.result(signature.result) * showing * silent
     }
 
-    /// Probability density of a measured value, relative to the uniform one, with a share of uniform
-    /// values. The range is extended by three times the smallest standard deviation at each end, so that it is
-    /// not zero where all values are the same.
+    /// Probability density of a measured value relative to a uniform one, mixed with a share of uniform values. The
+    /// range is extended by three times the smallest standard deviation at each end, so that it is not empty if all
+    /// values are equal.
     pub fn value(&self, name: &str, value: Option<f64>, scale: &Scale) -> f64 {
         let LikelihoodSettings {
             anywhere,
@@ -146,8 +146,8 @@ impl Expected<'_> {
         (1.0 - missing) * (anywhere + (1.0 - anywhere) * near)
     }
 
-    /// Whether a measured value is more than `far` standard deviations from those counted, or is missing where none ever was.
-    /// Where all that were counted were missing, any value is far; of a measurement that was never counted, none is.
+    /// Whether a value is more than `far` standard deviations from those counted, or is missing though none was
+    /// missing. If all counted values were missing, any value is far; if the measurement was never counted, none is.
     pub fn is_far(&self, name: &str, value: Option<f64>, scale: &Scale, far: f64) -> bool {
         let Some(values) = self.cell.values.get(name) else {
             return false;

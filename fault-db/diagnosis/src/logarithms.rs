@@ -1,6 +1,7 @@
-//! Weights and probabilities that are given by their logarithms, as products of many likelihoods are.
+//! Weights and probabilities given by their logarithms, as products of many likelihoods are too small for floating
+//! point.
 
-/// Normalises weights given by their logarithms; where all are 0, as in a dictionary without modes, they are even.
+/// Scales weights, given by their logarithms, to a sum of 1; if all weights are 0, the results are equal.
 pub fn normalised(ln: &[f64]) -> Vec<f64> {
     let greatest = ln.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if greatest == f64::NEG_INFINITY {

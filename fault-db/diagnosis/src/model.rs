@@ -1,8 +1,8 @@
 //! A dictionary prepared for diagnosis: hypotheses with priors, and the scale of each measurement.
 //!
-//! What a fault does to the checks is one of the effects that the dictionary has: a level of a fault mode. A mode of
-//! the dictionary has its own effect; a mode that nobody has seen yet has, more or less, an effect of its part, or of
-//! a part whose modes act on the same checks.
+//! An effect is what a fault does to the checks: the counts of one level of a fault mode. A mode of the dictionary has
+//! its own effects; a mode that nobody has seen yet acts more or less like an effect of its part, or of a part whose
+//! modes act on the same checks.
 
 mod again;
 
@@ -47,9 +47,9 @@ pub enum Hypothesis {
 /// Logarithms of a step's likelihood.
 #[derive(Clone, Debug)]
 pub struct StepLikelihoods {
-    /// On a healthy unit, its signs among it.
+    /// On a healthy unit, including the likelihood of the step's signs.
     pub healthy: f64,
-    /// Under each effect, without its signs, which count once in a run.
+    /// Under each effect, without the step's signs, as a sign counts once in a run.
     pub effects: Vec<f64>,
     /// Under a fault that acts more or less like each effect: one that is not in the dictionary, or comes and goes.
     pub like_effects: Vec<f64>,
@@ -63,21 +63,21 @@ pub struct Model<'a> {
     pub settings: &'a Settings,
     /// All single hypotheses: no fault, the modes, and an unseen mode of each part.
     pub hypotheses: Vec<Hypothesis>,
-    /// Logarithms of their priors.
+    /// Logarithms of the hypotheses' priors, in the same order.
     pub ln_priors: Vec<f64>,
-    /// Groups of parts, what they share, and which signals they make.
+    /// Groups of parts, what several parts share, and the signals that each part makes.
     pub relations: &'a Relations,
     parts: Vec<&'a LruId>,
     effects_of_parts: Vec<Vec<usize>>,
     /// Logarithms of the probability that an unseen mode of a part acts like each effect, by part and effect.
     resemblance: Vec<Vec<f64>>,
-    /// What each check may show.
+    /// Possible outcomes of each check, with their probabilities.
     pub outlooks: Vec<Outlook>,
     /// Signs of each effect.
     signs: Vec<Vec<ShownSign<'a>>>,
-    /// Whom failed checks suspect under an unseen mode of each part.
+    /// The parts that failed checks suspect, under an unseen mode of each part.
     pub suspects: Suspects,
-    /// What deviates first under each fault.
+    /// The signals at which traces deviate first, under each fault.
     pub residuals: Residuals,
     scales: BTreeMap<usize, BTreeMap<String, Scale>>,
     /// Share of checks that a healthy unit does not pass.
@@ -108,7 +108,8 @@ impl<'a> Model<'a> {
                 priors.push(seen * weight(mode) / all / entry.columns.len() as f64);
             }
         }
-        // How often a part fails in a way that nobody has seen does not follow from how often it fails in others.
+        // An unseen mode is equally likely in all parts, but for the unit's history: known modes do not tell how
+        // likely.
         let factors = parts
             .iter()
             .map(|lru| lru_factor.get(*lru).copied().unwrap_or(1.0));
@@ -147,7 +148,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Adds how parts depend on each other; without these relations traces are no evidence.
+    /// Adds how parts depend on each other; without relations, traces are no evidence.
     pub fn with_relations(self, relations: &'a Relations) -> Self {
         let residuals = Residuals::new(self.dictionary, &self.parts, relations, self.settings);
         Self {
@@ -204,7 +205,7 @@ impl<'a> Model<'a> {
         shown.map_or(0.0, |shown| shown.share)
     }
 
-    /// Shares of the traces in which a signal is the first to deviate, under a fault and under any.
+    /// Shares of the traces in which a signal is the first to deviate: under this hypothesis, and under any fault.
     pub fn share_of_residual(&self, hypothesis: Hypothesis, signal: &str) -> Option<[f64; 2]> {
         let table = &self.residuals;
         let place = table.place(signal)?;
@@ -228,12 +229,12 @@ impl<'a> Model<'a> {
     pub fn is_like_healthy(&self, hypothesis: Hypothesis, place: usize) -> bool {
         match hypothesis {
             Hypothesis::Mode { .. } => !self.column(hypothesis).cells.contains_key(&place),
-            // No check was counted under these.
+            // No check was counted under the other hypotheses.
             _ => true,
         }
     }
 
-    /// The counts expected of a check under a hypothesis, as far as there are any.
+    /// The counts expected of a check under a hypothesis; those of a healthy unit where the hypothesis has none.
     pub fn expected(&self, hypothesis: Hypothesis, place: usize) -> Expected<'_> {
         let column = self.column(hypothesis);
         let own = column.cells.get(&place);
@@ -285,7 +286,7 @@ impl<'a> Model<'a> {
             }
         }
         StepLikelihoods {
-            // Good units were counted in so many runs that it is known how rarely they fail a check.
+            // No `otherwise` here: healthy units were counted in enough runs to know how rarely they fail a check.
             healthy: healthy.signature(&StepOutcome::of(step)).ln()
                 + weight * likelihood_of_values(healthy, step, scale).ln(),
             effects,
@@ -299,7 +300,8 @@ impl<'a> Model<'a> {
         likelihood_of_values(expected, step, |name| self.scales.get(&place)?.get(name))
     }
 
-    /// Values of a step that are far from those counted under an effect, or missing though none ever was.
+    /// Number of a step's values that are far from those counted under an effect, or missing though none was missing
+    /// there.
     pub fn far_values(&self, effect: Hypothesis, place: usize, step: &ObservedStep) -> usize {
         let expected = self.expected(effect, place);
         let far = self.settings.counted.far;
@@ -327,7 +329,7 @@ impl<'a> Model<'a> {
     }
 }
 
-/// A mixture with this share of the second.
+/// Mixture of two probabilities; `share` is the weight of `other`.
 fn mixed(one: f64, other: f64, share: f64) -> f64 {
     (1.0 - share) * one + share * other
 }

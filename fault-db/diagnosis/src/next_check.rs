@@ -3,11 +3,11 @@
 //! A procedure sets the unit up at its start and its steps build on each other. So a check costs all steps
 //! of its procedure before it, except those that have just run.
 //!
-//! Where no other check tells more, a check that was made may be made again: an intermittent fault hits other checks the next
-//! time, a lasting one shows the same again.
+//! If no new check tells more, a check may be repeated: with an intermittent fault it may end otherwise, while a
+//! lasting fault shows the same again.
 //!
-//! A check that a person is told to make is rated by passing or not alone: the signs beside the result may have been seen
-//! before.
+//! A check that a person is told to make is rated by pass or fail alone: the signs that come with the result may be
+//! known already.
 
 use std::collections::BTreeSet;
 
@@ -21,7 +21,7 @@ use super::observation::CheckName;
 use super::verdict::PartProbability;
 use super::weights::ratio;
 
-/// A check decides about a part if it passes, or does not pass, with at least this probability while the part has failed.
+/// A check decides about a part if, with that part failed, it passes (or does not pass) with at least this probability.
 const MOSTLY: f64 = 0.7;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -35,9 +35,9 @@ pub struct NextCheck {
     pub cost_s: f64,
     /// The check was made already, and is worth making again.
     pub again: bool,
-    /// Likely parts with whose fault the check passes.
+    /// Likely parts, with a fault of which the check mostly passes.
     pub passes_with: Vec<LruId>,
-    /// Likely parts with whose fault the check does not pass.
+    /// Likely parts, with a fault of which the check mostly does not pass.
     pub fails_with: Vec<LruId>,
 }
 
@@ -45,7 +45,7 @@ fn as_text<S: serde::Serializer>(check: &CheckName, to: S) -> Result<S::Ok, S::E
     to.collect_str(check)
 }
 
-/// The classes to tell apart, no fault and each part, by the effects that they may have.
+/// The classes to tell apart: no fault, and a fault of each part; each with the effects that it may have.
 struct Classes {
     /// Probability of each class.
     all: Vec<f64>,
@@ -54,9 +54,8 @@ struct Classes {
 }
 
 impl Belief<'_, '_> {
-    /// The next best check, among the procedures in `may` if given. Checks in `done` are not repeated; the
-    /// steps of the procedure `under_way` that have run need not be run again. `None` if no check gives
-    /// enough information.
+    /// The next best check, among the procedures in `may` if given. Checks in `done` are not repeated, and the steps of
+    /// the procedure `under_way` that have run are not run again. `None` if no check gives enough information.
     pub fn next_check(
         &self,
         done: &BTreeSet<CheckName>,
@@ -73,10 +72,10 @@ impl Belief<'_, '_> {
         most_per_second(worth_making).map(|best| self.recommended(best, false, &classes))
     }
 
-    /// The check that tells a person the most per second by passing or not. Where a run showed a fault, and several parts are
-    /// likely, the check passes where some of them have failed and does not where others have; a single likely part decides it.
-    /// A check in `done` is made again only where no other is worth it. `failed` has the probabilities of the parts where a run
-    /// showed a fault.
+    /// The check whose pass or fail gives a person the most information per second. If a run showed a fault (`failed`
+    /// holds the parts' probabilities) and several parts are likely, the check must pass with some of these and not
+    /// with others; if one part is likely, the check must decide about that part. A check in `done` is repeated only if
+    /// no new check qualifies.
     pub fn told_check(
         &self,
         done: &BTreeSet<CheckName>,
@@ -129,7 +128,7 @@ impl Belief<'_, '_> {
         }
     }
 
-    /// Probability that the check at `place` passes, and that it does not, with each of these classes.
+    /// Joint probability of each class in `columns` with a pass of the check at `place`, and with no pass.
     fn passing(&self, place: usize, classes: &Classes, columns: &[usize]) -> [Vec<f64>; 2] {
         let joint = self.joint(place, classes);
         let mut passing = [vec![0.0; columns.len()], vec![0.0; columns.len()]];
@@ -152,7 +151,8 @@ impl Belief<'_, '_> {
         probability >= self.model.settings.conclusion.named_at
     }
 
-    /// The likely parts with whose fault the check at `place` passes, and those with whose fault it does not.
+    /// The likely parts with a fault of which the check at `place` mostly passes, and those with which it mostly does
+    /// not.
     fn parted_by(&self, place: usize, classes: &Classes) -> [Vec<LruId>; 2] {
         let joint = self.joint(place, classes);
         let mut parted = [Vec::new(), Vec::new()];
@@ -177,7 +177,7 @@ impl Belief<'_, '_> {
         parted
     }
 
-    /// The classes with their probabilities by Bayes' rule; parts in `pooled` have the probabilities given there.
+    /// The classes with their probabilities: for parts in `pooled` those given there, for all others by Bayes' rule.
     fn classes(&self, pooled: &[PartProbability]) -> Classes {
         let parts = self.model.parts();
         let classes = FIRST_EFFECT + parts.len();
@@ -213,7 +213,7 @@ impl Belief<'_, '_> {
         Classes { all, with_effect }
     }
 
-    /// Mutual information of the class and what the check at `place` shows, bits.
+    /// Mutual information of the class and the outcome of the check at `place`, bits.
     fn gain_bits(&self, place: usize, classes: &Classes) -> f64 {
         match self.model.outlooks[place].effects.is_empty() {
             true => 0.0,
@@ -221,10 +221,10 @@ impl Belief<'_, '_> {
         }
     }
 
-    /// Probability of each outcome of the check at `place`, those that were counted first, with each class.
+    /// Joint probability of each outcome of the check at `place` (the counted ones, then any other) with each class.
     fn joint(&self, place: usize, classes: &Classes) -> Vec<Vec<f64>> {
         let outlook = &self.model.outlooks[place];
-        // What lasts shows what the check showed before.
+        // With a lasting fault the check shows what it showed before.
         let before = self.shown(place).map(|outcome| {
             let known = outlook.outcomes.iter().position(|known| known == outcome);
             known.unwrap_or(outlook.outcomes.len())
@@ -256,8 +256,8 @@ impl Belief<'_, '_> {
     }
 }
 
-/// The checks that may be made, among those in `done` if `again` and among the others if not, each by its index with what it
-/// costs, s: all steps of its procedure up to it, but for those of the procedure `under_way` that have run.
+/// Indexes and costs, s, of the checks that may be made: of those in `done` if `again`, else of the others. A check
+/// costs all steps of its procedure up to it, except those of the procedure `under_way` that have run.
 pub fn costs<'a>(
     model: &'a Model<'_>,
     done: &'a BTreeSet<CheckName>,
@@ -286,7 +286,8 @@ pub fn costs<'a>(
     })
 }
 
-/// The check with the greatest worth per second; each item is its index, its cost in s, and its worth. Of equal checks the first.
+/// The check with the greatest worth per second, the first of equals; an item is its index, its cost in s, and its
+/// worth.
 pub fn most_per_second(
     checks: impl Iterator<Item = (usize, f64, f64)>,
 ) -> Option<(usize, f64, f64)> {

@@ -1,4 +1,4 @@
-//! What a run showed: its steps with their measured values, and the fault events of the unit.
+//! What a run showed: its steps with their measured values, its fault events, and where its traces deviate first.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -8,7 +8,7 @@ use protocol::lru::{self, LruId};
 use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 
-/// Whether a step with this verdict is evidence. One that was not run to its end shows nothing.
+/// Whether a step with this verdict is evidence. A step that was not run to its end is none.
 pub const fn is_observed(verdict: Verdict) -> bool {
     match verdict {
         Verdict::Passed | Verdict::Failed | Verdict::Error => true,
@@ -41,7 +41,7 @@ impl std::fmt::Display for CheckName {
     }
 }
 
-/// Name of the fault that the tester measures by itself, whatever the unit says: its clock, against the tester's.
+/// Name of the fault that the tester itself measures: the unit's clock deviates from the tester's.
 pub const CLOCK_WRONG: &str = "clock_wrong";
 
 /// A fault event of the unit or the train: the fault's name and the part it points at.
@@ -55,7 +55,7 @@ pub struct Sign {
 }
 
 impl Sign {
-    /// Whether the tester has measured the fault itself.
+    /// Whether the tester itself measures this fault.
     pub(crate) fn is_measured(&self) -> bool {
         self.fault == CLOCK_WRONG
     }
@@ -66,7 +66,7 @@ impl Sign {
     }
 }
 
-// Stored dictionaries have their signs in the order of these words.
+// Ordered as in stored dictionaries: by these words.
 impl Ord for Sign {
     fn cmp(&self, other: &Self) -> Ordering {
         (&self.fault, self.part()).cmp(&(&other.fault, other.part()))
@@ -121,7 +121,7 @@ pub struct Observation {
     pub steps: Vec<ObservedStep>,
     /// Signs from the unit's own log, which belong to no step.
     pub signs: BTreeSet<Sign>,
-    /// The signal that was the first to leave a sound unit's, one for the first trace of each procedure.
+    /// For the first trace of each procedure, the signal that was the first to deviate from a sound unit's.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub residuals: Vec<String>,
 }

@@ -1,18 +1,18 @@
-//! What each check may show: its outcomes, numbered, and how often each effect has them.
+//! The possible outcomes of each check, numbered, and how often each occurs under each effect.
 
 use super::cell::{Cell, StepOutcome};
 use super::dictionary::{Column, Dictionary};
 
-/// Number of an outcome, and its share of the runs.
+/// Outcomes by their numbers, each with its share of the runs.
 type Shares = Vec<(usize, f64)>;
 
 /// The outcomes of one check.
 #[derive(Clone, Debug, Default)]
 pub struct Outlook {
     pub outcomes: Vec<StepOutcome>,
-    /// The outcomes on a healthy unit.
+    /// Shares of the outcomes on a healthy unit.
     pub healthy: Shares,
-    /// The outcomes under each effect that differs from a healthy unit at this check, by the index of the effect.
+    /// Shares of the outcomes under each effect that differs from a healthy unit at this check, by the effect's index.
     pub effects: Vec<(usize, Shares)>,
 }
 
@@ -35,7 +35,7 @@ pub fn outlooks<'a>(
 }
 
 impl Outlook {
-    /// The outcomes of a cell, numbered, with their shares.
+    /// Shares of a cell's outcomes; numbers new outcomes.
     fn shares(&mut self, cell: &Cell) -> Shares {
         let runs = f64::from(cell.runs());
         let outcomes = cell.signatures.iter().map(|(outcome, count)| {

@@ -1,11 +1,11 @@
 //! How likely each part is, whether its fault was counted or not.
 //!
-//! A fault that was counted is found by Bayes' rule. About a fault that nobody has counted the rule is too sure, as such a fault
-//! may act like one of another part. So the logarithm of a part's posterior then counts with a weight below 1 and to a limit
-//! only, beside what points at a part whatever its faults do: who makes the signals that deviate first, whom signs and failed
-//! checks name, and which parts are in a row with the likeliest. It is a log-linear pool (Genest and Zidek 1986), whose weights
-//! are those of a conditional logit (McFadden 1974) over runs of modes that were left out. Both are mixed by how well the run
-//! fits what was counted.
+//! Bayes' rule finds a fault that the dictionary has counted. About a fault that nobody has counted the rule is too
+//! sure, as such a fault may act like one of another part. There the logarithm of a part's posterior counts only with a
+//! weight below 1 and down to a limit, beside what points at a part whatever its faults do: which parts make the
+//! signals that deviate first, which parts signs and failed checks name, and which parts are in a row with the
+//! likeliest. This is a log-linear pool (Genest and Zidek 1986), with the weights of a conditional logit (McFadden
+//! 1974) over runs of modes that were left out. Both answers are mixed by how well the run fits the counts.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,16 +19,16 @@ use super::logarithms::normalised;
 use super::model::{FIRST_EFFECT, Model};
 use super::observation::Observation;
 
-/// A part with this share of the likeliest part's probability counts as equally likely.
+/// A part with at least this share of the likeliest part's probability counts as equally likely.
 const AS_LIKELY: f64 = 0.5;
 
 /// All evidence for each part.
 pub struct Pooled {
-    /// Probability that each part is the one that failed, given that one has, in the model's order; together 1.
+    /// Probability, by part in the model's order, that this part has failed, given that one has; together 1.
     pub shares: Vec<f64>,
     /// Probability that the fault is one that was counted.
     pub counted: f64,
-    /// Parts that may be the cause at several others.
+    /// Shared parts that may be the one cause at several parts.
     pub causes: BTreeSet<LruId>,
 }
 
@@ -59,7 +59,7 @@ impl Pooled {
     }
 }
 
-/// Logarithm of what speaks for each part, if its fault was not counted.
+/// Score of each part, a logarithm of odds, for the case that its fault was not counted.
 fn scores(belief: &Belief<'_, '_>, seen: &Observation, posterior: &[f64]) -> Vec<f64> {
     let model = belief.model;
     let pool = &model.settings.pool;
@@ -90,8 +90,8 @@ fn scores(belief: &Belief<'_, '_>, seen: &Observation, posterior: &[f64]) -> Vec
     model.parts().iter().zip(posterior).map(score).collect()
 }
 
-/// Parts whose failure may be what is wrong at several of the parts that they reach: signs name two of those, or effects of
-/// two explain the run better than any one.
+/// Shared parts that may be the cause at several of the parts they reach: signs name two of these, or effects of two of
+/// these explain the run better than any one effect.
 fn causes(belief: &Belief<'_, '_>, seen: &Observation) -> BTreeSet<LruId> {
     let model = belief.model;
     let named: BTreeSet<&LruId> = belief
@@ -121,7 +121,7 @@ fn of_parts(model: &Model<'_>, ln: &[f64]) -> Vec<f64> {
     parts
 }
 
-/// How often each is named, as a share of all namings.
+/// For each name, its share of all names.
 fn shares<'a, T: Ord>(named: impl Iterator<Item = Option<&'a T>>) -> BTreeMap<&'a T, f64> {
     let mut counts: BTreeMap<&T, f64> = BTreeMap::new();
     for one in named.flatten() {

@@ -1,20 +1,21 @@
 //! Whether runs that passed prove a repair: how probable they are while the fault is still there.
 //!
-//! An intermittent fault hides in a share of all runs. How large that share is, is learnt from the runs in which the fault was
-//! there: the faults of the dictionary that explain those runs say how often a run like the last passes all the same.
+//! An intermittent fault hides in a share of all runs. The runs in which the fault was present tell how large that
+//! share is: the faults of the dictionary that explain those runs say how often a run like the last passes all the
+//! same.
 
 use super::belief::Belief;
 use super::logarithms::ln_sum;
 use super::model::{Model, NO_FAULT};
 use super::observation::Observation;
 
-/// More runs than these are not asked for: the fault does not show in such runs.
+/// Greatest number of further runs that are asked for: a fault that needs more does not show in such runs.
 const MOST_RUNS: u32 = 20;
 
-/// What runs that passed after a repair say of the repair.
+/// What the runs that passed after a repair prove.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proof {
-    /// Probability that a unit which still has the fault passes all of them.
+    /// Probability that a unit which still has the fault passes all runs since the repair.
     pub hidden: f64,
     /// Probability that the unit with the fault passes the last run, given that it passed those before.
     pub hidden_in_last: f64,
@@ -27,8 +28,8 @@ impl Proof {
         self.more == Some(0)
     }
 
-    /// Weighs the runs in which the fault was `there` and those that `passed` after the repair, each in order; `limit` is the
-    /// greatest probability of a hidden fault at which the repair counts as proven. `None` without a run that passed.
+    /// Weighs the runs in which the fault was `there` and those that `passed` after the repair, both oldest first; the
+    /// repair counts as proven if `hidden` is at most `limit`. `None` without a run that passed.
     pub fn of(
         model: &Model<'_>,
         there: &[Observation],
@@ -59,7 +60,7 @@ impl Proof {
     }
 }
 
-/// Logarithm of how much likelier the evidence is with any fault than without.
+/// Logarithm of the posterior odds of any fault against no fault.
 fn against_healthy(belief: &Belief<'_, '_>) -> f64 {
     let ln = belief.ln();
     let faults = ln

@@ -1,4 +1,4 @@
-//! The steps that speak for a fault mode and those that speak against it.
+//! Reasons for and against a fault mode: steps, signs and traces of the run.
 
 use std::collections::BTreeSet;
 
@@ -10,11 +10,11 @@ use super::model::{FIRST_EFFECT, Hypothesis, Model};
 use super::observation::{CheckName, Observation, ObservedStep, Sign};
 use super::signs::SignsSeen;
 
-/// Most reasons in each direction.
+/// Greatest number of reasons for a mode, and against it.
 const MOST: usize = 6;
-/// A step is a reason if its likelihood ratio is at least e.
+/// A step is a reason if the logarithm of its likelihood ratio exceeds this: if the ratio exceeds e.
 const SPEAKS_AT: f64 = 1.0;
-/// So many of the likeliest modes of other parts a mode is compared with.
+/// Number of modes of other parts, the likeliest, with which a mode is compared.
 const MOST_RIVALS: usize = 5;
 
 /// What speaks for a fault, or against it.
@@ -24,27 +24,27 @@ pub enum Reason {
     Step(StepReason),
     /// A sign in the unit's log.
     Logged(Sign),
-    /// The signal by which a trace first leaves a sound unit's.
+    /// The signal at which a trace deviates first from a sound unit's.
     Deviated {
         signal: String,
-        /// Share of the traces in which that signal is the first: under the fault, and under any.
+        /// Shares of the traces in which that signal is the first: under the fault, and under any fault.
         shares: [f64; 2],
     },
     /// What is known of a part from elsewhere.
     Known(Known),
 }
 
-/// What a step showed, held against the dictionary: under the fault, and on a healthy unit.
+/// What a step showed, compared with the dictionary: under the fault, and on a healthy unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepReason {
     pub check: CheckName,
     /// Verdict of the step.
     pub result: Verdict,
-    /// Shares of runs in which the step ends with this verdict.
+    /// Shares of runs in which the step ends with this verdict: under the fault, and on a healthy unit.
     pub shares: [f64; 2],
     /// Signs that showed in the step.
     pub signs: Vec<Sign>,
-    /// Values that tell the two apart, or were not measured.
+    /// Values that tell the fault from a healthy unit, or were not measured.
     pub values: Vec<ValueReason>,
 }
 
@@ -52,9 +52,9 @@ pub struct StepReason {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ValueReason {
     pub name: String,
-    /// The value, if there is one.
+    /// The value; `None` if nothing could be measured.
     pub value: Option<f64>,
-    /// Least and greatest value in the runs that have one.
+    /// Least and greatest value in the counted runs: under the fault, and on a healthy unit.
     pub ranges: [Option<[f64; 2]>; 2],
 }
 
@@ -65,16 +65,16 @@ pub enum Known {
     /// Faults of earlier runs named the part.
     Recurred {
         runs: u32,
-        /// Since this repair, if there was one.
+        /// The repair since which these runs are counted, if there was one.
         since: Option<Repaired>,
     },
     /// The part was repaired, and the fault came back.
     CameBack(Repaired),
-    /// Who brought the unit said so.
+    /// Whoever brought the unit reported this symptom.
     BroughtWith { symptom: String },
-    /// Diagnoses named the part before confirmed repairs.
+    /// Diagnoses had attributed faults to the part before the faults' repairs were confirmed.
     WasRight {
-        /// Repairs that confirmed the part.
+        /// Repairs of this part among those.
         right: u32,
         named: u32,
     },
@@ -91,12 +91,12 @@ pub enum Known {
 pub struct Repaired {
     /// The part was replaced, not only worked on.
     pub replaced: bool,
-    /// When, µs UTC.
+    /// Time of the repair, µs since 1970 UTC.
     pub at_us: i64,
 }
 
 impl Reason {
-    /// The step that is the reason, if one is.
+    /// The step, if the reason is a step.
     pub fn step(&self) -> Option<&CheckName> {
         match self {
             Self::Step(step) => Some(&step.check),
@@ -105,12 +105,12 @@ impl Reason {
     }
 }
 
-/// The reasons for and against a mode: first the strongest of each procedure, then the others, each list the strongest first.
+/// The reasons for and against a mode; in each list first the strongest step of each procedure, then the other steps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reasons {
-    /// Steps likelier than on a healthy unit.
+    /// Steps likelier under the mode than on a healthy unit, then signs and traces.
     pub for_it: Vec<Reason>,
-    /// Steps likelier on a healthy unit, or under another part's fault.
+    /// Steps likelier on a healthy unit or under another part's fault, then signs and traces.
     pub against: Vec<Reason>,
 }
 
@@ -137,8 +137,8 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observati
                 step,
             ))
         };
-        // A step that a healthy unit hardly ever shows is likelier under any fault; where another part's fault explains the
-        // step better, it speaks against this one.
+        // A step that a healthy unit hardly ever shows is likelier under any fault; if another part's fault explains
+        // the step better, the step speaks against this fault.
         if best_rival - ln_own > SPEAKS_AT {
             against.push((best_rival - ln_own, reason()));
         } else if ln_own - healthy > SPEAKS_AT {
@@ -166,7 +166,7 @@ pub fn reasons(belief: &Belief<'_, '_>, hypothesis: Hypothesis, seen: &Observati
 }
 
 impl Reasons {
-    /// Signs that speak for a hypothesis, or against it.
+    /// Adds the signs that speak for a hypothesis, or against it.
     fn add_signs(&mut self, signs: &SignsSeen, model: &Model<'_>, hypothesis: Hypothesis) {
         let all = signs.in_steps.union(&signs.in_log);
         for sign in all {
@@ -183,7 +183,7 @@ impl Reasons {
         }
     }
 
-    /// Signals that deviated first which speak for a hypothesis, or against it.
+    /// Adds the first deviations that speak for a hypothesis, or against it.
     fn add_deviations(&mut self, belief: &Belief<'_, '_>, hypothesis: Hypothesis) {
         let model = belief.model;
         let signals: BTreeSet<&String> = belief.residuals().iter().collect();
@@ -202,7 +202,7 @@ impl Reasons {
     }
 }
 
-/// The likeliest modes of another part, by the index of their effect.
+/// The likeliest modes of other parts, as indexes of effects.
 fn rivals(belief: &Belief<'_, '_>, hypothesis: Hypothesis) -> Vec<usize> {
     let model = belief.model;
     let own = model.lru(hypothesis);

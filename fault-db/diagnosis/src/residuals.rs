@@ -1,9 +1,9 @@
 //! First deviations of the traces of a run from those of a sound unit that was given the same stimuli.
 //!
-//! The parts that make a signal out of others (`structure.toml`) are one residual: where that signal is the first to
-//! deviate, the signals it is made of did not (de Kleer and Williams, 1987; Pulido and Alonso, 2004). How often each signal
-//! is the first under each fault is counted in campaigns. A fault that is not in the dictionary shows at the signals of its
-//! part, at those where known faults of the part show, or where any fault does.
+//! The parts that make a signal out of other signals (`structure.toml`) are one residual: if that signal is the first
+//! to deviate, the signals it is made of did not deviate (de Kleer and Williams, 1987; Pulido and Alonso, 2004).
+//! Campaigns count how often each signal is the first under each fault. A fault that is not in the dictionary shows at
+//! the signals of its part, at those where known faults of the part show, or where any fault does.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,8 @@ use super::dictionary::{Column, Dictionary};
 use super::groups::Relations;
 use super::settings::Settings;
 
-/// Traces beside those of a mode's level, as its part has them, and modes beside those of a part.
+/// Assumed traces added to those counted of a level, distributed as for its part; and assumed modes added to those of a
+/// part.
 const ASSUMED: f64 = 1.0;
 
 /// How likely each signal is to be the first to deviate.
@@ -21,19 +22,19 @@ const ASSUMED: f64 = 1.0;
 pub struct Residuals {
     /// Place of each signal in the tables below.
     signals: BTreeMap<String, usize>,
-    /// Under each level of each mode, in order.
+    /// Probability of each signal, under each level of each mode, in order.
     of_effects: Vec<Vec<f64>>,
-    /// Whether traces of the level were counted.
+    /// For each level, whether traces were counted.
     counted: Vec<bool>,
-    /// Under a fault of each part that is not in the dictionary.
+    /// Probability of each signal, under a fault of each part that is not in the dictionary.
     of_parts: Vec<Vec<f64>>,
-    /// Under any fault.
+    /// Probability of each signal, whatever the fault.
     of_any: Vec<f64>,
     weight: f64,
 }
 
 impl Residuals {
-    /// Counts a dictionary; `parts` are those of the model, in order.
+    /// Computes the tables from a dictionary's counts; `parts` are those of the model, in order.
     pub fn new(
         dictionary: &Dictionary,
         parts: &[&LruId],
@@ -98,8 +99,8 @@ impl Residuals {
         self.signals.get(signal).copied()
     }
 
-    /// Share of these traces that deviate first at a signal which was the first in a lesser share than `seldom` of the traces
-    /// under a level of a mode; 0 where none of its traces were counted.
+    /// Share of the traces `seen` whose first deviation is at a signal that was first in less than `seldom` of the
+    /// traces under this effect; 0 if none of its traces were counted.
     pub fn seldom_first(&self, effect: usize, seen: &[String], seldom: f64) -> f64 {
         if !self.counted.get(effect).is_some_and(|counted| *counted) {
             return 0.0;
@@ -125,7 +126,7 @@ impl Residuals {
         self.of_any[signal]
     }
 
-    /// Logarithm of the likelihood of what deviated first under each of these effects, any of which may be the cause.
+    /// Logarithm of the likelihood of the first deviations `seen`, where any of these effects may cause each.
     pub fn ln_under(&self, effects: &[usize], seen: &[String]) -> f64 {
         self.ln(seen, |signal| {
             let of_each = effects
@@ -135,13 +136,14 @@ impl Residuals {
         })
     }
 
-    /// Logarithm of the likelihood of what deviated first under a fault of a part that is not in the dictionary.
+    /// Logarithm of the likelihood of the first deviations `seen`, under a fault of a part that is not in the
+    /// dictionary.
     pub fn ln_unseen(&self, part: usize, seen: &[String]) -> f64 {
         self.ln(seen, |signal| self.of_parts[part][signal])
     }
 
-    /// Logarithm of the likelihood of what deviated first under no fault: a real unit deviates from the simulated one as under
-    /// any fault.
+    /// Logarithm of the likelihood of the first deviations `seen` without a fault: a real, sound unit deviates from the
+    /// simulated one like a unit with any fault.
     pub fn ln_healthy(&self, seen: &[String]) -> f64 {
         self.ln(seen, |signal| self.of_any[signal])
     }
@@ -152,7 +154,7 @@ impl Residuals {
     }
 }
 
-/// The mean of some distributions, beside one that is assumed.
+/// Mean of the counted distributions and an assumed one of weight [`ASSUMED`].
 fn counted_beside(counted: impl Iterator<Item = Vec<f64>>, assumed: &[f64]) -> Vec<f64> {
     let mut sums: Vec<f64> = assumed.iter().map(|share| ASSUMED * share).collect();
     let mut all = ASSUMED;
@@ -178,8 +180,8 @@ mod tests {
     use super::*;
     use crate::{Basis, ModeName, Observation};
 
-    /// Whatever was counted, the chances of all signals are 1 together, and a fault that nobody has seen shows at the
-    /// signals of its own part rather than at another's.
+    /// Goal: the probabilities of all signals add up to 1, whatever was counted, and a fault that nobody has seen shows
+    /// at the signals of its own part rather than at another's.
     #[test]
     fn first_deviations_have_probabilities_and_point_at_the_part_that_makes_them() {
         let [relay, board] = ["relay", "board"].map(LruId::from_static);
@@ -218,7 +220,7 @@ mod tests {
         }
         let ln = |part, signal: &str| table.ln_unseen(part, &[signal.to_owned()]);
         assert!(ln(1, "eb") > ln(0, "eb") && ln(0, "doors") > ln(1, "doors"));
-        // Nothing follows from a signal that is not known.
+        // An unknown signal is no evidence.
         assert_eq!(ln(0, "temperature"), 0.0);
     }
 }

@@ -14,29 +14,31 @@ pub struct Settings {
     pub healthy_at: f64,
     /// Checks with less expected information, bits, are not recommended.
     pub least_gain_bits: f64,
-    /// A check that a person is told to make next, where parts are named, tells at least this by passing or not, bits.
+    /// Least information, bits, of the pass or fail of a check that a person is told to make next where a part is
+    /// named.
     pub told_gain_bits: f64,
-    /// Pseudo-runs for smoothing, beside the counted runs.
+    /// Assumed runs, added to the counted ones for smoothing: no result is then impossible.
     pub doubt_runs: f64,
-    /// Share of checks that a mode acts on otherwise than counted: like another mode of the same part, or anyhow.
+    /// Share of checks on which a mode acts otherwise than counted: like another mode of its part, or in any way.
     pub otherwise: f64,
-    /// Share of checks on which an intermittent mode acts otherwise than counted; or a mode that is not in the dictionary,
-    /// otherwise than the effect that it acts like.
+    /// `otherwise` of an intermittent mode, and of a mode that is not in the dictionary: it acts like a mode of the
+    /// dictionary, but on this share of checks otherwise.
     pub otherwise_unseen: f64,
-    /// Share of these checks that may show anything.
+    /// Share of those deviating checks that may show any result at all, instead of that of another mode of the part.
     pub anything: f64,
     /// Share of a part's faults that act in a way which is not in the dictionary.
     pub unseen_mode: f64,
-    /// Least likeness of two parts, beside 1 of a part and itself: a mode that was not seen yet may act like a mode
-    /// of any part.
+    /// Least likeness of two different parts, where a part and itself have 1: a mode that was not seen yet may act like
+    /// a mode of any part.
     pub other_part: f64,
-    /// Weight of the steps so far in what a fault that is not in the dictionary will do in others.
+    /// Weight of the steps so far in the forecast of other steps, under a fault that is not in the dictionary.
     pub foresight: f64,
-    /// Weight of whom the failed checks suspect.
+    /// Weight of the parts that failed checks suspect: all failed checks together weigh like this number of independent
+    /// ones.
     pub suspect: f64,
     /// Weight of a step's evidence, below 1 because steps of one run are not independent.
     pub weight_of_step: f64,
-    /// Weight of a trace's first deviation from a sound unit.
+    /// Weight of a trace's first deviation from a sound unit, below 1 because traces of one run are not independent.
     pub weight_of_residual: f64,
     /// Set-up time before a procedure, s, as part of the cost of a check.
     pub bring_up_s: f64,
@@ -46,25 +48,26 @@ pub struct Settings {
     pub replaced_in_vain_factor: f64,
     /// Factor on the prior of each part that the symptom the unit was brought with may come from.
     pub symptom_factor: f64,
-    /// A repair is proven by runs that pass with at most this probability while the fault is still there.
+    /// A repair is proven when a unit that still has the fault would pass the runs since with at most this probability.
     pub hidden_fault: f64,
     /// How far back a unit's history counts, days.
     pub history_days: u32,
-    /// Confirmed repairs of all units that weigh as much as the dictionary's own weights of the parts.
+    /// Number of confirmed repairs (of all units) that weighs as much as the dictionary's own weights of the parts.
     pub repairs_like_prior: f64,
-    /// Probabilities where nothing was counted. Defaults if the file has no such table, as in the next five.
+    /// Probabilities where nothing was counted. A file may leave out this table and each of the five below: defaults
+    /// count.
     #[serde(default)]
     pub likelihood: LikelihoodSettings,
-    /// Weights of signs, faults that show in a run.
+    /// Weights of signs: of the faults that show in a run.
     #[serde(default)]
     pub signs: SignSettings,
     /// Weights of the signs in a unit's own log.
     #[serde(default)]
     pub log: LogSettings,
-    /// How likely it is that a fault was counted.
+    /// Weights that tell whether the fault of a run is one that the dictionary has counted.
     #[serde(default)]
     pub counted: CountedSettings,
-    /// Weights of all evidence for a part.
+    /// Weights of the evidence for a part whose fault the dictionary has not counted.
     #[serde(default)]
     pub pool: PoolSettings,
     /// What a conclusion says and shows.
@@ -72,35 +75,35 @@ pub struct Settings {
     pub conclusion: ConclusionSettings,
 }
 
-/// Weights of what speaks against a fault that was counted.
+/// Weights that tell whether the fault of a run is one that the dictionary has counted: each speaks against that.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CountedSettings {
-    /// Log odds that the fault was counted, where all is as counted under the likeliest one.
+    /// Log odds that the fault was counted, if the run fits the counts under the likeliest fault in everything.
     pub as_counted: f64,
-    /// Weight of the number of steps that end as they seldom did: of the logarithm of one more.
+    /// Weight of n steps with a verdict that was seldom counted; ln(n + 1) is weighed.
     pub results: f64,
-    /// Weight of the number of values far from those counted: of the logarithm of one more.
+    /// Weight of n measured values far from those counted; ln(n + 1) is weighed.
     pub values: f64,
-    /// Weight of the share of traces that deviate first at a signal which seldom was the first.
+    /// Weight of the share of traces whose first deviation is at a signal that was seldom the first.
     pub first: f64,
-    /// Weight of the number of signs that never showed: of the logarithm of one more.
+    /// Weight of n signs that never showed in a counted run; ln(n + 1) is weighed.
     pub signs: f64,
-    /// A step seldom ends with a verdict that a lesser share of the runs had.
+    /// A verdict of a step is seldom if a lesser share of the counted runs had it.
     pub seldom: f64,
-    /// A signal is seldom the first to deviate if it is so in a lesser share of the traces.
+    /// A signal is seldom the first to deviate if a lesser share of the counted traces deviated there first.
     pub seldom_first: f64,
-    /// A value is far from those counted if it is more than so many standard deviations away.
+    /// A measured value is far from those counted at more than this number of standard deviations.
     pub far: f64,
 }
 
-/// Weights of what speaks for a part whose fault nobody has counted.
+/// Weights of what speaks for a part whose fault the dictionary has not counted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PoolSettings {
     /// Weight of the logarithm of the part's posterior.
     pub posterior: f64,
-    /// The logarithm of the posterior counts no further below certainty than this.
+    /// The logarithm of the posterior, 0 at certainty, counts as no lower than minus this.
     pub limit: f64,
     /// Weight of the share of traces that deviate first at a signal which the part makes.
     pub deviates: f64,
@@ -110,9 +113,10 @@ pub struct PoolSettings {
     pub suspects: f64,
     /// Weight of being the likeliest part by Bayes' rule, or in one group with the likeliest.
     pub near: f64,
-    /// What two parts share may be the cause where both explain a run so much better than one: logarithm of the likelihoods' ratio.
+    /// Where faults of two parts explain a run better than one by this, what both share may be the cause: ln of the
+    /// likelihood ratio.
     pub common: f64,
-    /// How much less likely than the likeliest part such a cause is at least: logarithm of the ratio.
+    /// Such a shared cause counts as less likely than the likeliest part by at most this: ln of the ratio.
     pub below_first: f64,
 }
 
@@ -120,8 +124,8 @@ pub struct PoolSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LikelihoodSettings {
-    /// Probability that a check passes if nothing is known. With the next two it makes 1, as a check that was
-    /// skipped or aborted is no evidence.
+    /// Probability that a check passes if nothing is known. `passed`, `failed` and `error` add up to 1, as a check that
+    /// was skipped or aborted is no evidence.
     pub passed: f64,
     /// Probability that a check fails if nothing is known.
     pub failed: f64,
@@ -135,7 +139,7 @@ pub struct LikelihoodSettings {
     pub anywhere: f64,
     /// Smallest standard deviation of a measured value, as a share of the measurement's range.
     pub least_spread: f64,
-    /// Greatest number of runs that count: more would pretend that all benches are alike.
+    /// Greatest number of counted runs that weighs: more would pretend that all benches are alike.
     pub most_runs: f64,
 }
 
@@ -143,13 +147,13 @@ pub struct LikelihoodSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SignSettings {
-    /// Probability of a sign that names the part, under a fault of it that is not in the dictionary.
+    /// Probability of a sign that names the failed part, under a fault that is not in the dictionary.
     pub of_part: f64,
-    /// Probability of one that names another part, or none.
+    /// Probability of a sign that names another part or none, under a fault that is not in the dictionary.
     pub of_other_part: f64,
     /// Probability of a sign unrelated to the fault.
     pub stray: f64,
-    /// Probability that the tester measures what a fault of another part, or no fault, does not show.
+    /// Probability that the tester itself measures a fault (a wrong clock) that the unit does not have.
     pub measured: f64,
     /// Probability that a sign which a mode always showed does not show.
     pub silent: f64,
@@ -161,8 +165,8 @@ pub struct SignSettings {
 pub struct LogSettings {
     /// Weight of a sign that did not show, beside 1 of a sign that did.
     pub silence: f64,
-    /// Probability of a sign unrelated to the fault, as a log also holds the acts of testers. The same under
-    /// every hypothesis, however many runs it rests on.
+    /// Probability of a sign unrelated to the fault, as a log also holds the acts of testers; equal under all
+    /// hypotheses, however many runs were counted.
     pub stray: f64,
 }
 
@@ -176,20 +180,21 @@ pub struct ConclusionSettings {
     pub least_shown: f64,
     /// Greatest number of candidates shown.
     pub most_shown: usize,
-    /// A sign or failed check is a consequence of a fault that shows it in this share of runs.
+    /// A sign or failed check is a consequence of a fault that showed it in at least this share of the counted runs.
     pub explained_at: f64,
-    /// A part less likely than this is none of those of which one has failed for certain.
+    /// Least probability of a part in the set of parts of which one has failed for certain.
     pub least_of_set: f64,
-    /// Nothing is certain where those that are left have a lesser probability in all.
+    /// Least probability of all parts of that set together; below it no set is named.
     pub least_in_all: f64,
-    /// Nothing is certain where more parts than this are left, and one more where that may be the cause at the others.
+    /// Greatest number of parts in that set, one more if a part of it may be the cause at the others; else no set is
+    /// named.
     pub most_of_set: usize,
-    /// A run whose fault was counted with a lesser probability is like no fault that is known.
+    /// A run is called unlike any known fault if the dictionary has counted its fault with less than this probability.
     pub unlike_any: f64,
 }
 
 impl Settings {
-    /// The first setting out of range.
+    /// Checks that each setting is in its range; reports the first that is not.
     ///
     /// # Errors
     /// The key, its value and its range.

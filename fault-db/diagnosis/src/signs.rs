@@ -24,8 +24,8 @@ impl SignsSeen {
         self.in_steps.union(&self.in_log)
     }
 
-    /// Logarithm of the signs' likelihood under a hypothesis. Under no fault the likelihood of a step has its signs already, but
-    /// for those that the tester measures.
+    /// Logarithm of the signs' likelihood under a hypothesis. Under no fault, only the signs in the log and those that
+    /// the tester measures: the likelihood of a step has the other signs already.
     pub fn ln(&self, model: &Model<'_>, hypothesis: Hypothesis) -> f64 {
         match hypothesis {
             Hypothesis::NoFault => {
@@ -60,7 +60,7 @@ impl SignsSeen {
     /// unit's log speaks less against them, as it is not known how the unit was used before.
     pub fn ln_under(&self, model: &Model<'_>, modes: &[Hypothesis]) -> f64 {
         let (settings, log) = (&model.settings.signs, &model.settings.log);
-        // A sign that several of them show is shown as often as by the one that shows it most.
+        // If several modes show a sign, it shows as often as under the mode that shows it most.
         let mut shown: BTreeMap<&Sign, &ShownSign<'_>> = BTreeMap::new();
         for of_mode in modes.iter().flat_map(|mode| model.signs(*mode)) {
             let most = shown.entry(of_mode.sign).or_insert(of_mode);
@@ -102,9 +102,9 @@ impl SignsSeen {
 #[derive(Clone, Debug)]
 pub struct ShownSign<'a> {
     pub sign: &'a Sign,
-    /// Share of runs in which it showed.
+    /// Share of the mode's runs in which the sign showed.
     pub share: f64,
-    /// Checks in which it showed, by index.
+    /// Checks in which the sign showed, by index.
     places: BTreeSet<usize>,
 }
 

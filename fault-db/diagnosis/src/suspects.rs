@@ -1,6 +1,6 @@
-//! Whom the scripts suspect: each check names the part that it judges, and so the failed checks of a run point at parts.
-//! Which parts the modes of a part point at is counted; a mode that was not seen yet points at its own part, or where the
-//! counted modes of that part point.
+//! The parts that scripts suspect: each check may name the part that it judges, so the failed checks of a run point at
+//! parts. The parts at which the modes of a part point are counted; a mode that was not seen yet points at its own
+//! part, or where the counted modes of that part point.
 
 use std::collections::BTreeMap;
 
@@ -10,15 +10,15 @@ use super::dictionary::{Column, Dictionary};
 use super::logarithms::normalised;
 use super::observation::ObservedStep;
 
-/// Modes of a part beside those counted, half of which point at the part itself.
+/// Assumed modes of a part, added to those counted; half of their weight points at the part itself.
 const ASSUMED_MODES: f64 = 2.0;
 /// Least probability of a suspect.
 const LEAST: f64 = 1e-3;
 
-/// The part that a check names; some name none.
+/// The part that a check names; `None` if the check names none.
 type Suspect = Option<LruId>;
 
-/// How many of a run's checks failed, by suspect.
+/// Number of failed checks, by the part that they suspect.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Suspicion {
     failed: BTreeMap<Suspect, f64>,
@@ -55,10 +55,10 @@ impl Suspicion {
     }
 }
 
-/// Where the faults of each part point.
+/// The parts that failed checks suspect under the faults of each part.
 #[derive(Debug)]
 pub struct Suspects {
-    /// By part, in the order of the parts, the probability of each suspect.
+    /// For each part, in order, the probability of each suspect.
     of_parts: Vec<BTreeMap<Suspect, f64>>,
 }
 
@@ -94,8 +94,8 @@ impl Suspects {
         }
     }
 
-    /// Logarithm of the likelihood of what failed under an unseen mode of each part, relative to the mean over the parts. The
-    /// failed checks of a run depend on each other: all of them count as one check.
+    /// Logarithm of the likelihood of the suspects seen, under an unseen mode of each part, relative to the mean over
+    /// the parts. The failed checks of a run depend on each other, so all of them count as one check.
     pub fn ln(&self, seen: &Suspicion) -> Vec<f64> {
         let of_part = |table: &BTreeMap<Suspect, f64>| {
             let of_each = seen.shares().map(|(suspect, share)| {

@@ -1,14 +1,14 @@
 //! What a fault mode that nobody has seen yet may act like.
 //!
-//! The modes of a part act on the checks that its signals pass. A new mode acts like another mode of the part, or like a mode
-//! of another part on the same way. The latter is the likelier, the more alike the checks are on which the modes of both
-//! parts act. The likeness counts squared, as most checks pass through many parts.
+//! The modes of a part act on the checks through which the part's signals pass. A new mode acts like another mode of
+//! the part, or like a mode of another part on the same way: the likelier, the more the modes of both parts act on the
+//! same checks. The likeness counts squared, as most checks pass through many parts.
 
 use protocol::LruId;
 
 use super::dictionary::{Dictionary, Mode};
 
-/// How often the modes of a part act on each check, divided by the root of the sum of squares; 0 of a part without modes.
+/// How often the modes of a part act on each check, scaled to a sum of squares of 1; zeros for a part without modes.
 type Profile = Vec<f64>;
 
 /// Logarithms of the probability that an unseen mode of each part acts like each effect (a level of a mode) of the dictionary,
@@ -62,7 +62,7 @@ fn profile<'a>(modes: impl Iterator<Item = &'a Mode>, checks: usize) -> Profile 
     profile
 }
 
-/// Cosine of the angle between two profiles: 1 of the same, 0 where no check is common.
+/// Cosine of the angle between two profiles: 1 if they are equal, 0 if they have no check in common.
 fn likeness(one: &Profile, other: &Profile) -> f64 {
     one.iter().zip(other).map(|(one, other)| one * other).sum()
 }

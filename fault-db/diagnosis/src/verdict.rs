@@ -16,12 +16,12 @@ use super::reasons::{Reason, reasons};
 use super::settings::ConclusionSettings;
 use super::weights::{Fault, FaultText, Weights, name};
 
-/// A fault mode that may be the one.
+/// A fault mode that may explain the run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Candidate {
     /// Part to replace.
     pub lru: LruId,
-    /// Fault mode.
+    /// Name of the fault mode.
     pub fault: String,
     pub text: FaultText,
     /// Probability of the mode.
@@ -42,14 +42,14 @@ pub struct PartProbability {
 #[serde(rename_all = "snake_case")]
 pub enum Finding {
     Found,
-    /// A part of the bench is found, none of the unit.
+    /// A part of the bench has failed, no part of the unit.
     OfBench,
-    /// One of few parts.
+    /// One of a few parts has failed.
     OneOf,
     NoFault,
-    /// One of several parts, and it cannot be told which.
+    /// Something is wrong, and it cannot be told in which part.
     CannotTell,
-    /// What was run shows nothing wrong, and was not enough to say that nothing is.
+    /// The steps that were run show nothing wrong, and are not enough to say that nothing is.
     NotEnough,
 }
 
@@ -70,7 +70,7 @@ impl Finding {
 pub struct Diagnosis {
     /// Modes, those of the likeliest part first.
     pub candidates: Vec<Candidate>,
-    /// The check to make next; none when the question is settled or nothing would tell.
+    /// The check to make next; `None` if the question is settled or no check would help.
     pub next_check: Option<NextCheck>,
     pub conclusion: Conclusion,
     /// Parts, the likeliest first; their probabilities and `no_fault` add up to 1. A part's probability is the sum over its
@@ -80,7 +80,7 @@ pub struct Diagnosis {
     pub no_fault: f64,
 }
 
-/// A run held against a model: what each answer about the run is taken from.
+/// A run weighed with a model, from which all answers about the run are taken.
 pub struct Assessment<'m, 'd, 's> {
     belief: Belief<'m, 'd>,
     seen: &'s Observation,
@@ -113,8 +113,8 @@ impl<'m, 'd, 's> Assessment<'m, 'd, 's> {
         cause(&self.belief, &self.weights, self.seen)
     }
 
-    /// The likeliest fault mode of a part, however unlikely, with what speaks for it and against it; a fault that is not
-    /// in the dictionary only of a part without any mode, as it may act like any. None of a part that is not known.
+    /// The likeliest fault mode of a part, however unlikely, with its reasons. A fault that is not in the dictionary is
+    /// returned only for a part without modes, as it may act like any mode. `None` for an unknown part.
     pub fn likeliest_of(&self, part: &LruId) -> Option<Candidate> {
         let model = self.belief.model;
         let faults = self.weights.faults.iter();

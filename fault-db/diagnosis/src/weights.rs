@@ -14,7 +14,7 @@ use super::observation::Observation;
 use super::pool::Pooled;
 use super::verdict::PartProbability;
 
-/// Word for a fault of a part that is not in the dictionary, in place of a mode's.
+/// Word in the name of a fault that is not in the dictionary, in place of a mode's name.
 const UNSEEN: &str = "unseen";
 
 /// A fault of one part: a mode of the dictionary, or one that is not in it.
@@ -32,11 +32,11 @@ pub struct Fault {
 pub enum FaultText {
     /// As the catalogue of faults has it.
     Mode(String),
-    /// What confirmed repairs of a depot have settled.
+    /// A fault known from confirmed repairs: their number, and the units.
     Confirmed { cases: u32, units: String },
-    /// In a way that is not in the dictionary.
+    /// A fault that is not in the dictionary.
     Unseen {
-        /// The mode that it acts like, and what is wrong under that.
+        /// The mode that the fault acts like, and what is wrong under that mode.
         like: Option<(String, Box<FaultText>)>,
     },
 }
@@ -77,7 +77,7 @@ impl Fault {
     }
 }
 
-/// Whether two hypotheses are levels of one mode, or the same.
+/// Whether two hypotheses are the same fault: equal, or two levels of one mode.
 fn is_same_fault(one: Hypothesis, other: Hypothesis) -> bool {
     match (one, other) {
         (Hypothesis::Mode { mode, .. }, Hypothesis::Mode { mode: of_other, .. }) => {
@@ -95,13 +95,13 @@ pub struct Weights {
     pub no_fault: f64,
     /// Probability that the fault is one that was counted.
     pub counted: f64,
-    /// The set of parts one of which has failed for certain, the likeliest first. Empty where the set is larger than
-    /// `most_of_set`, or where no part may have failed.
+    /// The parts of which one has failed for certain, the likeliest first. Empty if they were more than `most_of_set`,
+    /// if the unit may be healthy, or if they have too small a probability together.
     pub set: Vec<PartProbability>,
 }
 
 impl Weights {
-    /// Weighs all evidence; where nothing wrong was seen, by Bayes' rule alone.
+    /// Weighs all evidence; if the run shows no fault, by Bayes' rule alone.
     pub fn after(belief: &Belief<'_, '_>, seen: &Observation) -> Self {
         let model = belief.model;
         let ln = belief.ln();
@@ -155,7 +155,7 @@ impl Weights {
     }
 }
 
-/// How many times `other` the probability `one` is; 0 where `other` is impossible.
+/// `one` divided by `other`; 0 if `other` is 0.
 pub fn ratio(one: f64, other: f64) -> f64 {
     match other > 0.0 {
         true => one / other,
@@ -163,7 +163,7 @@ pub fn ratio(one: f64, other: f64) -> f64 {
     }
 }
 
-/// The set of parts one of which has failed for certain, with the parts of the bench that would act alike.
+/// The parts of which one has failed for certain, and the parts of the bench that would act alike.
 fn set(
     belief: &Belief<'_, '_>,
     parts: &[PartProbability],

@@ -24,8 +24,8 @@ struct StateProbability<'a> {
 
 impl Plan {
     /// `{"expected_cost", "optimal", "cut_probability", "next_test", "posterior": [{"id", "p"}], "warnings", "tree"}`;
-    /// the posterior has the states that are possible, likeliest first. A cut probability above 0
-    /// says that the tree was not grown to its ends and its cost is a lower limit.
+    /// the posterior has the possible states, likeliest first. A cut probability above 0 says that the tree was not
+    /// grown to its ends, so its cost is only a lower limit.
     pub fn to_json(&self, matrix: &Matrix, known: &Posterior) -> Result<String, serde_json::Error> {
         let name = |state: usize| matrix.states()[state].id.as_str();
         let head = Head {
@@ -44,7 +44,7 @@ impl Plan {
             warnings: &self.warnings,
         };
         let head = serde_json::to_string_pretty(&head)?;
-        // The tree writes itself, whatever its depth; it goes in before the last brace.
+        // The tree is written separately, as it may be very deep, and put before the last brace.
         let open = head.trim_end_matches('}').trim_end();
         let tree = self.tree.to_json(matrix, 1);
         Ok(format!("{open},\n  \"tree\": {tree}\n}}"))

@@ -6,22 +6,22 @@ use super::bits::ones;
 use super::problem::Problem;
 use super::search::{Branch, Space};
 
-/// Sets of at most 64 groups, as bits in the order of rising weight.
+/// The search space: sets of at most 64 groups, as bits in the order of rising weight.
 pub(super) struct CrispSpace {
     /// Weights of the groups, rising.
     weights: Vec<f64>,
-    /// Tests that differ in what they tell apart.
+    /// Tests that split the groups differently.
     columns: Vec<Column>,
-    /// Most outcomes of a test.
+    /// Greatest number of outcomes of a test.
     arity: usize,
-    /// Costs of doing one, two, … of the cheapest tests.
+    /// Cost of the cheapest test, of the two cheapest together, and so on.
     cheapest: Vec<f64>,
 }
 
 struct Column {
     test: usize,
     cost: f64,
-    /// Groups of each outcome.
+    /// For each outcome, the set of groups that have it.
     parts: Vec<u64>,
 }
 
@@ -72,9 +72,9 @@ impl CrispSpace {
         ones(set).map(|bit| self.weights[bit]).sum()
     }
 
-    /// Weighted length of the Huffman code of a set: tests that any tree does, times probability.
+    /// Weighted length of a set's Huffman code: probability times the least number of tests that any tree takes.
     fn huffman(&self, set: u64) -> f64 {
-        // Two queues, both rising: leaves, and sums in the order they are made.
+        // Two queues in rising order: the leaves, and the sums in the order in which they are made.
         let mut leaves = [0.0; 64];
         let mut count = 0;
         for bit in ones(set) {
@@ -83,7 +83,7 @@ impl CrispSpace {
         }
         let mut sums = [0.0; 64];
         let (mut leaf, mut sum, mut made, mut length) = (0, 0, 0, 0.0);
-        // As many as fill all later joints are joined first.
+        // The first sum joins just so many that every later sum joins `arity`.
         let mut joint = 2 + count.saturating_sub(2) % (self.arity - 1);
         let mut left = count;
         while left > 1 {
@@ -145,13 +145,13 @@ impl Space for CrispSpace {
         if mass <= 0.0 {
             return 0.0;
         }
-        // The cost of the first so many of the cheapest tests is convex in their number, so Jensen's
-        // inequality takes the mean number of tests for each state's own. Rounding may not raise it.
+        // The cost of the n cheapest tests is convex in n, so by Jensen's inequality the mean number of tests may stand
+        // for each state's own. The factor keeps rounding from raising the bound.
         mass * self.cost_of(self.huffman(set) / mass) * (1.0 - 1e-12)
     }
 }
 
-/// The first `length` bits.
+/// A word with the first `length` bits set.
 fn all(length: usize) -> u64 {
     match length {
         64.. => u64::MAX,

@@ -1,15 +1,15 @@
-//! Errors in a matrix, in outcomes, or in the question asked of them.
+//! Errors in a matrix, in outcomes, or in the options of a plan.
 
-/// A matrix, outcomes or options that cannot be worked with.
+/// The reason why a matrix, outcomes or options cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MatrixError {
-    /// No JSON, or not of this shape; the cause says where.
+    /// The text is no JSON, or has another shape; the message says where.
     #[error("{0}")]
     Json(#[from] serde_json::Error),
     #[error("\"states\" is empty; at least one is needed")]
     NoStates,
-    /// Nothing to tell apart with.
+    /// There is no test to tell states apart.
     #[error("\"tests\" is empty; at least one is needed")]
     NoTests,
     /// More cells than memory should be spent on.
@@ -22,7 +22,7 @@ pub enum MatrixError {
         /// Cells allowed.
         limit: usize,
     },
-    /// An id that nobody could name.
+    /// An id is empty.
     #[error("a {kind} has an empty id")]
     EmptyId {
         /// `state` or `test`.
@@ -35,15 +35,15 @@ pub enum MatrixError {
         kind: &'static str,
         id: String,
     },
-    /// Negative, above 1, or no number.
+    /// A state's probability is negative, above 1, or no number.
     #[error("state \"{state}\" has the probability {p}; it must lie in 0..1")]
     Probability { state: String, p: f64 },
-    /// Probabilities of all states together.
+    /// The probabilities of all states do not add up to 1.
     #[error(
         "the probabilities of the {states} states sum to {sum}, not 1; exactly one state holds, so add what is missing (\"no fault\"?) or scale them"
     )]
     ProbabilitySum { states: usize, sum: f64 },
-    /// Zero, negative, or no number.
+    /// A test's cost is zero, negative, or no number.
     #[error("test \"{test}\" has the cost {cost}; it must be above 0 and finite")]
     Cost { test: String, cost: f64 },
     /// A cell outside 0..1.
@@ -73,7 +73,7 @@ pub enum MatrixError {
         "the outcomes of test \"{test}\" name the state \"{state}\", which is not among \"states\""
     )]
     UnknownState {
-        /// The test whose cells name it.
+        /// The test whose cells name the state.
         test: String,
         state: String,
     },
@@ -82,13 +82,13 @@ pub enum MatrixError {
     TestTwice { test: String },
     #[error("the outcomes of test \"{test}\" name the state \"{state}\" twice")]
     CellTwice { test: String, state: String },
-    /// An outcome that was found, of a test nobody knows.
+    /// An outcome is given for a test that the matrix does not have.
     #[error("an outcome is given for the test \"{test}\", which the matrix does not have")]
     OutcomeUnknown { test: String },
-    /// Two outcomes of one test.
+    /// Two outcomes are given for one test.
     #[error("two outcomes are given for the test \"{test}\"; give the one that holds")]
     OutcomeTwice { test: String },
-    /// An outcome that the test does not have.
+    /// An outcome is given that the test does not have.
     #[error("test \"{test}\" has the outcome {found}; it must be {known}")]
     OutcomeWord {
         test: String,
@@ -108,16 +108,16 @@ pub enum MatrixError {
         "the outcomes contradict each other: {before}no state is left in which \"{test}\" {outcome}; a fault that is not among the states, two at once, or an intermittent one would explain it"
     )]
     Contradiction {
-        /// The outcomes that went before, as words, empty or ending in a blank.
+        /// The outcomes given before this one, as words; empty, or ending in a blank.
         before: String,
         /// The test whose outcome no remaining state explains.
         test: String,
         outcome: String,
     },
-    /// A confidence that means nothing.
+    /// The confidence is out of range.
     #[error("the confidence {0} must be above 0.5 and at most 1")]
     Confidence(f64),
-    /// Too large to ask for the optimum.
+    /// The matrix is too large for an optimal tree.
     #[error(
         "an optimal tree is made for at most {limit} states that differ and {limit} tests, here are {states} and {tests}; ask for a greedy one"
     )]
@@ -126,19 +126,19 @@ pub enum MatrixError {
         states: usize,
         /// Tests that are left.
         tests: usize,
-        /// Both may be this many.
+        /// Greatest number of groups, and of tests.
         limit: usize,
     },
 }
 
 impl MatrixError {
-    /// What is wrong in a line of a table.
+    /// The error for line `line` of a table; `what` is the reason.
     pub(super) fn table(line: u64, what: &str) -> Self {
         let what = what.to_owned();
         Self::Table { line, what }
     }
 
-    /// An outcome that a test with these words, or without any, does not have.
+    /// The error for an outcome that a test does not have; `words` are the test's outcomes, empty for pass and fail.
     pub(super) fn no_outcome(test: &str, found: &str, words: &[String]) -> Self {
         let known = match words {
             [] => "0 or \"pass\", 1 or \"fail\"".to_owned(),

@@ -1,5 +1,5 @@
-//! Greedy trees: information gain per cost, with one step of lookahead: of the few tests with the most
-//! gain, the one is chosen whose branches, completed by plain gain, cost least.
+//! Greedy trees by information gain per cost, with one step of lookahead (rollout): of the few tests with the most gain
+//! per cost, the one is chosen whose branches, completed by gain alone, cost least.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -12,29 +12,29 @@ use super::tree::{Node, Tree};
 /// Candidate tests whose branches are grown before one is chosen.
 const CANDIDATES: usize = 8;
 
-/// Steps of work that rollout may take in all; one step reads one cell, about a nanosecond.
+/// Steps of work for all rollouts of a crisp matrix; one step reads one cell, about a nanosecond.
 const CRISP_ROLLOUT: u64 = 8_000_000_000;
 
-/// The same in noisy matrices.
+/// Steps of work for all rollouts of a noisy matrix.
 const NOISY_ROLLOUT: u64 = 1_000_000_000;
 
-/// The share of the remaining rollout work that one choice may take is one in this many.
+/// One choice may take 1/4 of the rollout work that is left.
 const CRISP_SHARE: u64 = 4;
 
-/// The same in noisy matrices, where most large branches cannot be completed.
+/// One choice may take 1/64 of it in noisy matrices, where most large branches cannot be completed.
 const NOISY_SHARE: u64 = 64;
 
-/// Work of ranking for each test in addition to its cells, and in total: logarithms, memory.
+/// Steps of work of one ranking: for each test in addition to its cells (logarithms), and in total (memory).
 const STEPS_PER_TEST: usize = 40;
 const STEPS_PER_RANKING: usize = 500;
 
 /// Steps of work to grow a noisy tree, which can be exponentially large.
 const NOISY_WORK: u64 = 2_500_000_000;
 
-/// Nodes of a noisy tree at most.
+/// Greatest number of nodes of a noisy tree.
 const MAX_NOISY_NODES: usize = 20_000;
 
-/// Members rarer than this share are left out when the tests of a noisy matrix are weighed.
+/// A group with less than this share of a node's probability is left out when tests of a noisy matrix are weighed.
 const RARE: f64 = 1e-9;
 
 pub(super) struct GrownTree {
@@ -52,8 +52,7 @@ pub(super) fn grow(problem: &Problem<'_>) -> GrownTree {
     grow_within(problem, rollout)
 }
 
-/// Grows a tree with at most so many steps of rollout; without any, each choice is the test with the most gain per
-/// cost.
+/// Grows a tree with at most `rollout` steps of rollout; with 0, each choice is the test with the most gain per cost.
 fn grow_within(problem: &Problem<'_>, rollout: u64) -> GrownTree {
     let mut grower = Grower::new(problem, rollout);
     let mut nodes = vec![Node::Leaf(problem.leaf(&problem.root(), false))];
@@ -106,7 +105,7 @@ impl OpenBranch {
 }
 
 impl Ord for OpenBranch {
-    /// The likeliest is the greatest; of equals, the earlier one.
+    /// The likeliest branch is the greatest; of equally likely ones, the one made first.
     fn cmp(&self, other: &Self) -> Ordering {
         self.mass
             .total_cmp(&other.mass)
@@ -130,9 +129,9 @@ impl Eq for OpenBranch {}
 
 struct Grower<'a> {
     problem: &'a Problem<'a>,
-    /// Tests that fail in each group, if tests are certain.
+    /// For each group the tests that fail in it, in a crisp matrix.
     fails: Vec<Bits>,
-    /// Entropy of the outcome of each test in each group, if they are not.
+    /// Entropy of the outcome of each test in each group, bits, in a noisy matrix.
     noise: Vec<f64>,
     /// Tests with other outcomes than passing and failing.
     worded: Vec<usize>,
@@ -230,7 +229,7 @@ impl<'a> Grower<'a> {
         some.iter().map(|test| (test, gain(test))).collect()
     }
 
-    /// Gains of the tests with other outcomes of which members have more than one.
+    /// Gains of the tests with words as outcomes, if more than one outcome is possible.
     fn score_worded(&self, belief: &Belief) -> Vec<(usize, f64)> {
         let gain = |test: &usize| {
             let split = self.problem.split(belief, *test);
@@ -272,7 +271,7 @@ impl<'a> Grower<'a> {
             .collect()
     }
 
-    /// The best candidate by rollout; `None` if that is too much work.
+    /// The candidate that is best by rollout; `None` if that takes too much work.
     fn choose(&mut self, belief: &Belief, ranked: &[usize]) -> Option<usize> {
         if let [only] = ranked {
             return Some(*only);
@@ -293,8 +292,8 @@ impl<'a> Grower<'a> {
         best.map(|(_, test)| test)
     }
 
-    /// Cost of a test and of the greedy tree below it, times the probability of reaching this node; `None`
-    /// once the work is used up.
+    /// Cost of a test and of the greedy tree after it, times the probability of reaching this node; `None` once the
+    /// work is used up.
     fn cost_after(&mut self, belief: &Belief, test: usize, left: &mut u64) -> Option<f64> {
         let mut cost = belief.mass() * self.problem.costs[test];
         let mut open = self.problem.split(belief, test);
@@ -302,7 +301,7 @@ impl<'a> Grower<'a> {
             let before = self.work;
             let best = self.rank(&belief).first().copied();
             let taken = self.work - before;
-            // Rollout work is counted apart from the work of growing.
+            // Rollout work is not counted as work of growing the tree.
             self.work = before;
             self.rollout_left = self.rollout_left.saturating_sub(taken);
             *left = left.checked_sub(taken)?;
@@ -343,7 +342,7 @@ mod tests {
         Matrix::new((0..24).map(state).collect(), tests, cells).expect("a valid matrix")
     }
 
-    /// The same rule is asked again further down, so a choice that looked better stays so.
+    /// Rollout is repeated at each node further down, so a choice that looked better stays better.
     #[test]
     fn rollout_never_costs_more_than_plain_gain_and_mostly_less() {
         let mut less = 0;

@@ -1,6 +1,6 @@
 //! Entropies, in bits.
 
-/// Information in one outcome of probability `p`.
+/// Entropy of a test with two outcomes, of which one has the probability `p`.
 pub(crate) fn binary_entropy(p: f64) -> f64 {
     if p <= 0.0 || p >= 1.0 {
         return 0.0;
@@ -8,7 +8,7 @@ pub(crate) fn binary_entropy(p: f64) -> f64 {
     -(p * p.log2() + (1.0 - p) * (1.0 - p).log2())
 }
 
-/// Entropy of weights that need not sum to 1; 0 if there are none.
+/// Entropy of weights that need not add up to 1; 0 without weights.
 pub(crate) fn entropy(weights: impl Iterator<Item = f64> + Clone) -> f64 {
     let total: f64 = weights.clone().sum();
     if total <= 0.0 {
@@ -21,15 +21,15 @@ pub(crate) fn entropy(weights: impl Iterator<Item = f64> + Clone) -> f64 {
         .sum()
 }
 
-/// The most that one test can tell whose probability to fail lies in `low..=high`: the capacity of
-/// the binary channel with these two inputs.
+/// The most information that a test can give if its probability to fail lies in `low..=high`: the capacity of the
+/// binary channel with these two inputs.
 pub(crate) fn capacity(low: f64, high: f64) -> f64 {
     let width = high - low;
     if width <= 0.0 {
         return 0.0;
     }
     let slope = (binary_entropy(high) - binary_entropy(low)) / width;
-    // Where entropy rises as steeply as the chord, it stands furthest above it.
+    // The entropy lies furthest above the chord where it rises as steeply as the chord.
     let best = 1.0 / (1.0 + slope.exp2());
     binary_entropy(best) - binary_entropy(low) - (best - low) * slope
 }

@@ -9,7 +9,7 @@ use super::error::MatrixError;
 /// Allowed difference of the sum of probabilities from 1, for each state: they come rounded.
 const SUM_TOLERANCE: f64 = 1e-6;
 
-/// Cells at most: 400 MB.
+/// Greatest number of cells: 400 MB.
 const MAX_CELLS: usize = 50_000_000;
 
 /// A condition that the system may be in.
@@ -35,7 +35,7 @@ pub struct Matrix {
     tests: Vec<Test>,
     /// One row of tests for each state.
     cells: Vec<f64>,
-    /// For each test the outcomes that it has instead of passing and failing; a cell is the place of one.
+    /// For each test, its outcomes if these are words instead of pass and fail; a cell is then the index of a word.
     words: Vec<Vec<String>>,
     crisp: bool,
 }
@@ -54,8 +54,8 @@ impl Matrix {
     /// Checks a matrix; `cells` has a row of all tests for each state.
     ///
     /// # Errors
-    /// Empty or doubled names, probabilities or costs out of range, a sum of probabilities that is
-    /// not 1, cells out of range or of a wrong number.
+    /// Names that are empty or occur twice, probabilities or costs out of range, probabilities whose sum is not 1,
+    /// cells out of range or of the wrong number.
     pub fn new(states: Vec<State>, tests: Vec<Test>, cells: Vec<f64>) -> Result<Self, MatrixError> {
         let words = vec![Vec::new(); tests.len()];
         Self::worded(states, tests, cells, words)
@@ -117,7 +117,7 @@ impl Matrix {
             .unwrap_or(&[])
     }
 
-    /// Outcomes of a test that has words for them; none of one that passes or fails.
+    /// Outcomes of a test that has words for them; empty for a test that passes or fails.
     pub fn words(&self, test: usize) -> &[String] {
         self.words.get(test).map_or(&[], Vec::as_slice)
     }
@@ -141,7 +141,7 @@ impl Matrix {
         }
     }
 
-    /// Whether every test says the same of a state each time it is done: no cell is between 0 and 1.
+    /// Whether every test has one certain outcome in each state: no cell is between 0 and 1.
     pub fn is_crisp(&self) -> bool {
         self.crisp
     }
@@ -154,8 +154,7 @@ impl Matrix {
     }
 }
 
-/// States that `keep` lets through, those together whose rows agree in all of `tests`; in the order
-/// of their first states.
+/// Groups of the states that `keep` accepts, by equal rows in all of `tests`; in the order of the groups' first states.
 pub(super) fn equal_rows(
     matrix: &Matrix,
     tests: &[usize],
@@ -163,7 +162,7 @@ pub(super) fn equal_rows(
 ) -> Vec<Vec<usize>> {
     let column = |state: usize| {
         let row = matrix.row(state);
-        // Zero of either sign is one zero.
+        // Adding 0.0 turns −0 into 0, so that both have the same bits.
         tests
             .iter()
             .map(|test| (row.get(*test).copied().unwrap_or(0.0) + 0.0).to_bits())
@@ -180,7 +179,7 @@ pub(super) fn equal_rows(
     groups
 }
 
-/// Refuses what is empty or too large before room is made for it.
+/// Refuses an empty or too large matrix, before memory is allocated for it.
 pub(super) fn check_size(states: usize, tests: usize) -> Result<(), MatrixError> {
     if states == 0 {
         return Err(MatrixError::NoStates);

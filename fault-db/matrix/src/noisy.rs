@@ -6,8 +6,8 @@ use super::information::{binary_entropy, capacity, entropy};
 use super::problem::{Belief, Problem, USELESS_BITS};
 use super::search::{Branch, Space};
 
-/// What is known at a point. Outcomes that weigh all that is possible alike are left out, so that
-/// ways that come to the same knowledge meet.
+/// A search node: what is known there. An outcome that is equally likely in all possible groups is left out, so that
+/// paths to the same knowledge meet in one node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct NoisyPoint {
     /// Groups that are possible.
@@ -18,16 +18,17 @@ pub(super) struct NoisyPoint {
     failed: u64,
 }
 
-/// At most 64 groups and 64 tests.
+/// The search space of a problem with at most 64 groups and 64 tests.
 pub(super) struct NoisySpace<'a> {
     problem: &'a Problem<'a>,
-    /// Entropy of each outcome, as the cells lie.
+    /// Entropy of the outcome of each test in each group, bits, in the order of the cells.
     noise: Vec<f64>,
-    /// For each test and outcome, groups in which it can have that.
+    /// For each test and outcome, the groups in which that outcome is possible.
     ways: Vec<Vec<u64>>,
     /// For each test and group, groups with an equal cell.
     same: Vec<u64>,
-    /// For each test and two groups, how alike the outcomes are: 1 if the same, 0 if never.
+    /// For each test and two groups, the overlap of the outcomes: 1 if they are equally likely, 0 if they exclude each
+    /// other.
     overlap: Vec<f64>,
 }
 
@@ -76,7 +77,7 @@ impl<'a> NoisySpace<'a> {
         }
     }
 
-    /// Probabilities of what is possible, and tests used.
+    /// Probabilities of the possible groups at a node, and the tests used on the way.
     fn belief(&self, point: NoisyPoint) -> Belief {
         let mut members: Vec<(usize, f64)> = ones(point.possible)
             .map(|group| {
@@ -97,7 +98,7 @@ impl<'a> NoisySpace<'a> {
         Belief { members, used }
     }
 
-    /// Tests that tell something, with the probability of each outcome.
+    /// Tests that give information at a node, with the probability of each outcome.
     fn useful(&self, belief: &Belief) -> Vec<(usize, Vec<f64>)> {
         if belief.members.len() < 2 || self.problem.is_decided(belief) {
             return Vec::new();
@@ -124,7 +125,7 @@ impl<'a> NoisySpace<'a> {
 
     fn after(&self, point: NoisyPoint, test: usize, outcome: usize) -> NoisyPoint {
         let possible = point.possible & self.ways[test][outcome];
-        // A test with other outcomes is certain: it weighs all alike that are still possible.
+        // A test with words as outcomes is certain: its outcome is equally likely in all groups that stay possible.
         let outcomes = match outcome {
             _ if self.problem.is_worded(test) => (point.passed, point.failed),
             0 => (point.passed | 1 << test, point.failed),
@@ -246,7 +247,7 @@ impl Space for NoisySpace<'_> {
             cost += price * (needed / bits).min(1.0);
             needed -= bits;
         }
-        // Rounding may not raise it.
+        // Rounding must not raise the bound above the true cost.
         cost.max(least) * (1.0 - 1e-9)
     }
 }

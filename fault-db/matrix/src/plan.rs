@@ -1,4 +1,4 @@
-//! Planning the order of tests: the question, the choice of method, and the resulting plan.
+//! Plans the order of tests: options, choice of the method, and the resulting plan.
 
 use super::crisp::CrispSpace;
 use super::error::MatrixError;
@@ -10,28 +10,28 @@ use super::problem::{Belief, Problem};
 use super::search::{Limits, Search, Space, WorkLimitReached};
 use super::tree::{Node, Tree};
 
-/// Probability that an answer must have where tests are not certain, unless asked otherwise.
+/// Default of the confidence: probability that an answer must have where tests are not certain.
 pub const DEFAULT_CONFIDENCE: f64 = 0.99;
 
-/// States that differ, and tests, for which an optimal tree can be asked.
+/// Greatest number of groups of states, and of tests, for an optimal tree.
 pub const MAX_OPTIMAL: usize = 64;
 
-/// States that differ up to which an optimal tree is tried without being asked.
+/// Greatest number of groups of states for which an optimal tree is tried if no method was asked for.
 const TRIED_STATES: usize = 24;
 
-/// Work where tests are certain: all sets of 21 states, 40 tests.
+/// Limits of the search in crisp matrices: all sets of 21 groups, 40 tests.
 const CRISP_LIMITS: Limits = Limits {
     points: 2_200_000,
     branches: 90_000_000,
 };
 
-/// Work where they are not: a point costs about ten microseconds.
+/// Limits of the search in noisy matrices, where a node costs about ten microseconds.
 const NOISY_LIMITS: Limits = Limits {
     points: 120_000,
     branches: 500_000,
 };
 
-/// Nodes of an optimal tree at most, where ways that meet in the search are written out.
+/// Greatest number of nodes of an optimal tree; nodes that meet in the search are written out several times.
 const MAX_NODES: usize = 200_000;
 
 /// How a tree is made.
@@ -60,22 +60,22 @@ impl Default for PlanOptions {
     }
 }
 
-/// The order of tests from what is known on.
+/// The order of the tests that are not done yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     pub tree: Tree,
-    /// Its expected cost, in the unit of the tests' costs.
+    /// Expected cost of the tree, in the unit of the tests' costs.
     pub expected_cost: f64,
-    /// Whether no tree costs less.
+    /// Whether it is proven that no tree costs less.
     pub optimal: bool,
     /// Warnings for whoever follows the plan.
     pub warnings: Vec<String>,
 }
 
-/// Plans the tests from what is known on.
+/// Plans the tests that are not done yet, given what is known.
 ///
 /// # Errors
-/// A confidence out of range, and more than an optimal tree can be made for if one is asked.
+/// The confidence is out of range, or an optimal tree is asked for and the matrix is too large for one.
 pub fn plan(matrix: &Matrix, known: &Posterior, options: PlanOptions) -> Result<Plan, MatrixError> {
     if !(options.confidence > 0.5 && options.confidence <= 1.0) {
         return Err(MatrixError::Confidence(options.confidence));
@@ -145,7 +145,7 @@ fn best_tree(problem: &Problem<'_>) -> Result<Tree, WorkLimitReached> {
     }
 }
 
-/// Searches and writes out the tree found.
+/// Searches for the optimal tree and writes it out.
 fn searched<S: Space>(
     problem: &Problem<'_>,
     mut search: Search<S>,

@@ -1,4 +1,4 @@
-//! State probabilities, before any test and after the outcomes given.
+//! Probabilities of the states, before any test and after given outcomes.
 
 use super::error::MatrixError;
 use super::model::Matrix;
@@ -6,11 +6,11 @@ use super::model::Matrix;
 /// The outcome of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It passed: outcome 0.
+    /// The test passed: outcome 0.
     Pass,
-    /// It failed, so it detected something: outcome 1.
+    /// The test failed: outcome 1, it detected something.
     Fail,
-    /// Another of its outcomes.
+    /// The outcome is this word, for a test with words.
     Word(String),
 }
 
@@ -42,7 +42,7 @@ impl Outcome {
         }
     }
 
-    /// Its place among the words of a test, or among pass and fail without words.
+    /// Index of the outcome among the test's words, or, without words, 0 for pass and 1 for fail.
     pub(super) fn place(&self, words: &[String]) -> Option<usize> {
         match self {
             _ if !words.is_empty() => words.iter().position(|word| Self::parse(word) == *self),
@@ -57,7 +57,7 @@ impl Outcome {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Posterior {
     probabilities: Vec<f64>,
-    /// States that no outcome rules out; one of probability 0 may be among them.
+    /// States that no outcome rules out; a state of probability 0 may be among them.
     possible: Vec<bool>,
     /// Tests that have been done.
     done: Vec<bool>,
@@ -74,10 +74,10 @@ impl Posterior {
         }
     }
 
-    /// After these outcomes, by Bayes' rule.
+    /// The probabilities after these outcomes, by Bayes' rule.
     ///
     /// # Errors
-    /// A test that is not known or is named twice, and outcomes that no state explains.
+    /// A test is unknown or given twice, or no state explains the outcomes.
     pub fn given(matrix: &Matrix, outcomes: &[(String, Outcome)]) -> Result<Self, MatrixError> {
         let mut known = Self::prior(matrix);
         let mut before = Vec::new();
@@ -122,7 +122,7 @@ impl Posterior {
             return false;
         }
         for likelihood in &mut likelihoods {
-            // Scaled, lest a product of small numbers vanish.
+            // Scaled, so that a product of many small numbers does not become 0.
             *likelihood /= largest;
         }
         for ((p, possible), likelihood) in self
@@ -142,7 +142,7 @@ impl Posterior {
         true
     }
 
-    /// Probability of a state; 0 for one that is not there.
+    /// Probability of a state; 0 for an unknown state.
     pub fn probability(&self, state: usize) -> f64 {
         self.probabilities.get(state).copied().unwrap_or(0.0)
     }
@@ -168,7 +168,7 @@ impl Posterior {
     }
 }
 
-/// Outcomes that went before, the first few of them.
+/// The outcomes given before, at most the first few, as text.
 fn history(before: &[String]) -> String {
     const SHOWN: usize = 6;
     match before {

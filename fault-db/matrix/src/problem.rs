@@ -1,25 +1,25 @@
-//! The remaining search problem: states not yet told apart, and tests not yet used.
+//! The search problem that remains: states not yet told apart, and tests not yet done.
 
 use super::bits::Bits;
 use super::model::{Matrix, equal_rows};
 use super::posterior::Posterior;
 use super::tree::{Leaf, Node};
 
-/// Information below which a test is of no use, in bits: less than rounding leaves.
+/// A test that gives less information, bits, is of no use: it may be a rounding error.
 pub(super) const USELESS_BITS: f64 = 1e-6;
 
-/// Share of the remaining probability by which rounding may miss the confidence.
+/// Share of a node's probability by which rounding may miss the confidence.
 const ROUNDING: f64 = 1e-12;
 
-/// The states that remain, grouped if no remaining test tells them apart, and the remaining tests.
+/// The states that remain (one group for those that no remaining test tells apart), and the remaining tests.
 pub(super) struct Problem<'a> {
     pub(super) matrix: &'a Matrix,
     posterior: &'a Posterior,
     /// Tests not done yet, by their place in the matrix; rows of `cells` are in this order.
     pub(super) tests: Vec<usize>,
-    /// What each of them costs.
+    /// Cost of each test in `tests`.
     pub(super) costs: Vec<f64>,
-    /// States by their place in the matrix.
+    /// The states of each group, by their index in the matrix.
     groups: Vec<Vec<usize>>,
     /// Probability of each group.
     pub(super) weights: Vec<f64>,
@@ -48,8 +48,8 @@ impl<'a> Problem<'a> {
         let tests: Vec<usize> = (0..matrix.tests().len())
             .filter(|test| !posterior.is_done(*test))
             .collect();
-        // With certain tests a state of probability 0 is told apart like any other; where an answer need only
-        // be likely, it never is the answer.
+        // If tests are certain, a state of probability 0 is told apart like any other; if an answer need only be
+        // likely, such a state never is the answer.
         let crisp = matrix.is_crisp();
         let groups = equal_rows(matrix, &tests, |state| {
             posterior.is_possible(state) && (crisp || posterior.probability(state) > 0.0)
@@ -75,7 +75,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Groups that are left.
+    /// Number of groups.
     pub(super) fn len(&self) -> usize {
         self.groups.len()
     }
@@ -85,7 +85,7 @@ impl<'a> Problem<'a> {
         &self.cells[group * self.tests.len()..(group + 1) * self.tests.len()]
     }
 
-    /// The root: all groups, no test used.
+    /// The root node: all groups, no test used.
     pub(super) fn root(&self) -> Belief {
         Belief {
             members: self.weights.iter().copied().enumerate().collect(),
@@ -93,7 +93,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Whether a remaining test has other outcomes than passing and failing; then it is certain.
+    /// Whether a remaining test has words as outcomes; such a test is certain.
     pub(super) fn is_worded(&self, test: usize) -> bool {
         !self.matrix.words(self.tests[test]).is_empty()
     }
@@ -109,7 +109,7 @@ impl<'a> Problem<'a> {
         self.matrix.likelihood(self.tests[test], outcome, cell)
     }
 
-    /// The nodes after each outcome of a test that is possible.
+    /// The possible outcomes of a test at a node, each with the node after it.
     pub(super) fn split(&self, belief: &Belief, test: usize) -> Vec<(usize, Belief)> {
         let mut used = belief.used.clone();
         used.insert(test);
@@ -129,7 +129,7 @@ impl<'a> Problem<'a> {
             .collect()
     }
 
-    /// A test done at a node, whose outcomes lead to the nodes from `next` on.
+    /// The tree node for a test done at `belief`; its outcomes lead to the nodes from index `next` on.
     pub(super) fn node(
         &self,
         belief: &Belief,
@@ -148,14 +148,14 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Whether one class of members, not told apart by any unused test, reaches the confidence.
+    /// Whether one class (groups that no unused test tells apart) reaches the confidence.
     pub(super) fn is_decided(&self, belief: &Belief) -> bool {
         let total = belief.mass();
         let allowed = total * (1.0 - self.confidence + ROUNDING);
         let mut rest = belief.members.clone();
         rest.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         let mut seen = 0.0;
-        // Once more than the allowed doubt lies in other classes, no class can reach the confidence.
+        // Once the classes looked at have more than the allowed doubt, no later class can reach the confidence.
         while seen <= allowed {
             let Some(&(first, _)) = rest.first() else {
                 return true;
@@ -183,8 +183,8 @@ impl<'a> Problem<'a> {
                 .all(|(test, (x, y))| x == y || used.contains(test))
     }
 
-    /// The answer at a leaf: all remaining states if tests are certain, else the likeliest ones that together
-    /// reach the confidence.
+    /// The answer at a leaf: all remaining states if tests are certain, else the likeliest states that together reach
+    /// the confidence.
     pub(super) fn leaf(&self, belief: &Belief, cut: bool) -> Leaf {
         let mut states = Vec::new();
         for &(group, weight) in &belief.members {

@@ -29,7 +29,7 @@ struct TestEntry {
     outcomes: Vec<String>,
 }
 
-/// The probability that a test fails, or one of its outcomes.
+/// A cell: the probability that a test fails, or the word of its outcome.
 enum Cell {
     Number(f64),
     Word(String),
@@ -49,8 +49,8 @@ impl<'de> Deserialize<'de> for Cell {
 
 impl Matrix {
     /// Reads `{"states":[{"id","p"}], "tests":[{"id","cost"}], "outcomes":{TEST:{STATE:p}}}`. A test with
-    /// `"outcomes":["ok","low","high"]` has one of these in each state. A cell that is not there is 0, or the
-    /// first outcome; other keys are ignored.
+    /// `"outcomes":["ok","low","high"]` has one of these words in each state. A missing cell is 0, or the first word;
+    /// other keys are ignored.
     ///
     /// # Errors
     /// As [`Matrix::new`]; and no JSON, keys that are missing or doubled, names that are not known.
@@ -108,9 +108,9 @@ impl Matrix {
         )
     }
 
-    /// Reads a table with a line for each state: its name, its probability if a column is called `p`, else all are
-    /// alike, and what each test says of it. A line called `cost` has what the tests cost, else 1. A test whose cells
-    /// are words, or whole numbers above 1, has these for outcomes, in the order in which they come.
+    /// Reads a table with a line for each state: its name, its probability if a column is called `p` (else all are
+    /// equal), and a cell for each test. A line called `cost` has the tests' costs (else 1). A test whose cells are
+    /// words, or whole numbers above 1, has these as outcomes, in the order in which they appear.
     ///
     /// # Errors
     /// As [`Matrix::new`]; and lines of another length than the first, cells that are neither.
@@ -130,7 +130,7 @@ impl Matrix {
                 MatrixError::table(at, "it has another number of cells than the headings")
             })?;
             let (at, byte) = line.position().map_or((1, 0), |at| (at.line(), at.byte()));
-            // Empty lines before it are passed over.
+            // Empty lines before this line are skipped, but counted.
             let ahead = text.as_bytes().iter().skip(byte as usize);
             let ends = ahead.take_while(|byte| matches!(byte, b'\r' | b'\n'));
             let empty = ends.filter(|byte| **byte == b'\n').count() as u64;
@@ -202,7 +202,7 @@ impl Matrix {
     }
 }
 
-/// The place of an outcome among those of its test.
+/// The index of an outcome among the words of its test.
 fn placed(test: &str, word: &str, words: &[String]) -> Result<f64, MatrixError> {
     let place = Outcome::parse(word).place(words);
     let place = place.ok_or_else(|| MatrixError::no_outcome(test, word, words))?;
@@ -257,6 +257,6 @@ impl<'de: 'a, 'a, V: Deserialize<'de>> Deserialize<'de> for Pairs<'a, V> {
     }
 }
 
-/// A name that stays where it is in the text unless it has escapes: a large matrix has millions.
+/// A name, borrowed from the text unless it has escapes: a large matrix has millions.
 #[derive(Deserialize)]
 struct Name<'a>(#[serde(borrow)] Cow<'a, str>);

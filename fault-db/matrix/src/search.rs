@@ -1,9 +1,9 @@
-//! AND/OR search: at each node the test of least expected cost, where all outcomes have to be paid for.
+//! AND/OR search for the cheapest tree: at each node one test is chosen, and all its outcomes have to be paid for.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash, Hasher};
 
-/// A search graph: at each node tests can be done, each with its outcomes.
+/// A search graph: tests can be done at each node, and each outcome leads to a node.
 pub(super) trait Space {
     /// Identifies a node.
     type Point: Copy + Eq + Hash;
@@ -18,18 +18,18 @@ pub(super) trait Space {
 /// A test at a node.
 pub(super) struct Branch<P> {
     pub(super) test: usize,
-    /// Its cost, added to that of its node.
+    /// Cost of the test, a part of the cost of its node.
     pub(super) cost: f64,
-    /// The node after each outcome, and the weight of its cost.
+    /// The node after each outcome, with the weight of that node's cost.
     pub(super) ways: Vec<(P, f64)>,
 }
 
 /// Limits of the search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
-    /// Nodes kept in memory.
+    /// Greatest number of nodes kept in memory.
     pub(super) points: usize,
-    /// Branches examined.
+    /// Greatest number of branches examined.
     pub(super) branches: u64,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct WorkLimitReached;
 
 #[derive(Clone, Copy)]
 struct Known {
-    /// The least cost if `solved`, else a lower bound.
+    /// The least cost from the node on if `solved`, else a lower bound of it.
     cost: f64,
     solved: bool,
     /// The best test, if there is any.
@@ -63,8 +63,7 @@ impl<S: Space> Search<S> {
         }
     }
 
-    /// The least cost from a node on. The recursion is as deep as tests follow each other: at most their
-    /// number.
+    /// The least cost from a node on. The recursion is at most as deep as there are tests.
     pub(super) fn solve(&mut self, point: S::Point) -> Result<f64, WorkLimitReached> {
         if let Some(known) = self.known.get(&point).filter(|known| known.solved) {
             return Ok(known.cost);
@@ -85,7 +84,7 @@ impl<S: Space> Search<S> {
                 break;
             }
             let branch = &branches[index];
-            // The likelier branch first, as it is the one to exclude the test.
+            // The outcome with the greatest weight first, as it soonest makes the test too expensive.
             let mut ways = branch.ways.clone();
             ways.sort_by(|a, b| b.1.total_cmp(&a.1));
             let (mut cost, mut left) = (branch.cost, &ways[..]);
@@ -113,7 +112,7 @@ impl<S: Space> Search<S> {
         self.known.get(&point).and_then(|known| known.test)
     }
 
-    /// A cost, and those known from all of these on.
+    /// `cost` plus the weighted least costs known for the nodes in `ways`.
     fn least_of(&mut self, cost: f64, ways: &[(S::Point, f64)]) -> f64 {
         let mut least = cost;
         for (point, weight) in ways {
@@ -122,7 +121,7 @@ impl<S: Space> Search<S> {
         least
     }
 
-    /// The cost known from a node on: at least its bound.
+    /// A lower bound of the cost from a node on: what is known of the node, or else the space's bound.
     fn least(&mut self, point: S::Point) -> f64 {
         if let Some(known) = self.known.get(&point) {
             return known.cost;
@@ -138,8 +137,8 @@ impl<S: Space> Search<S> {
     }
 }
 
-/// A fixed mixer of small keys: the standard one costs more than the search itself. The table is
-/// only looked up, so no order comes from it.
+/// A hasher that mixes small keys: the standard one costs more than the search itself. No result depends on the order
+/// of the table.
 #[derive(Default)]
 pub(super) struct Mix(u64);
 

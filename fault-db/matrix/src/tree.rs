@@ -1,10 +1,10 @@
-//! Decision trees, and how they are written.
+//! Decision trees, and their JSON.
 
 use std::borrow::Cow;
 
 use super::model::Matrix;
 
-/// Levels of a written tree that are indented; deeper ones would be mostly blanks.
+/// Number of levels of a written tree that are indented; deeper ones would be mostly blanks.
 const MAX_INDENT: usize = 40;
 
 /// A node of a decision tree; states and tests by their index in the matrix.
@@ -15,7 +15,7 @@ pub enum Node {
         test: usize,
         /// Probability of reaching the node.
         reached: f64,
-        /// Each outcome that is possible here, and the node after it: an index of [`Tree::nodes`].
+        /// Each possible outcome, with the node after it: an index of [`Tree::nodes`].
         ways: Vec<(usize, usize)>,
     },
     Leaf(Leaf),
@@ -25,7 +25,7 @@ pub enum Node {
 pub struct Leaf {
     /// The only possible state, or several that cannot be told apart any further.
     pub states: Vec<usize>,
-    /// Probability that it is one of them, given the outcomes on the path.
+    /// Probability that one of these states holds, given the outcomes on the path.
     pub p: f64,
     /// Probability of reaching the leaf.
     pub reached: f64,
@@ -42,7 +42,7 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// The first test, unless there is none.
+    /// The first test; `None` if the root is a leaf.
     pub fn first_test(&self) -> Option<usize> {
         match self.nodes.first() {
             Some(Node::Test { test, .. }) => Some(*test),
@@ -68,8 +68,9 @@ impl Tree {
         self.nodes.iter().map(cut).sum()
     }
 
-    /// `{"test", "pass": …, "fail": …}`, with other outcomes `{"test", "outcomes": {"low": …}}`, down to
-    /// `{"state" | "states", "p", "reached"}`, as text indented by `indent` levels. Not recursive, so any depth can be written.
+    /// The tree as JSON: `{"test", "pass": …, "fail": …}`, or with words as outcomes `{"test", "outcomes": {"low":
+    /// …}}`, down to `{"state" | "states", "p", "reached"}`, indented by `indent` levels. Not recursive, so any depth
+    /// can be written.
     pub fn to_json(&self, matrix: &Matrix, indent: usize) -> String {
         enum Task<'a> {
             Node(usize, usize),
@@ -143,7 +144,7 @@ impl Leaf {
     }
 }
 
-/// A line break with indentation; without, below the levels that are indented.
+/// A line break with indentation; nothing for levels too deep to be indented.
 fn line(text: &mut String, level: usize) {
     if level != usize::MAX {
         text.push('\n');

@@ -1,4 +1,4 @@
-//! Errors of a backend, before the file or server they concern is known.
+//! Errors of a backend, which do not yet name the file or server.
 
 /// An error of a file, of a server, of a value in a row, or of a row outside its domain.
 #[derive(Debug)]
@@ -23,7 +23,7 @@ impl From<postgres::Error> for SqlError {
     }
 }
 
-/// A row outside its columns' domain: its table, its name there, and why.
+/// A row outside its columns' domain: its table, its name for a person, and the reason.
 #[derive(Debug)]
 pub(crate) struct Refusal {
     pub table: &'static str,
@@ -32,7 +32,7 @@ pub(crate) struct Refusal {
 }
 
 impl Refusal {
-    /// The error of reading such a row.
+    /// The error of reading a row outside its columns' domain.
     pub fn of(table: &'static str, shown: String, reason: String) -> SqlError {
         SqlError::Refused(Box::new(Self {
             table,

@@ -25,7 +25,7 @@ pub(crate) enum Backend {
     Server(Server),
 }
 
-/// Passes each row of a file's result to `take`.
+/// Calls `take` with each row of a file's result.
 pub(crate) fn each_of_file(
     conn: &Connection,
     sql: &str,
@@ -41,7 +41,7 @@ pub(crate) fn each_of_file(
 }
 
 impl Backend {
-    /// Passes each row of a result to `take`. `take` must not query this backend.
+    /// Calls `take` with each row of a result. `take` must not query this backend.
     pub fn each(
         &self,
         sql: &str,
@@ -91,13 +91,13 @@ impl Backend {
         Ok(self.first(sql, values, |_| Ok(()))?.is_some())
     }
 
-    /// Executes an `INSERT … RETURNING seq`; the number of the row.
+    /// Executes an `INSERT … RETURNING seq`; returns the row number.
     pub fn insert(&self, sql: &str, values: &[Value<'_>]) -> SqlResult<i64> {
         let seq = self.first(sql, values, |row| row.get(0))?;
         seq.ok_or(SqlError::File(rusqlite::Error::QueryReturnedNoRows))
     }
 
-    /// Executes a statement; the number of rows changed.
+    /// Executes a statement; returns the number of rows changed.
     pub fn execute(&self, sql: &str, values: &[Value<'_>]) -> SqlResult<u64> {
         match self {
             Self::File(conn) => {

@@ -4,8 +4,8 @@ use super::value::Field;
 
 const NEGATIVE: u16 = 0x4000;
 
-/// Decodes the binary format: number of base-10000 digits, weight of the first, sign, scale, digits. An
-/// integer if it is one, else the nearest double; `None` if it is truncated.
+/// Decodes the binary format: number of base-10000 digits, weight of the first digit, sign, scale, digits. Gives an
+/// integer for a whole number, else the nearest double; `None` if the bytes are cut off.
 pub(super) fn field(raw: &[u8]) -> Option<Field<'static>> {
     let mut words = raw
         .chunks_exact(2)
@@ -13,7 +13,7 @@ pub(super) fn field(raw: &[u8]) -> Option<Field<'static>> {
     let (count, weight) = (words.next()?, words.next()?.cast_signed());
     let (sign, decimals) = (words.next()?, words.next()?);
     if sign & !NEGATIVE != 0 {
-        // Not a number, or infinite.
+        // NaN or infinite.
         return Some(Field::Real(f64::NAN));
     }
     let groups: Vec<i64> = words.map(i64::from).collect();

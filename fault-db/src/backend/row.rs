@@ -28,8 +28,8 @@ impl<'a> Row<'a> {
     }
 }
 
-/// `from_row!(row => Run: id, unit, _, at_us; notes: Vec::new())`: a `Run` whose first fields are the columns of the row in
-/// their order, but for those passed over (`_`); the other fields are given.
+/// `from_row!(row => Run: id, unit, _, at_us; notes: Vec::new())` makes a `Run`: the first fields are the columns of
+/// the row in order (`_` skips a column), the other fields are given.
 macro_rules! from_row {
     ($row:ident => $name:ident: $($columns:tt)+) => {
         $crate::backend::from_row!(@ $row, 0, $name [] $($columns)+,)

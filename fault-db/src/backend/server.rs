@@ -10,7 +10,7 @@ use postgres::{Client, Statement};
 use super::error::SqlResult;
 use super::value::Value;
 
-/// The advisory lock of all writers: the letters `FTDB`.
+/// Number of the advisory lock that all writers take: the letters `FTDB`.
 const WRITERS_LOCK: i64 = 0x4654_4442;
 
 pub(crate) struct Server {
@@ -53,13 +53,13 @@ impl Server {
         work(&mut self.client.borrow_mut())
     }
 
-    /// Executes statements without parameters or results, several at once.
+    /// Executes one or several statements without parameters or results.
     pub fn batch(&self, sql: &str) -> SqlResult<()> {
         Ok(self.client.borrow_mut().batch_execute(sql)?)
     }
 
-    /// Begins a transaction that excludes our other writers: so rows become visible in the order of their
-    /// numbers, and a reader who has seen a number has seen all before it.
+    /// Begins a transaction that excludes this program's other writers. So rows become visible in the order of their
+    /// numbers: a reader who has seen a number has seen all before it.
     pub fn begin(&self) -> SqlResult<()> {
         let begun = self.batch(&format!(
             "BEGIN; SELECT pg_advisory_xact_lock({WRITERS_LOCK})"
@@ -70,7 +70,7 @@ impl Server {
         })
     }
 
-    /// Executes a statement whose parameters are whole columns, each an array; the number of rows changed.
+    /// Executes a statement whose parameters are whole columns, each an array; returns the number of rows changed.
     pub fn execute_columns(&self, sql: &str, columns: &[&(dyn ToSql + Sync)]) -> SqlResult<u64> {
         let statement = self.prepared(sql, &[])?;
         Ok(self.client.borrow_mut().execute(&statement, columns)?)
@@ -99,7 +99,7 @@ impl Server {
     }
 }
 
-/// `?1` as `$1`, except in quotes.
+/// SQL with PostgreSQL's parameters: `$1` for `?1`, except in quotes.
 fn dollar_places(sql: &str) -> String {
     let mut quoted = false;
     let mut text = String::with_capacity(sql.len());
@@ -115,7 +115,7 @@ fn dollar_places(sql: &str) -> String {
 }
 
 impl Value<'_> {
-    /// The parameter's type; the server infers that of a NULL.
+    /// The parameter's type; for NULL the server infers it.
     fn server_type(&self) -> Type {
         match self {
             Self::Null => Type::UNKNOWN,

@@ -47,7 +47,7 @@ impl Value<'_> {
     }
 }
 
-/// `of! { i64: value => Self::Integer(value); }`: the value of a Rust type.
+/// `of! { i64: value => Self::Integer(value); }` makes a [`Value`] from a Rust type.
 macro_rules! of {
     ($($type:ty: $value:ident => $made:expr;)*) => {$(
         impl<'a> From<$type> for Value<'a> {
@@ -73,7 +73,7 @@ impl<'a, T: Into<Value<'a>>> From<Option<T>> for Value<'a> {
     }
 }
 
-/// Conversion of a field to a Rust type; the error says what the field is instead.
+/// Converts a field to a Rust type; the error says what the field is instead.
 pub(crate) trait FromField<'a>: Sized {
     fn from_field(field: Field<'a>) -> Result<Self, String>;
 }

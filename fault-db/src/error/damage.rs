@@ -1,4 +1,4 @@
-//! Findings of a check and their remedies, as data. The texts are for a terminal and for JSON.
+//! Findings of a check and their remedies, as data; as text they go to a terminal and into JSON.
 
 use std::fmt;
 use std::sync::Arc;
@@ -14,19 +14,19 @@ use crate::values::text_enum::text_enum;
 /// Where something is wrong, and what.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Damage {
-    /// The words of SQLite or of a decoder.
+    /// Damage in the words of SQLite or of a decoder.
     #[error("{0}")]
     Told(String),
-    /// Further findings of a kind, which are not listed.
+    /// Number of further findings of this kind, which are not listed.
     #[error("and {0} more of this kind")]
     More(u32),
-    /// Reading broke off.
+    /// Reading broke off; the rest was not checked.
     #[error("the rest could not be looked at: {0}")]
     Rest(Arc<StoreError>),
-    /// Something cannot be read.
+    /// A trace cannot be read.
     #[error("{0}")]
     Unread(Arc<StoreError>),
-    /// A row of a table points at nothing: the row's number if it has one, its table, and the table it points at.
+    /// A row refers to a missing row: the row's number if it has one, its table, and the other table.
     #[error("{} of {} points at a missing row of {}", row(*.0), .1, .2)]
     NoParent(Option<i64>, String, String),
     /// An object that no version of this program makes.
@@ -41,16 +41,16 @@ pub enum Damage {
     /// The file has no id.
     #[error("the file's own name was taken out of it")]
     NoName,
-    /// Seals before this one are not there: their numbers.
+    /// Seals before this one are missing: their numbers.
     #[error("{0}: before it seals were taken out, number {1}")]
     NoSeals(SealPlace, String),
-    /// A seal and what it covers do not follow from the seal before.
+    /// The hash of a seal does not follow from the seal before: kind and id of what it covers.
     #[error("{0} ({1} {2}) does not fit the one before: it was changed")]
     Unchained(SealPlace, String, Id),
     /// A run, event or note that a seal covers is missing.
     #[error("{0}: its {1} was taken out")]
     Unsealed(SealPlace, String),
-    /// A statement of a seal was changed.
+    /// The statement that a seal holds was changed.
     #[error("{0} was changed")]
     SealChanged(SealPlace),
     /// A run, event or note differs from its seal.
@@ -59,19 +59,19 @@ pub enum Damage {
     /// A signature does not hold.
     #[error("the signature at {0}: {1}")]
     Signature(SealPlace, WrongSignature),
-    /// The file was counted again, and the sentences of what differed then.
+    /// The derived rows were recomputed: when, and what had differed, as sentences.
     #[error("counted again at {}; before, {}", time(*.0), .1.join("; "))]
     Recounted(i64, Vec<String>),
-    /// A trace differs from the seal of its run.
+    /// A trace differs from the digest in the seal of its run.
     #[error("trace {0} was changed after its run was sealed")]
     TraceChanged(Id),
-    /// A trace is not in the seal of its run, which follows.
+    /// A trace is not listed in the seal of its run: trace, run.
     #[error("trace {0} was put into run {1} after it was sealed")]
     TraceAdded(Id, Id),
-    /// A recording differs from the seal of its run, which follows.
+    /// A recording differs from the digest in the seal of its run: recording, run.
     #[error("recording {0} of run {1} was changed after it was sealed")]
     RecordingChanged(i64, Id),
-    /// A recording is not in the seal of its run, which follows.
+    /// A recording is not listed in the seal of its run: recording, run.
     #[error("recording {0} was put into run {1} after it was sealed")]
     RecordingAdded(i64, Id),
     /// Samples that a seal of this file names are not there.
@@ -82,16 +82,17 @@ pub enum Damage {
         "{0} is missing: it was refused when its run came from another file, or taken out, and no seal says that it was pruned; import a whole copy of that file, which brings it"
     )]
     SamplesLeft(Samples),
-    /// The own chain has no first entry.
+    /// The file's own chain of seals has no first entry.
     #[error("the beginning of this file's own chain of seals is not there: it was taken out")]
     NoBeginning,
-    /// An entry of a file's chain differs from the one seen at this time; 0: in this file.
+    /// An entry of a file's chain is not the one known before: file, entry, and when it was known (µs since 1970; 0: in
+    /// this file).
     #[error("the chain of file {} was rewritten: entry {} is not the one that was known {}", (.0).short(), .1, at(*.2))]
     Rewritten(Id, i64, i64),
-    /// An entry of a file's chain that was seen at this time is missing; 0: in this file.
+    /// An entry of a file's chain is missing: file, entry, and when it was known (µs since 1970; 0: in this file).
     #[error("the chain of file {} was cut: entry {}, which was known {}, is not there", (.0).short(), .1, at(*.2))]
     Cut(Id, i64, i64),
-    /// One of the events or notes has no seal.
+    /// An event or a note has no seal: the word for its table, and its id.
     #[error("one of the {0}, {1}, has no seal: it was put in by hand, or its seal was taken out")]
     NoSeal(&'static str, Id),
     /// A finished run has no seal.
@@ -102,28 +103,28 @@ pub enum Damage {
     /// A sealed run has no verdict.
     #[error("run {0} has a seal and no verdict: the verdict was taken away")]
     NoVerdict(Id),
-    /// Number of runs that are not there.
+    /// Number of runs that were recorded here and are missing.
     #[error("{0} runs that were recorded here are not there any more")]
     NoRuns(i64),
     /// Number of differing rows in a derived table.
     #[error("{0} {1} are not what the history says")]
     Miscounted(i64, Derived),
-    /// No occurrence says what a fault is.
+    /// A fault has a name or severity that none of its occurrences has.
     #[error("fault {0} has a name or a severity that no occurrence of it says")]
     FaultNamed(String),
-    /// An occurrence is not of its fault.
+    /// An occurrence has another unit, code or part than its fault.
     #[error("occurrence {0} is of another unit, code or part than its fault")]
     OtherFault(String),
-    /// An occurrence is not of its run.
+    /// An occurrence has another unit or line than its run.
     #[error("occurrence {0} is of another unit or line than its run")]
     OtherRun(String),
-    /// No run says what a unit, by its serial number, is.
+    /// No run found the unit as its row says: the serial number.
     #[error("unit {0} is what no run found it to be")]
     UnitNamed(String),
-    /// A fault's derived columns differ.
+    /// A fault's derived columns do not follow from its occurrences and events.
     #[error("fault {0} is not as its occurrences and events say: state, times, line or counts")]
     FaultDerived(String),
-    /// The guard of a server's table does not act: the trigger and the table.
+    /// A trigger that guards a server's table is off or missing: the trigger and the table.
     #[error("trigger {0} of table {1} is off or gone: its rows can be changed")]
     NoGuard(String, String),
 }
@@ -134,22 +135,22 @@ pub enum WrongSignature {
     /// The signature cannot be read, or does not fit its document.
     #[error(transparent)]
     Document(SignatureError),
-    /// The signature is on something else than a statement about a seal.
+    /// The signed document is no statement about a seal.
     #[error("it is no statement about a seal")]
     NoStatement,
     /// The statement names no seal.
     #[error("it names no seal")]
     NoSeal,
-    /// The signature is stored with another thing than it signs: kind and id of that thing.
+    /// The signature is stored at the wrong place: kind and id of what it signs.
     #[error("it is of another: it signs {0} {1}")]
     Other(String, Id),
-    /// A thing of this kind is not signed there.
+    /// A thing of this kind cannot be signed at that place.
     #[error("a \"{0}\" is not signed there")]
     NotThere(String),
-    /// The seal is gone: of what, and its id.
+    /// The signed seal is missing: kind and id of what it covered.
     #[error("the seal of {0} {1} was taken out")]
     SealGone(String, Id),
-    /// The seal differs: of what, its id, and where the seal is.
+    /// The seal is not the one that was signed: kind and id of what it covers, and its place.
     #[error("the seal of {} {}, entry {} of file {}, is not the one that was signed", .0, .1, (.2).entry, (.2).file.short())]
     OtherSeal(String, Id, SealPlace),
 }
@@ -159,11 +160,11 @@ text_enum! {
     ProblemKind {
         /// Damage that SQLite itself finds.
         Integrity = "integrity",
-        /// Tables, indexes, views and triggers.
+        /// Tables, indexes, views or triggers were altered.
         Schema = "schema",
-        /// A row points at nothing.
+        /// A row refers to a missing row.
         ForeignKey = "foreign_key",
-        /// Derived columns.
+        /// Derived columns do not follow from the other rows.
         Count = "count",
         /// Faults, occurrences and units contradict each other.
         Fault = "fault",
@@ -171,15 +172,15 @@ text_enum! {
         Trace = "trace",
         /// A recording cannot be read.
         Recording = "recording",
-        /// Seals and signatures.
+        /// Seals or signatures are broken.
         Seal = "seal",
-        /// Derived tables.
+        /// Derived tables do not follow from the other rows.
         Derived = "derived",
     }
 }
 
 text_enum! {
-    /// Derived tables: they follow from the other rows and are counted.
+    /// Derived tables, which are recomputed from the other rows.
     Derived {
         /// Repairs.
         Repairs = "rows of the table of repairs",
@@ -197,7 +198,7 @@ text_enum! {
 }
 
 text_enum! {
-    /// The next move after a problem.
+    /// What to do after a problem.
     Advice {
         /// The file is damaged.
         FromBackup = "keep this file as it is and go on with a backup; other laptops and the server may have what was recorded since",
@@ -223,7 +224,7 @@ pub struct SchemaObject {
     pub kind: String,
     /// Name of the object.
     pub name: String,
-    /// The table it is of, unless it is itself.
+    /// The table that an index, view or trigger belongs to; `None` for a table or view.
     pub on: Option<String>,
 }
 
@@ -239,7 +240,7 @@ impl fmt::Display for SchemaObject {
 pub struct SealPlace {
     /// The file.
     pub file: Id,
-    /// From 1.
+    /// Number of the entry in the file's chain, from 1.
     pub entry: i64,
 }
 
@@ -249,12 +250,12 @@ impl fmt::Display for SealPlace {
     }
 }
 
-/// A trace, or a recording of a run by its number.
+/// Samples of a run: a trace, or a recording by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Samples {
     /// A trace.
     Trace(Id),
-    /// A recording and its run.
+    /// Number of the recording in its run, and the run.
     Recording(i64, Id),
 }
 
@@ -283,7 +284,7 @@ fn row(number: Option<i64>) -> String {
     number.map_or("a row".to_owned(), |number| format!("row {number}"))
 }
 
-/// A time of this many µs since 1970.
+/// UTC time as text; `at_us` is µs since 1970.
 pub(crate) fn time(at_us: i64) -> String {
     let at = DateTime::from_timestamp_micros(at_us).unwrap_or_default();
     at.format("%Y-%m-%d %H:%M:%S UTC").to_string()

@@ -1,5 +1,5 @@
-//! Errors of the store, each with the file or server it concerns and the next move. A message that tells to
-//! choose another file does not say how: the caller adds that.
+//! Errors of the store: each names the file or server and what to do next. A message that tells to choose another file
+//! does not say how: the caller adds that.
 
 mod damage;
 mod file_change;
@@ -21,13 +21,13 @@ pub use file_change::FileChange;
 pub use query_limit::{MOST_RESULT_BYTES, QueryLimit};
 pub use server::ServerReason;
 
-/// An error of the store. Nothing committed before it is lost.
+/// An error of the store. What was committed before is kept.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// Another connection holds the file for longer than the busy timeout.
     #[error("database busy: {} is locked by another program; close it or choose another file", .0.display())]
     Locked(PathBuf),
-    /// The caller has stopped the work: nothing of it is kept.
+    /// The caller stopped the work; nothing of it is kept.
     #[error("stopped before its end")]
     Stopped,
     /// No room for the write; what was committed before remains.
@@ -75,7 +75,7 @@ pub enum StoreError {
         /// Change of the file.
         what: FileChange,
     },
-    /// The file is an older copy: more of its chain of seals is known elsewhere.
+    /// The file is an older copy: a longer version of its chain of seals is known elsewhere.
     #[error("{} is a copy from before: it ends with entry {here} of its chain of seals, and {there} are known there; if it is a backup that is to be gone on with, give it a name of its own with `db sync --as-copy`, else go on with the file itself", .path.display())]
     EarlierCopy {
         /// The database file.
@@ -90,7 +90,7 @@ pub enum StoreError {
     ForkedCopy {
         /// The database file.
         path: PathBuf,
-        /// The last entry both have.
+        /// Number of the last entry that both copies have.
         after: i64,
     },
     /// An entry of the chain differs from the one known elsewhere.
@@ -98,14 +98,14 @@ pub enum StoreError {
     Rewritten {
         /// The database file.
         path: PathBuf,
-        /// The last entry that is the same.
+        /// Number of the last entry that is equal in both copies.
         after: i64,
         /// run, event or note.
         what: String,
         /// Id of that run, event or note.
         id: Id,
     },
-    /// An earlier schema that a read-only opening may not migrate.
+    /// The file has an earlier schema, which a read-only opening may not migrate.
     #[error("{} has the older schema {found} (this version reads {known}); open it once for writing to bring it up to date", .path.display())]
     OlderSchema {
         /// The database file.
@@ -164,7 +164,7 @@ pub enum StoreError {
         /// The run.
         run: Id,
     },
-    /// A partial id that fits more than one row.
+    /// A partial id fits several rows.
     #[error("{asked:?} fits more than one {what}: {}; give more digits", list(.matches))]
     Ambiguous {
         /// run, fault or trace.
@@ -174,10 +174,10 @@ pub enum StoreError {
         /// A few rows that fit.
         matches: Vec<Id>,
     },
-    /// A search text without any word.
+    /// A search text has no word.
     #[error("{0:?} has no word to search for; give letters or digits")]
     NoWords(String),
-    /// Neither an id, nor a part of one, nor `latest`.
+    /// The text is neither an id, nor a part of one, nor `latest`.
     #[error(
         "{asked:?} is no {what} id: give `latest`, a full id, or at least four hex digits of its beginning or end"
     )]
@@ -202,7 +202,7 @@ pub enum StoreError {
     Transition {
         /// The fault.
         fault: Id,
-        /// The states of the transition.
+        /// The refused transition.
         source: TransitionError,
     },
     /// A withdrawal is refused.
@@ -243,19 +243,19 @@ pub enum StoreError {
     CannotWrite {
         /// The target asked for.
         path: PathBuf,
-        /// Missing thing, or message of the system.
+        /// What is missing, or the system's message.
         reason: String,
     },
     /// One file is both source and target.
     #[error("{} cannot be merged into itself; name another file", .0.display())]
     SameFile(PathBuf),
-    /// The statement does more than read.
+    /// The SQL of a query does more than read.
     #[error("only one reading statement is allowed here ({0}); write a single SELECT")]
     QueryRefused(String),
-    /// SQLite rejected the statement.
+    /// SQLite rejected the SQL of a query.
     #[error("the query failed: {0}")]
     QueryFailed(String),
-    /// The result exceeds a limit.
+    /// The query exceeds a limit.
     #[error("the query was given up: {0}")]
     QueryExceeds(QueryLimit),
     /// The operation needs a file, and this is a server.
@@ -334,7 +334,7 @@ pub enum StoreError {
         path: PathBuf,
         /// Schema version of the server.
         found: i32,
-        /// The one this crate knows.
+        /// The schema version that this crate supports.
         known: i32,
     },
     /// Any other error of a server.

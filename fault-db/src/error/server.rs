@@ -1,4 +1,4 @@
-//! Classifies errors of a server: its own messages, the network, certificates.
+//! Classifies errors of a server, by its messages, the network's errors and its certificate.
 
 use std::error::Error as _;
 use std::path::Path;
@@ -14,16 +14,16 @@ pub enum ServerReason {
     /// No program at that address.
     #[error("nothing listens there")]
     NothingListens,
-    /// The server is silent.
+    /// The server does not answer in time.
     #[error("no answer in time")]
     NoAnswer,
-    /// The file of the socket is not there.
+    /// The socket's file does not exist.
     #[error("there is no such socket")]
     NoSocket,
     /// The connection broke off.
     #[error("the connection is lost")]
     Lost,
-    /// The address has no password.
+    /// The server wants a password, and none was found.
     #[error("it wants a password")]
     NoPassword,
     /// The server offers no TLS, and the address demands TLS.
@@ -35,13 +35,13 @@ pub enum ServerReason {
     /// The certificate names another host.
     #[error("its certificate is for another host; use the name that stands in it")]
     OtherHost,
-    /// The certificate is too old.
+    /// The certificate has expired.
     #[error("its certificate has expired; renew it, or set this computer's clock")]
     Expired,
-    /// The certificate is too new.
+    /// The certificate is not valid yet.
     #[error("its certificate is not valid yet; set this computer's clock")]
     NotYetValid,
-    /// The words of the server or the system.
+    /// A message of the server or the system.
     #[error("{0}")]
     Said(String),
 }
@@ -82,7 +82,7 @@ enum Trouble {
     NotTrusted(ServerReason),
 }
 
-/// The trouble that the code of a server's message tells.
+/// The kind of trouble, by the code of a server's message.
 fn by_code(said: &DbError) -> Option<Trouble> {
     let reason = said.message().to_owned();
     match *said.code() {
@@ -114,7 +114,7 @@ pub(crate) fn message(error: &postgres::Error) -> String {
     }
 }
 
-/// The trouble of an error without a message of the server: of the network, or of the client.
+/// The kind of trouble of an error of the network or the client, without a message of the server.
 fn by_cause(source: &postgres::Error) -> Option<Trouble> {
     if source.is_closed() {
         return Some(Trouble::Unreachable(ServerReason::Lost));

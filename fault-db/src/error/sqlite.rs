@@ -54,7 +54,7 @@ impl StoreError {
     }
 }
 
-/// A stored value of the wrong type or range: only this program writes them, so the file is damaged.
+/// Whether a stored value has a wrong type or range: only this program writes values, so the file is damaged.
 fn is_bad_value(error: &rusqlite::Error) -> bool {
     use rusqlite::Error::{FromSqlConversionFailure, IntegralValueOutOfRange, InvalidColumnType};
     matches!(

@@ -10,7 +10,7 @@ use crate::backend::{Backend, SqlError, SqlResult, values};
 /// A change set is applied when it has this size, bytes on the wire.
 pub(super) const ENOUGH_BYTES: usize = 4 << 20;
 
-/// Runs, events, notes or traces in a change set at most.
+/// Greatest number of runs, events, notes or traces in a change set.
 pub(super) const MOST_ENTRIES: i64 = 500;
 
 /// New rows by table.
@@ -18,15 +18,15 @@ pub(super) type Counts = [u64; COUNT];
 
 pub(super) struct ChangeSet {
     rows: Vec<Rows>,
-    /// Units, faults and channel lists that are included, by their row number in the file, and their
-    /// positions.
+    /// Units, faults and channel lists in the set: table and row number in the file, with the index of the row in the
+    /// set.
     included: BTreeMap<(usize, i64), usize>,
     /// Rows that were refused alone.
     pub refused: Vec<Refusal>,
 }
 
 impl ChangeSet {
-    /// An empty one; `for_server`: with the columns that a server has derived by the sender.
+    /// An empty change set; `for_server`: with the columns that the sender computes for a server.
     pub fn new(for_server: bool) -> Self {
         Self {
             rows: (TABLES.iter())
@@ -37,7 +37,7 @@ impl ChangeSet {
         }
     }
 
-    /// Parents before children.
+    /// The rows by table, parents before children.
     pub fn tables(&self) -> impl Iterator<Item = &Rows> {
         self.rows.iter()
     }
@@ -46,7 +46,7 @@ impl ChangeSet {
         &self.rows[of as usize]
     }
 
-    /// The rows of a table, to add some that come from elsewhere than a file.
+    /// The rows of a table, for adding rows that do not come from a file.
     pub fn rows_mut(&mut self, of: TableId) -> &mut Rows {
         &mut self.rows[of as usize]
     }
@@ -59,7 +59,7 @@ impl ChangeSet {
         self.rows.iter().map(Rows::mark).collect()
     }
 
-    /// Removes what was added since.
+    /// Removes the rows that were added since the marks.
     pub fn back_to(&mut self, marks: &[Mark]) {
         for (rows, mark) in self.rows.iter_mut().zip(marks) {
             rows.back_to(*mark);
@@ -68,7 +68,7 @@ impl ChangeSet {
         (self.included).retain(|(of, _), place| *place < rows[*of].count());
     }
 
-    /// Reads rows that belong together: all of them, or none and why they are refused.
+    /// Reads rows that belong together: keeps all of them, or none and returns why they are refused.
     pub fn whole(
         &mut self,
         read: impl FnOnce(&mut Self) -> SqlResult<()>,
@@ -87,7 +87,7 @@ impl ChangeSet {
     /// Reads a run with its unit, scripts, steps, measurements, occurrences and their faults.
     pub fn run(&mut self, file: &Backend, run: i64) -> SqlResult<()> {
         self.read(file, TableId::Run, run)?;
-        // Parents first: it is them that are named if they are refused.
+        // Parents are read first, so that a refusal names the parent.
         let parents = |sql| file.select(sql, &values![run], |row| row.get::<i64>(0));
         for unit in parents("SELECT unit FROM run WHERE seq = ?1")? {
             self.include(file, TableId::Unit, unit)?;
@@ -117,7 +117,7 @@ impl ChangeSet {
         }
     }
 
-    /// Reads a trace with its channel list, and which occurrences show it.
+    /// Reads a trace with its channel list, and the occurrences that it shows.
     pub fn trace(&mut self, file: &Backend, trace: i64) -> SqlResult<()> {
         let before = self.rows(TableId::Trace).count();
         self.read(file, TableId::Trace, trace)?;
@@ -130,7 +130,7 @@ impl ChangeSet {
         self.read(file, TableId::Shown, trace)
     }
 
-    /// Reads the rows of a table that belong to this one: to a run, fault or trace, or itself.
+    /// Reads the rows of a table that belong to the run, fault or trace with row number `seq`, or the row itself.
     pub fn read(&mut self, file: &Backend, of: TableId, seq: i64) -> SqlResult<()> {
         let (rows, refused) = (&mut self.rows[of as usize], &mut self.refused);
         let sql = rows.sql.clone();

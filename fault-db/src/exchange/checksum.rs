@@ -1,13 +1,13 @@
-//! Content that its row names by SHA-256: channel sets and traces.
+//! Checks content against the SHA-256 in its row: channel lists and samples of traces.
 
 use sha2::{Digest as _, Sha256};
 
 use crate::backend::Value;
 
-/// The reason why content is refused that is not what was stored.
+/// The reason for refusing content that is not what was stored.
 pub(super) const DAMAGED: &str = "it does not match its checksum";
 
-/// Compares content with the digest of its row; a value of another type is left to the column's domain.
+/// Compares content with the digest in its row; a value of another type passes, as the column's domain refuses it.
 pub(super) fn checksum(sha256: &Value<'_>, content: &Value<'_>) -> Result<(), String> {
     let content = match content {
         Value::Bytes(content) => &content[..],

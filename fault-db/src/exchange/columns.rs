@@ -1,10 +1,10 @@
-//! The columns of a change set: their types, and the parents that they name.
+//! The columns of a change set: their types, or the parents that they name.
 
 /// A column of a change set.
 pub(super) struct Column {
     pub name: &'static str,
     pub kind: Kind,
-    /// Value of a derived column in SQL, from the row `t`.
+    /// SQL: value of a derived column, from the row `t`.
     pub value: &'static str,
 }
 
@@ -23,7 +23,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// The table that a parent is in, and the column of its identity.
+    /// The table of the parent, and the column that identifies the parent.
     pub fn parent(self) -> Option<(&'static str, &'static str)> {
         Some(match self {
             Self::Unit => ("unit", "serial"),
@@ -35,7 +35,7 @@ impl Kind {
         })
     }
 
-    /// The type on the server.
+    /// Name of the column's type on the server.
     pub fn server_type(self) -> &'static str {
         match self {
             Self::Integer => "bigint",

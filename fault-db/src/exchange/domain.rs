@@ -1,6 +1,5 @@
-//! The domain of each column, by its name: ranges, lengths and formats. Rows from outside are checked
-//! against it, both those of a file to merge and those that a sync sends or receives. The server enforces
-//! the same in `server/0002.sql`.
+//! The domain of each column, by its name: ranges, lengths and formats. Rows from outside are checked against it: those
+//! of a file to merge, and those that a sync sends or receives. The server enforces the same in `server/rules.sql`.
 
 use serde::Serialize;
 
@@ -9,7 +8,7 @@ use crate::seal::hex;
 use crate::values::fault_state::FaultState;
 use crate::values::record::Verdict;
 
-/// Times from 1970, where a clock without a battery starts, to the end of 2199, µs.
+/// Times from 1970, where a clock without a battery starts, to the end of 2199, µs since 1970.
 const TIME_US: std::ops::RangeInclusive<i64> = 0..=7_258_118_400_000_000;
 /// Durations and bench times: up to 50 years either way, µs.
 const SPAN_US: std::ops::RangeInclusive<i64> = -1_577_880_000_000_000..=1_577_880_000_000_000;
@@ -17,23 +16,23 @@ const SPAN_US: std::ops::RangeInclusive<i64> = -1_577_880_000_000_000..=1_577_88
 const DAY_US: i64 = 86_400_000_000;
 const ID_BYTES: usize = 16;
 const DIGEST_BYTES: usize = 32;
-/// Names, paths, places.
+/// Greatest length of a name, path or place.
 const NAME_BYTES: usize = 64 << 10;
-/// Notes and messages.
+/// Greatest length of a note or message.
 const TEXT_BYTES: usize = 1 << 20;
 const JSON_BYTES: usize = 16 << 20;
-/// Samples of a trace, stimuli of a recording.
+/// Greatest length of a trace's samples or a recording's stimuli.
 pub(crate) const PACKED_BYTES: usize = 48 << 20;
 
-/// Number of refused rows that are listed.
+/// Greatest number of refused rows that are listed.
 const MOST_NAMED: usize = 100;
 
-/// Rows outside their columns' domain. They were left where they are; all others were processed.
+/// Rows outside their columns' domain. They stay where they are; all other rows were processed.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Refusals {
     /// Number of refusals.
     pub count: u64,
-    /// The first hundred.
+    /// The first hundred refused rows.
     pub named: Vec<Refused>,
 }
 
@@ -71,7 +70,7 @@ impl Refusals {
     }
 }
 
-/// An id in its usual form, or a description of bytes that are none.
+/// An id in its usual form; of other bytes a description.
 pub(crate) fn shown_id(bytes: &[u8]) -> String {
     match bytes.try_into() {
         Ok(id) => crate::id::Id::from_bytes(id).to_string(),
@@ -82,8 +81,8 @@ pub(crate) fn shown_id(bytes: &[u8]) -> String {
     }
 }
 
-/// Checks a value against the domain of the column; the error names the column. NULL passes: whether it is
-/// allowed is the table's constraint.
+/// Checks a value against the domain of the column; the error names the column. NULL passes: the table's constraint
+/// decides whether NULL is allowed.
 pub(crate) fn check(column: &str, field: Field<'_>) -> Result<(), String> {
     let is_in = match field {
         Field::Null => return Ok(()),
@@ -147,7 +146,7 @@ fn word(column: &str) -> String {
     format!("{column} is no word that is known")
 }
 
-/// Parsed completely, which bounds its depth.
+/// Checks that a text is JSON, by parsing all of it, which bounds its depth.
 fn json(column: &str, text: &str) -> Result<(), String> {
     let parsed = serde_json::from_str::<serde_json::Value>(text);
     parsed

@@ -1,9 +1,9 @@
-//! Replication: brings the rows of one store into another. REPLICATION.md describes it.
+//! Replication: copies the rows of one store into another. REPLICATION.md describes it.
 //!
-//! A [`ChangeSet`](change_set::ChangeSet) holds rows of the declared [`tables`], read from a file or a
-//! server and checked against their columns' domain. One of two appliers adds them: [`to_file`] to a SQLite
-//! file, [`to_server`] to a PostgreSQL server. Applying is idempotent. [`merge`] brings a whole file into
-//! another one, [`sync`] exchanges batches with a server.
+//! A [`ChangeSet`](change_set::ChangeSet) holds rows of the declared [`tables`], read from a file or a server and
+//! checked against their columns' domain. One of two appliers adds them: [`to_file`] to a SQLite file, [`to_server`] to
+//! a PostgreSQL server. Applying a set twice changes nothing more. [`merge`] copies a whole file into another one,
+//! [`sync`] exchanges batches with a server.
 
 mod change_set;
 mod checksum;

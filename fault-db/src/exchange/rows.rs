@@ -20,7 +20,7 @@ pub(super) struct Rows {
     pub bytes: usize,
 }
 
-/// A length of [`Rows`] to go back to: values, and bytes.
+/// A state of [`Rows`] to go back to: number of values, and bytes.
 pub(super) type Mark = (usize, usize);
 
 impl Rows {
@@ -59,7 +59,7 @@ impl Rows {
         self.bytes = bytes;
     }
 
-    /// Adds a row that has the columns in this order.
+    /// Adds a row, whose columns are in the order of the table's.
     ///
     /// # Errors
     /// [`SqlError::Refused`]: a value is outside its column's domain; the row is not added.

@@ -1,4 +1,4 @@
-//! The SQL that follows from the declaration of a table.
+//! Makes the SQL for replicated tables from the tables' declarations.
 
 use super::columns::{Column, Kind};
 use super::tables::Table;
@@ -11,7 +11,7 @@ impl Table {
         self.columns.iter().chain(derived)
     }
 
-    /// Reads rows from a file by the value of one of its columns.
+    /// SQL that reads rows from a file by the value of the column `by`.
     pub fn read(&self, by: &str, for_server: bool) -> String {
         let joins = self.columns.iter().filter_map(|column| {
             let (parent, _) = column.kind.parent()?;
@@ -27,13 +27,13 @@ impl Table {
         )
     }
 
-    /// Reads rows of a file that have no parents.
+    /// SQL that reads the rows of a file that meet a condition, from a table without parents.
     pub fn read_where(&self, condition: &str) -> String {
         let values = listed(self.columns.iter().map(read_value));
         format!("SELECT {values} FROM {} t WHERE {condition}", self.name)
     }
 
-    /// Inserts one row into a file.
+    /// SQL that inserts one row into a file.
     pub fn insert_into_file(&self) -> String {
         let own = self.columns.iter().map(|column| {
             let value = format!("{{{}}}", column.name);
@@ -57,7 +57,7 @@ impl Table {
         })
     }
 
-    /// `{column}` as the number of the row's value.
+    /// Replaces each `{column}` by the number of the parameter with the row's value.
     pub fn numbered(&self, sql: &str) -> String {
         let columns = self.columns.iter().enumerate();
         columns.fold(sql.to_owned(), |sql, (place, column)| {
@@ -65,7 +65,7 @@ impl Table {
         })
     }
 
-    /// Inserts the rows `{rows}` into a server.
+    /// SQL that inserts the rows `{rows}` into a server.
     pub fn insert_into_server(&self) -> String {
         let mut joins = String::new();
         let columns = self.columns.iter();
@@ -90,7 +90,7 @@ impl Table {
         )
     }
 
-    /// `INSERT INTO table(columns)`, and the values.
+    /// The text `INSERT INTO table(columns)`, and the text of the values.
     fn pairs(&self, own: impl Iterator<Item = String>, more: &[(&str, &str)]) -> (String, String) {
         let names = self.columns.iter().map(|column| column.name);
         let names = listed(names.chain(more.iter().map(|(name, _)| *name)));
@@ -99,7 +99,7 @@ impl Table {
         (into, listed(values))
     }
 
-    /// `{rows}` as the arrays that are sent, `{laptop}` as the number of the laptop.
+    /// Replaces `{rows}` by the arrays that are sent, and `{laptop}` by the number of the laptop.
     pub fn filled(&self, sql: &str, laptop: i64) -> String {
         let types = (1..).zip(self.sent(true));
         let arrays =
@@ -115,8 +115,8 @@ impl Table {
     }
 }
 
-/// A column's value in a file. A text or blob that is too large is read as its length, which the column's
-/// type then refuses.
+/// SQL: a column's value in a file. A text or blob that is too large is read as its length, a number, which the
+/// column's type then refuses.
 fn read_value(column: &Column) -> String {
     let name = column.name;
     match (column.kind.parent(), column.kind) {

@@ -1,5 +1,5 @@
-//! The replicated tables: their columns, how their rows are read from a file, and what each side does with
-//! them besides inserting. `statements` makes the SQL of it.
+//! The replicated tables: their columns, how their rows are read from a file, and what each side does with them besides
+//! inserting. `statements` makes the SQL from these declarations.
 
 use super::checksum::checksum;
 use super::columns::{Column, Kind, columns};
@@ -13,11 +13,11 @@ pub(super) struct Table {
     pub name: &'static str,
     /// The columns that both sides have. A parent is named by its identity, not by its row number.
     pub columns: &'static [Column],
-    /// Values that the sender computes for the server; in a file triggers do.
+    /// Columns that the sender computes for a server; in a file triggers compute them.
     pub derived: &'static [Column],
-    /// The position of the column by which a row is named to a person.
+    /// Index of the column by which messages name a row.
     pub shown: usize,
-    /// The column by which the rows of a change set are selected in a file, and their order.
+    /// The column by which rows of a change set are selected in a file, and the order of the rows.
     pub by: &'static str,
     pub order: &'static str,
     /// Whether a row outside its domain is refused alone; otherwise all that is read with it is refused.
@@ -26,18 +26,18 @@ pub(super) struct Table {
     pub check: fn(&[Value<'_>]) -> Result<(), String>,
     /// Whether rows are inserted; rows of the other tables only say what to change.
     pub is_inserted: bool,
-    /// Further columns in a file, with their values. `{column}` stands for the row's value.
+    /// SQL: further columns in a file, with their values. `{column}` stands for the row's value.
     pub file_more: &'static [(&'static str, &'static str)],
-    /// Rows for which this holds are not inserted into a file.
+    /// SQL condition: rows that meet it are not inserted into a file.
     pub file_unless: &'static str,
-    /// Completes a row of a file that is known.
+    /// SQL that completes a row which the file has already.
     pub file_complete: &'static str,
-    /// Further columns on a server, with their values. `{rows}` stands for the rows sent, `x`; `{laptop}` for
+    /// SQL: further columns on a server, with their values. `{rows}` stands for the rows sent, as `x`; `{laptop}` for
     /// the laptop.
     pub server_more: &'static [(&'static str, &'static str)],
-    /// Rows for which this holds are not inserted on a server.
+    /// SQL condition: rows that meet it are not inserted on a server.
     pub server_unless: &'static str,
-    /// Statements after the insert on a server.
+    /// SQL statements after the insert on a server.
     pub server_after: &'static [&'static str],
 }
 
@@ -47,7 +47,7 @@ pub(super) struct Table {
 pub(super) enum TableId {
     Unit, Run, Fault, Alias, Script, Step, Measurement, Recording, Occurrence, Event, Note, ChannelSet,
     Trace, Shown,
-    /// Applied on their own, after the rows they cover.
+    /// Seals are applied separately, after the rows that they cover.
     Seal,
 }
 
@@ -78,7 +78,7 @@ const TABLE: Table = Table {
     server_after: &[],
 };
 
-/// Parents before children.
+/// The replicated tables, parents before children.
 pub(super) static TABLES: [Table; COUNT] = [
     Table {
         of: TableId::Unit,
@@ -117,8 +117,8 @@ pub(super) static TABLES: [Table; COUNT] = [
             FROM {rows}"],
         ..TABLE
     },
-    // A fault is known under its id or an alias. Duplicates under other ids are merged after the events, as
-    // one of these may have closed a fault.
+    // A fault is known under its id or an alias. Faults that turn out to be one are merged after the events, as one of
+    // these may have closed a fault.
     Table {
         of: TableId::Fault,
         name: "fault",
@@ -300,7 +300,7 @@ pub(super) static TABLES: [Table; COUNT] = [
         file_complete: "UPDATE trace SET recording = {recording} WHERE id = {id} AND recording IS NULL",
         ..TABLE
     },
-    // The occurrences that a trace shows: a trace may be added after its occurrences were.
+    // Links each trace to the occurrences that it shows: a trace may come after them.
     Table {
         of: TableId::Shown,
         name: "fault_occurrence",

@@ -18,9 +18,9 @@ pub(super) struct FileApplier<'a> {
     file: &'a Backend,
     /// The SQLite connection of `file`.
     conn: &'a Connection,
-    /// The file may be older than the faults of the change sets: rows of those it does not have are skipped.
+    /// The file may be older than the change sets: rows of faults that it does not have are skipped.
     pub is_older: bool,
-    /// The last event and note before anything was added.
+    /// The file's last event and note before anything was added.
     pub before: LastEntries,
     /// New rows by table.
     pub counts: Counts,
@@ -31,7 +31,7 @@ pub(super) struct FileApplier<'a> {
     new_runs: BTreeSet<Id>,
 }
 
-/// The last event and note of a file at some time.
+/// Row numbers of a file's last event and last note at some time.
 #[derive(Clone, Copy)]
 pub(super) struct LastEntries {
     pub event: i64,
@@ -58,7 +58,7 @@ impl<'a> FileApplier<'a> {
 
     /// Adds the rows that the file does not have.
     pub fn apply(&mut self, set: &ChangeSet) -> SqlResult<()> {
-        // Before the faults an alias makes a fault known that is here under another id.
+        // Aliases come before the faults: an alias tells that a fault is already here under another id.
         self.join_aliases(set.rows(TableId::Alias))?;
         for rows in set.tables() {
             match rows.table.of {
@@ -116,8 +116,7 @@ impl<'a> FileApplier<'a> {
         Ok(())
     }
 
-    /// Makes the ids of a fault known that it has elsewhere. Two faults of this file that are one elsewhere
-    /// are merged.
+    /// Adds the ids that a fault has elsewhere. Two faults of this file that are one fault elsewhere are merged.
     fn join_aliases(&mut self, rows: &Rows) -> SqlResult<()> {
         let insert = "INSERT INTO fault_alias(id, fault) VALUES (?1, ?2)";
         for row in rows.iter() {
@@ -137,7 +136,7 @@ impl<'a> FileApplier<'a> {
         Ok(())
     }
 
-    /// Faults added and not merged into others since.
+    /// Number of faults that were added and not merged into others since.
     pub fn faults_added(&self) -> SqlResult<usize> {
         let mut count = 0;
         for id in &self.new_faults {
@@ -147,7 +146,7 @@ impl<'a> FileApplier<'a> {
         Ok(count)
     }
 
-    /// Seals, as found, the runs, events and notes that came without a fitting seal.
+    /// Seals, as found, the added runs, events and notes that came without a seal; `found` says how they came.
     pub fn seal_the_rest(&self, found: &str) -> SqlResult<()> {
         let seal_unsealed = |kind: Covered, which: &str, value: Value<'_>| {
             let (table, word) = (kind.table(), kind.word());

@@ -23,11 +23,11 @@ pub(super) struct ServerApplier<'a> {
 }
 
 impl ServerApplier<'_> {
-    /// Adds the rows that the server does not have, and settles their faults; the number of new rows.
+    /// Adds the rows that the server does not have, and settles their faults; returns the numbers of new rows.
     pub fn apply(&self, set: &ChangeSet) -> SqlResult<Counts> {
         let mark = HighWaterMark::of(self.backend)?;
         let mut counts = [0; COUNT];
-        // Before the faults an alias makes a fault known that is here under another id.
+        // Aliases come before the faults: an alias tells that a fault is already here under another id.
         self.insert(set.rows(TableId::Alias))?;
         for rows in set.tables() {
             counts[rows.table.of as usize] = self.insert(rows)?;
@@ -41,7 +41,7 @@ impl ServerApplier<'_> {
         Ok(counts)
     }
 
-    /// Adds the rows of one table; the number of new ones.
+    /// Adds the rows of one table; returns the number of new ones.
     pub fn insert(&self, rows: &Rows) -> SqlResult<u64> {
         if rows.count() == 0 {
             return Ok(0);
@@ -64,7 +64,7 @@ impl ServerApplier<'_> {
     }
 }
 
-/// The values of a column as an array. PostgreSQL stores no NUL character in text.
+/// The values of a column as an array, without NUL characters in text, which PostgreSQL does not store.
 fn array<'a>(rows: &'a Rows, place: usize, column: &Column) -> Box<dyn ToSql + Sync + 'a> {
     fn all<'a, T>(
         rows: &'a Rows,

@@ -1,4 +1,4 @@
-//! Files that are databases or belong to one, so that nothing is ever written over them.
+//! Recognises files that are databases or belong to one, so that the program never overwrites them.
 
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -23,8 +23,8 @@ pub(crate) fn note_opened(database: &Path) {
     }
 }
 
-/// Whether a file is an SQLite database, or one that SQLite keeps beside a database: by what it holds, whatever it is called,
-/// and through links.
+/// Whether a file is an SQLite database, or a file that SQLite keeps beside one: by its content, whatever its name, and
+/// through links.
 pub fn is_of_database(place: &Path) -> bool {
     let of = |end: &&str| {
         let name = place.file_name()?.to_str()?.strip_suffix(*end)?;
@@ -34,7 +34,7 @@ pub fn is_of_database(place: &Path) -> bool {
 }
 
 fn is_database(place: &Path) -> bool {
-    // One that is open here is not looked into: closing it again would release SQLite's locks.
+    // A database that is open here is not opened again: closing it would release SQLite's locks.
     let opened = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
     let parts = |database: &PathBuf| ["", "-wal", "-shm"].map(|end| with_end(database, end));
     if opened.iter().flat_map(parts).any(|of| is_same(&of, place)) {
@@ -45,18 +45,18 @@ fn is_database(place: &Path) -> bool {
     read.is_ok() && head == MAGIC
 }
 
-/// A path whose name has `end` behind it: `a.db` and `-wal` are `a.db-wal`.
+/// A path with `end` added to its name: `a.db` and `-wal` give `a.db-wal`.
 pub(crate) fn with_end(path: &Path, end: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(end);
     name.into()
 }
 
-/// Whether two names are of one file.
+/// Whether two paths lead to one file.
 fn is_same(a: &Path, b: &Path) -> bool {
     match (Identity::at(a), Identity::at(b)) {
         (Some(here), Some(there)) => here.is_same(&there),
-        // Where the system does not number files.
+        // The system gives files no numbers: compare the paths.
         _ => std::fs::canonicalize(a).is_ok_and(|a| std::fs::canonicalize(b).is_ok_and(|b| a == b)),
     }
 }

@@ -32,7 +32,7 @@ impl HeldFile {
     }
 }
 
-/// Makes a file and locks it, perhaps for its owner only; SQLite and the umask would let others read it.
+/// Makes a file and locks it; if `is_private`, only its owner may read it, which SQLite and the umask would not ensure.
 ///
 /// # Errors
 /// The file exists, or cannot be made.
@@ -45,7 +45,7 @@ pub(crate) fn make_locked(path: &Path, is_private: bool) -> Result<File> {
     loop {
         let file = options.open(path)?;
         let _ = file.lock();
-        // Before it was locked another program may have taken it for abandoned.
+        // Another program may have removed the file as abandoned before it was locked.
         if path.exists() {
             return Ok(file);
         }
@@ -58,11 +58,11 @@ impl Drop for HeldFile {
     }
 }
 
-/// Whether the program that made a file, readable for all, still holds it; also if that cannot be found out.
+/// Whether the program that made a file, which all may read, still holds the file; true where that is not known.
 pub(crate) fn is_held(path: &Path) -> bool {
     match File::open(path) {
         Ok(file) => file.try_lock_shared().is_err(),
-        // All may read one that is made so; another was left by an earlier version.
+        // Such files are made readable for all; one that is not readable was left by an earlier version.
         Err(error) => !matches!(
             error.kind(),
             ErrorKind::NotFound | ErrorKind::PermissionDenied
@@ -84,7 +84,7 @@ pub(crate) fn remove_abandoned(folder: &Path, is_one: impl Fn(&str) -> bool) {
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => {}
             Err(TryLockError::Error(_)) if is_old().is_none_or(|age| age < GIVEN_UP) => {}
-            // Without the right to remove it there may still be the right to write beside it.
+            // The folder may allow files to be made, but not this one to be removed: then it stays.
             _ => remove(&path),
         }
     }

@@ -10,11 +10,11 @@ use crate::files::platform;
 /// device may never end or act on being opened.
 ///
 /// # Errors
-/// The system's, or that it is not a regular file, and what it is instead.
+/// The system's error, or that the path is no regular file, and what it is instead.
 pub fn open_regular_file(path: &Path) -> Result<File> {
     must_be_file(&std::fs::metadata(path)?)?;
     let file = File::open(path)?;
-    // The name may have been given to something else in between.
+    // The path may lead to something else by now.
     must_be_file(&file.metadata()?)?;
     Ok(file)
 }

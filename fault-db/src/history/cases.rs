@@ -1,7 +1,7 @@
 //! Cases: the faults of a unit that are not closed and that one part explains.
 //!
-//! A case has no row of its own. An event of the kind `cause` (a person's) or `diagnosed` (a run's) attributes a fault
-//! to a part, and merges as every event does; the faults that are attributed to the same part are the case.
+//! A case has no row of its own. An event `cause` (of a person) or `diagnosed` (of a run) attributes a fault to a part,
+//! and is merged like every event; the faults attributed to the same part are the case.
 
 use crate::backend::{Row, SqlResult, from_row, values};
 use crate::error::StoreError;
@@ -22,13 +22,13 @@ pub struct CaseFault {
     pub id: Id,
     /// Name of the fault's code.
     pub code_name: String,
-    /// The part it points at.
+    /// The part that the fault points at.
     pub lru: String,
-    /// Its state: of a change the one that it led to.
+    /// State of the fault; after a change the new state.
     pub state: FaultState,
 }
 
-/// The other faults of the case of fault `?1`, as `c`: the text after `FROM`.
+/// SQL after `FROM`: the other faults `c` of the case of fault `?1`.
 pub(crate) const REST_OF_CASE: &str =
     "fault f JOIN fault c ON c.unit = f.unit AND c.cause = f.cause
      WHERE f.seq = ?1 AND c.seq <> f.seq AND f.state <> 'closed' AND c.state <> 'closed'";
@@ -37,8 +37,8 @@ pub(crate) const REST_OF_CASE: &str =
 pub(crate) const CASE_FAULT: &str = "c.seq, c.id, c.code_name, c.lru, c.state";
 
 impl Store {
-    /// A person says which part a fault comes from; with an empty part, that it stands alone. No diagnosis changes it
-    /// afterwards.
+    /// Records a person's word on the part that a fault comes from; an empty part: the fault stands alone. No diagnosis
+    /// changes that later.
     ///
     /// # Errors
     /// There is no such fault, a text is too long, or the file or server does not take it.
@@ -58,8 +58,8 @@ impl Store {
         })
     }
 
-    /// Attributes faults to the part that the diagnosis of a run found; which of them were not attributed to it yet.
-    /// A fault that is closed, or that a person has attributed, stays as it is.
+    /// Attributes faults to the part that the diagnosis of a run found, and returns those whose attribution changed. A
+    /// fault that is closed, or that a person has attributed, stays as it is.
     ///
     /// # Errors
     /// There is no such fault, a text is too long, or the file or server does not take it.
@@ -91,7 +91,7 @@ impl Store {
         })
     }
 
-    /// Adds the event, in the caller's transaction.
+    /// Adds the event of an attribution, in the caller's transaction.
     fn attribute(
         &self,
         seq: i64,
@@ -116,7 +116,7 @@ impl Store {
         })
     }
 
-    /// The fault with this id, now or formerly.
+    /// The fault that has, or had before a merge, this id.
     pub(crate) fn fault_row(&self, fault: Id) -> Result<CaseFault, StoreError> {
         let sql = format!(
             "SELECT {CASE_FAULT} FROM fault c
@@ -127,7 +127,7 @@ impl Store {
         found.ok_or_else(|| StoreError::not_found("fault", fault))
     }
 
-    /// The other faults of a fault's case that an action on it settles, too.
+    /// The other faults of a fault's case to which an action on that fault applies, too.
     pub(crate) fn settled_with(
         &self,
         fault: &CaseFault,
@@ -140,8 +140,8 @@ impl Store {
     }
 }
 
-/// Whether an action on a fault is one on another of its case. A part is replaced for all of them; of what else happens
-/// only those take part that are as far as it: one that came back must not be closed with one that is verified.
+/// Whether an action on the named fault applies to another fault of its case. A repair applies to all of them, any
+/// other action only to faults in the same state: a fault that came back must not be closed with a verified one.
 fn follows(action: FaultAction, named: FaultState, other: FaultState) -> bool {
     (action == FaultAction::Repair || other == named) && other.next(action).is_ok()
 }

@@ -1,4 +1,4 @@
-//! Zstd compression with a content checksum, so that damage is found on decompression.
+//! Zstd compression with a checksum of the content, so that decompression finds damage.
 
 use std::io::{Error, Read as _, Result};
 
@@ -9,7 +9,7 @@ pub(crate) fn pack(text: &[u8], level: i32) -> Result<Vec<u8>> {
     compressor.compress(text)
 }
 
-/// Decompresses to at most `most` bytes.
+/// Decompresses; an error if the result is longer than `most` bytes.
 pub(crate) fn unpack(packed: &[u8], most: u64) -> Result<Vec<u8>> {
     let mut text = Vec::new();
     let decoder = zstd::stream::read::Decoder::new(packed)?;

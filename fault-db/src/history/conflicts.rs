@@ -21,11 +21,11 @@ pub struct StateConflict {
     pub code: i64,
     /// Name of the fault's code.
     pub code_name: String,
-    /// Replaceable part it points at.
+    /// Part that the fault points at.
     pub lru: String,
-    /// The state that stands meanwhile: the one that leaves the most work.
+    /// The state that counts meanwhile: the one that leaves the most work.
     pub stands: FaultState,
-    /// The heads of its event graph, by time.
+    /// The heads of the fault's event graph, in order of time.
     pub rivals: Vec<ConflictingEvent>,
 }
 
@@ -36,17 +36,17 @@ pub struct ConflictingEvent {
     pub id: Id,
     /// Kind of the event.
     pub kind: String,
-    /// When, by the clock of the laptop.
+    /// Time of the event by its laptop's clock, µs since 1970.
     pub at_us: i64,
-    /// Name of the person who did it.
+    /// Name of the event's author.
     pub who: String,
     /// A note, or JSON for a repair.
     pub body: String,
-    /// The state it brought the fault to.
+    /// The state to which the event brought the fault.
     pub state: FaultState,
 }
 
-/// The heads of faults that have more than one.
+/// SQL: the heads of the faults with several heads.
 const CONFLICTING_EVENTS: &str = concat!(
     "SELECT f.id, u.serial, f.code, f.code_name, f.lru, f.state, e.id, e.kind, e.at_us, e.who, e.body, e.state
      FROM fault f JOIN unit u ON u.seq = f.unit, ",

@@ -1,5 +1,5 @@
-//! Settles faults that got rows: recomputes the columns of a fault's row that follow from its occurrences and events
-//! (`graph_sql`), merges duplicates, and reopens faults that recurred.
+//! Settles faults that got new rows: recomputes the columns of a fault's row that follow from its occurrences and
+//! events (`graph_sql`), merges duplicates, and reopens faults that recurred.
 
 use std::collections::BTreeSet;
 
@@ -14,8 +14,7 @@ pub(crate) fn recompute_fault(backend: &Backend, fault: i64) -> SqlResult<()> {
     recompute_faults(backend, &[fault])
 }
 
-/// Recomputes the rows of many faults; on a server in one round trip, by a function of the owner of
-/// the tables.
+/// Recomputes the derived columns of many faults; on a server in one round trip, by a function of the tables' owner.
 fn recompute_faults(backend: &Backend, faults: &[i64]) -> SqlResult<()> {
     if let Backend::Server(server) = backend {
         server.execute_columns("SELECT settle_faults($1)", &[&faults])?;
@@ -28,8 +27,8 @@ fn recompute_faults(backend: &Backend, faults: &[i64]) -> SqlResult<()> {
     Ok(())
 }
 
-/// Brings faults that got rows from elsewhere to one state: derived columns, duplicates, and, unless the
-/// sender has done it, recurrences. The faults are named by an id that is or was theirs.
+/// Settles faults that got rows from elsewhere: derived columns, duplicates, and, with the mark `judge`, recurrences
+/// (without it the sender has judged them). `touched` names the faults by a present or former id.
 pub(crate) fn settle(
     backend: &Backend,
     touched: &BTreeSet<Id>,
@@ -57,7 +56,7 @@ fn settle_touched(
         true => faults,
         false => faults_of(backend, touched)?,
     };
-    // A reopened fault may now be merged with another one, which brings more occurrences or resolutions.
+    // A reopened fault may be a duplicate of an open one; merged, it has more occurrences or resolutions.
     loop {
         let again = reopen_recurred(backend, &changed, mark)?;
         if again.is_empty() {
@@ -97,8 +96,8 @@ pub(crate) fn faults_of(backend: &Backend, ids: &BTreeSet<Id>) -> SqlResult<Vec<
     Ok(found.into_iter().collect())
 }
 
-/// Merges faults that are not closed with others of the same unit, code and part that are not closed either,
-/// into the oldest; the faults to look at again. On a server its function `join_faults` does it.
+/// Merges unclosed faults of one unit, code and part into the oldest; returns the faults to look at again. On a server
+/// its function `join_faults` does it.
 fn merge_duplicates(
     backend: &Backend,
     faults: &[i64],
@@ -121,7 +120,7 @@ fn merge_duplicates(
     Ok(kept.into_iter().collect())
 }
 
-/// Faults not closed of the same unit, code and part as this one, oldest first; none if this one is closed.
+/// SQL: unclosed faults of the unit, code and part of fault `?1`, oldest first; none if fault `?1` is closed.
 const OPEN_DUPLICATES: &str =
     "SELECT d.seq FROM fault f JOIN fault d ON d.unit = f.unit AND d.code = f.code AND d.lru = f.lru
      WHERE f.seq = ?1 AND f.state <> 'closed' AND d.state <> 'closed' ORDER BY d.seq";
@@ -145,12 +144,13 @@ pub(crate) const MOVE_ROWS: [&str; 4] = [
     "INSERT INTO fault_alias(id, fault) SELECT id, ?1 FROM fault WHERE seq = ?2 ON CONFLICT DO NOTHING",
 ];
 
-/// Repairs are selected by the unit, code and part that both faults share.
+/// SQL: moves the repairs of fault `?2` to fault `?1`; the index finds them by the unit.
 const MOVE_REPAIRS: [&str; 1] = [
     "UPDATE repair SET fault = ?1 WHERE fault = ?2 AND unit = (SELECT unit FROM fault WHERE seq = ?2)",
 ];
 
-/// Recomputes when the fault was opened before each of its repairs, from the events of both faults.
+/// SQL: recomputes, for each repair of fault `?1`, when the fault had been opened, from the events of both merged
+/// faults.
 const UPDATE_REPAIRS: &str = concat!(
     "UPDATE repair SET
         line = (SELECT line FROM fault WHERE seq = ?1),

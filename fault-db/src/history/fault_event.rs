@@ -14,17 +14,16 @@ pub(crate) struct NewEvent<'a> {
     pub at_us: i64,
     pub who: &'a str,
     pub body: &'a str,
-    /// The fault's state after it; `None` leaves the state.
+    /// The fault's state after the event; `None` if the event does not change it.
     pub state: Option<FaultState>,
 }
 
-/// Knowledge of an event's author about its fault. The columns are named `follows`, `turn` and
-/// `seen`.
+/// What an event's author knew about the fault. The columns are called `follows`, `turn` and `seen`.
 pub(crate) struct EventContext {
-    /// Ids of its parents in the event graph, concatenated; empty for an event that leaves the state. A withdrawal
-    /// has the event that it takes back.
+    /// Ids of the event's parents in the event graph, concatenated; empty for an event that does not change the state.
+    /// A withdrawal has the event that it takes back.
     pub parents: Vec<u8>,
-    /// Lamport number: one more than the greatest of the events known.
+    /// Lamport number: one more than the greatest of the events that the author knew.
     pub lamport: i64,
     pub occurrences_known: i64,
 }

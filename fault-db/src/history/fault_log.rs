@@ -1,4 +1,4 @@
-//! Changes of a fault, most of them by users: each is an event, and the newest event gives the state.
+//! Changes of a fault, most of them by users: each is an event. The event graph (`graph_sql`) gives the state.
 
 use crate::backend::{Backend, values};
 use crate::error::StoreError;
@@ -46,7 +46,7 @@ impl Store {
     }
 
     /// Changes the state of a fault, if its current state allows it, and of the other faults of its case that are in
-    /// the same state, in one transaction; the fault named first, then those.
+    /// the same state, in one transaction. Returns the fault that was named, and the others.
     pub fn set_case_state(
         &self,
         fault: Id,
@@ -58,7 +58,7 @@ impl Store {
         self.act(fault, &Change::towards(state, (who, note), at_us), true)
     }
 
-    /// Records a repair of a fault alone. It counts as repaired until a passing run verifies it.
+    /// Records a repair of a fault alone. The fault counts as repaired until a passing run verifies it.
     pub fn record_repair(
         &self,
         fault: Id,
@@ -69,8 +69,8 @@ impl Store {
         Ok(self.repair(fault, repair, (who, at_us), false)?.0.state)
     }
 
-    /// Records a repair of a fault and of the other faults of its case, in one transaction; the fault named first,
-    /// then those.
+    /// Records a repair of a fault and of the other faults of its case, in one transaction. Returns the fault that was
+    /// named, and the others.
     pub fn repair_case(
         &self,
         fault: Id,

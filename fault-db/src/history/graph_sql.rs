@@ -9,13 +9,13 @@
 //! A `withdrawn` event and the event that it follows do not count in the graph: the heads before that event are heads
 //! again. A later event, made without knowing of the withdrawal, is in conflict with them.
 //!
-//! What a fault comes from changes no state: a person's latest `cause` decides it, or else the latest `diagnosed` of a
-//! run, by Lamport number and id. The faults of a unit that are not closed and have one cause are one *case*.
+//! The part that a fault comes from changes no state: a person's latest `cause` decides it, or else the latest
+//! `diagnosed` event of a run, by Lamport number and id. The unclosed faults of a unit with one cause are one *case*.
 //!
 //! The columns keep their old names: `follows` holds the parents, `turn` the Lamport number, `seen` the
 //! occurrences known, `disputed` whether the fault is in conflict.
 
-/// Condition on the event of this alias, to follow others: the event was not withdrawn.
+/// SQL condition, beginning with AND: the event of this alias was not withdrawn.
 macro_rules! standing {
     ($event:literal) => {
         concat!(
@@ -27,7 +27,7 @@ macro_rules! standing {
 }
 pub(crate) use standing;
 
-/// The heads of a fault's event graph, as `e`: the text after `FROM`.
+/// SQL after `FROM`: the heads `e` of a fault's event graph.
 macro_rules! heads {
     ($fault:literal) => {
         concat!(
@@ -45,7 +45,7 @@ macro_rules! heads {
 }
 pub(crate) use heads;
 
-/// The head with the lowest rank decides the state.
+/// SQL: rank of a head `e`; the head with the lowest rank decides the state.
 macro_rules! rank {
     () => {
         "CASE e.kind WHEN 'opened' THEN 9 WHEN 'recurred' THEN 3 ELSE

@@ -25,7 +25,7 @@ pub struct FaultStored {
     pub reopened: bool,
 }
 
-/// Inserts a run and its scripts; `fields` as [`run_fields`](seal::run::run_fields) gives them. The row numbers
+/// Inserts a run and its scripts; `fields` as [`run_fields`](seal::run::run_fields) gives them. Returns the row numbers
 /// of the run and of its unit.
 pub(crate) fn insert_run(
     file: &Backend,
@@ -95,9 +95,9 @@ pub(crate) struct FaultPlace<'a> {
     pub run: i64,
     pub unit: i64,
     pub line: &'a str,
-    /// Whether the run is an imported log, read later.
+    /// Whether the run is an imported log, whose faults occurred earlier.
     pub of_log: bool,
-    /// The last event known when the run began.
+    /// Row number of the last event in the file when the run began.
     pub known_events: i64,
 }
 
@@ -139,10 +139,10 @@ pub(crate) fn insert_fault(
             None,
         ),
     };
-    // Every state but closed has a transition for an occurrence, and closed was not selected.
+    // An occurrence has a transition from every state but closed, and no closed fault was selected.
     let after = match before {
         None => FaultState::Open,
-        // Read from a log later: events since then took this occurrence into account.
+        // The occurrence was read from a log later: the events since then took it into account.
         Some(state) if acted_since(backend, fault, place, record.at_us)? => state,
         Some(state) => state.next(FaultAction::Occur).unwrap_or(FaultState::Open),
     };
@@ -188,8 +188,8 @@ pub(crate) fn insert_fault(
     Ok((stored, digest))
 }
 
-/// Whether an event changed the fault's state after this time. Events known when a run began precede all
-/// that the run sees, whatever the time stamps of other laptops say.
+/// Whether an event changed the fault's state after time `at_us`. Events known when a run began precede everything that
+/// the run sees, whatever time stamps other laptops gave them.
 fn acted_since(
     backend: &Backend,
     fault: i64,

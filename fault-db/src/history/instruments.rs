@@ -1,5 +1,5 @@
-//! The register of what measures and generates on a bench: each entry is a statement in the file's own chain of seals, so
-//! no earlier calibration is lost, and each may be signed.
+//! The register of the instruments of a bench: each entry is a statement in the file's own chain of seals, so no
+//! earlier calibration is lost, and each may be signed.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::id::Id;
 use crate::seal::{append_statement, own_file_id};
 use crate::store::Store;
 
-/// The kind of its entries.
+/// The kind of the register's entries in the chain.
 const INSTRUMENT: &str = "instrument";
 
 /// An instrument as it was registered, or calibrated last.
@@ -22,22 +22,22 @@ pub struct Instrument {
     pub kind: String,
     /// Serial number, by which the instrument is named.
     pub serial_no: String,
-    /// The day of its calibration; none: never calibrated.
+    /// Day of the calibration; `None`: never calibrated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibrated: Option<String>,
     /// Laboratory that calibrated the instrument, and number of the certificate.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub by: String,
-    /// The first day on which its calibration holds no more; none: it does not end.
+    /// First day on which the calibration is no longer valid; `None`: it does not expire.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub due: Option<String>,
-    /// Expanded uncertainty (k = 2) of what it measures, by unit of measurement.
+    /// Expanded uncertainty (k = 2) of the instrument's measurements, by unit of measurement.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertainty: BTreeMap<String, f64>,
     /// The instrument was taken off the bench.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub retired: bool,
-    /// When this was registered.
+    /// When this entry was registered, µs since 1970.
     pub at_us: i64,
     /// Name of the person who registered the instrument.
     #[serde(default)]
@@ -45,7 +45,7 @@ pub struct Instrument {
 }
 
 impl Instrument {
-    /// Whether the calibration is valid on a day where the bench stands (2026-11-26).
+    /// Whether the calibration is valid on a day (as 2026-11-26) by the bench's local date.
     pub fn is_calibrated_on(&self, day: &str) -> bool {
         self.calibrated.as_deref().is_some_and(|from| from <= day)
             && self.due.as_deref().is_none_or(|due| day < due)
@@ -75,7 +75,7 @@ impl Store {
         })
     }
 
-    /// The instruments of this file's own bench, by serial number, as they were stated last, without those of merged
+    /// The instruments of this file's own bench, by serial number, as they were last registered; not those of merged
     /// files.
     ///
     /// # Errors

@@ -18,7 +18,7 @@ pub const MOST_LIST: usize = 16_000;
 /// Refuses a name longer than [`MOST_NAME`]; `what` is, for instance, "the operator's name".
 ///
 /// # Errors
-/// The name is longer.
+/// The name is too long.
 pub fn name(what: &'static str, text: &str) -> Result<(), StoreError> {
     most(what, text, MOST_NAME)
 }
@@ -26,7 +26,7 @@ pub fn name(what: &'static str, text: &str) -> Result<(), StoreError> {
 /// Refuses a note longer than [`MOST_TEXT`]; `what` is, for instance, "the note".
 ///
 /// # Errors
-/// The note is longer.
+/// The note is too long.
 pub fn note(what: &'static str, text: &str) -> Result<(), StoreError> {
     most(what, text, MOST_TEXT)
 }
@@ -34,7 +34,7 @@ pub fn note(what: &'static str, text: &str) -> Result<(), StoreError> {
 /// Refuses a list, such as paths or a query, longer than [`MOST_LIST`].
 ///
 /// # Errors
-/// The list is longer.
+/// The list is too long.
 pub fn list(what: &'static str, text: &str) -> Result<(), StoreError> {
     most(what, text, MOST_LIST)
 }
@@ -51,7 +51,7 @@ fn most(what: &'static str, text: &str, most: usize) -> Result<(), StoreError> {
     }
 }
 
-/// A message truncated to [`MOST_TEXT`], ending in `…` then.
+/// A message, cut to [`MOST_TEXT`] characters if it is longer, then ending in `…`.
 pub(crate) fn cut(message: &str) -> Cow<'_, str> {
     let mut letters = message.char_indices();
     match (letters.nth(MOST_TEXT - 1), letters.next()) {
@@ -61,7 +61,7 @@ pub(crate) fn cut(message: &str) -> Cow<'_, str> {
 }
 
 impl RunRecord {
-    /// Checks the texts of a run, before a unit is touched.
+    /// Checks the lengths of a run's texts, before a unit is touched.
     ///
     /// # Errors
     /// One of them is too long.
@@ -120,7 +120,7 @@ impl StepRecord {
     /// Checks the names of a step.
     pub(crate) fn check(&self) -> Result<(), StoreError> {
         list("the procedure's name", &self.procedure)?;
-        // The script's name, and the number of the repetition.
+        // The name in the script, with the number of the repetition.
         most("the step's name", &self.name, 2 * MOST_NAME)?;
         for measured in &self.measurements {
             name("the measurement's name", &measured.name)?;

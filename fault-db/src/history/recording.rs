@@ -16,10 +16,10 @@ const ZSTD_LEVEL: i32 = 3;
 /// Stimuli unpack to at most this many bytes.
 const MAX_STIMULI_BYTES: u64 = 64 << 20;
 
-/// A recording as it is handed in.
+/// A recording to be stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordingRecord {
-    /// Place of the procedure in the run.
+    /// Index of the procedure in the run.
     pub ordinal: u32,
     /// The procedure.
     pub procedure: String,
@@ -31,10 +31,10 @@ pub struct RecordingRecord {
     pub stimuli_json: String,
 }
 
-/// A recording as it is handed out.
+/// A stored recording.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Recording {
-    /// The run it belongs to.
+    /// The run of the recording.
     pub run_id: Id,
     /// The procedure.
     pub procedure: String,
@@ -89,8 +89,8 @@ impl RunWriter<'_> {
 }
 
 impl Store {
-    /// The recording a trace was cut from; `None` for a trace of an earlier version, or one outside of any
-    /// procedure.
+    /// The recording from which a trace was cut; `None` for a trace of an earlier version of the program, or one from
+    /// outside procedures.
     pub fn recording(&self, trace: Id) -> Result<Option<Recording>, StoreError> {
         const SQL: &str = "SELECT u.id, r.procedure, r.t0_bench_us, r.bench_json, r.stimuli
             FROM trace t JOIN run u ON u.seq = t.run
@@ -118,7 +118,7 @@ impl Store {
     }
 }
 
-/// The recordings that cannot be read back, each with the reason, and the number of all.
+/// The number of all recordings, and the reasons why some of them cannot be read back.
 pub(crate) fn check_recordings(file: &Backend) -> SqlResult<(u32, Vec<String>)> {
     let (mut count, mut wrong) = (0, Vec::new());
     file.each(

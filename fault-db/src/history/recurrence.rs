@@ -1,10 +1,9 @@
 //! Recurrences found by replication: a fault occurred again on one laptop after it had been repaired or
 //! closed on another.
 //!
-//! In one file a new occurrence of a repaired fault reopens it at once. Two laptops find out when their
-//! histories meet. Then a `recurred` event is added, the same on either side, so that neither the repair
-//! nor the occurrence is lost. Which came first is decided by time stamps; a server corrects each by the
-//! clock offset of its laptop.
+//! In one file a new occurrence of a repaired fault reopens it at once. Two laptops find out when their histories meet:
+//! then a `recurred` event is added, the same on either side, so that neither the repair nor the occurrence is lost.
+//! Time stamps decide which came first; a server corrects each by the clock offset of its laptop.
 
 use sha2::{Digest as _, Sha256};
 
@@ -14,8 +13,8 @@ use crate::history::graph_sql::heads;
 use crate::id::Id;
 use crate::values::fault_state::{FaultAction, FaultState};
 
-/// Heads by which a fault of a file was resolved, with the first occurrence after each, if there are more
-/// occurrences than its author knew.
+/// SQL: heads that resolved fault `?1` of a file, each with the first occurrence after it, if the fault has more
+/// occurrences than the head's author knew.
 const RECURRED_IN_FILE: &str = concat!(
     "SELECT e.fault, e.id, e.turn, o.at_us, o.message FROM fault f, fault_occurrence o, ",
     heads!("?1"),
@@ -25,10 +24,10 @@ const RECURRED_IN_FILE: &str = concat!(
      ORDER BY e.id"
 );
 
-/// Heads by which these faults of a server were resolved, with the first later occurrence on another laptop
-/// than the author's. Only where the head is newer than `$2`, the last event known, or the occurrence newer
-/// than `$3`, the last occurrence known: earlier pairs have been judged with the clock offsets of their time.
-/// Occurrences with an invalid time, stored by an early version of the server, are ignored.
+/// SQL: heads that resolved these faults of a server, each with the first later occurrence on another laptop than the
+/// author's. Only pairs of which the head is newer than event `$2` or the occurrence newer than `$3`: older pairs were
+/// judged before, with the clock offsets of their time. Occurrences with an invalid time, stored by an early version of
+/// the server, are ignored.
 const RECURRED_ON_SERVER: &str = concat!(
     "SELECT f.seq, done.id, done.turn, seen.at_us, seen.message FROM fault f
         CROSS JOIN LATERAL (
@@ -58,7 +57,7 @@ struct Recurrence {
     message: String,
 }
 
-/// The last event and the last occurrence of a store.
+/// Row numbers of the last event and the last occurrence of a store.
 #[derive(Clone, Copy)]
 pub(crate) struct HighWaterMark {
     event: i64,
@@ -66,7 +65,7 @@ pub(crate) struct HighWaterMark {
 }
 
 impl HighWaterMark {
-    /// Read before anything is added, under the writers' lock.
+    /// Reads the mark; call it under the writers' lock, before anything is added.
     pub fn of(backend: &Backend) -> SqlResult<Self> {
         let found = backend.first(
             "SELECT coalesce((SELECT max(seq) FROM fault_event), 0),
@@ -79,9 +78,9 @@ impl HighWaterMark {
     }
 }
 
-/// Adds `recurred` events to these faults; returns those that were reopened. On a server it looks only at
-/// faults of which either side is newer than the mark. Runs in the caller's transaction, which has to
-/// recompute the faults afterwards.
+/// Adds `recurred` events to these faults; returns the faults that were reopened. On a server only pairs are judged of
+/// which the event or the occurrence is newer than the mark. Runs in the caller's transaction, which has to recompute
+/// the faults afterwards.
 pub(crate) fn reopen_recurred(
     backend: &Backend,
     faults: &[i64],
@@ -99,7 +98,7 @@ pub(crate) fn reopen_recurred(
                 [&faults, &mark.event, &mark.occurrence];
             for row in server.select_columns(RECURRED_ON_SERVER, &marks)? {
                 match read(Row::Server(&row)) {
-                    // An id accepted by an early version of the server.
+                    // An invalid id, which an early version of the server accepted.
                     Err(SqlError::Value { .. }) => {}
                     recurrence => found.push(recurrence?),
                 }
@@ -118,7 +117,7 @@ fn read(row: Row<'_>) -> SqlResult<Recurrence> {
     Ok(from_row!(row => Recurrence: fault, resolution, lamport, at_us, message))
 }
 
-/// Each recurrence has its own event, with the same id wherever it is found.
+/// Adds the event of a recurrence, with the same id in whatever store it is found.
 fn insert_recurrence(backend: &Backend, recurrence: &Recurrence) -> SqlResult<()> {
     let event = NewEvent {
         id: recurrence_id(recurrence.resolution, recurrence.at_us),

@@ -21,17 +21,16 @@ pub struct RunNote {
     pub at_us: i64,
     /// Author of the note.
     pub who: String,
-    /// The place in a trace of the run that it is about.
+    /// The place in a trace of the run that the note is about; `None` for a note on the whole run.
     pub place: Option<TracePlace>,
     /// Text of the note.
     pub text: String,
-    /// Name in the signature of the note, where the signature holds; looked at only where a whole
-    /// run is read.
+    /// Signer of the note, if the signature is valid; only set where a whole run is read.
     pub signed_by: Option<String>,
 }
 
 impl Store {
-    /// Adds a note to a run, whether it has ended or not.
+    /// Adds a note to a run, finished or not.
     ///
     /// # Errors
     /// There is no such run, or the note cannot be written.
@@ -45,7 +44,7 @@ impl Store {
         self.insert_run_note(run, None, who, text, at_us)
     }
 
-    /// Adds a note to a place in a trace; it is a note on the run of the trace.
+    /// Adds a note on a place in a trace, as a note on the trace's run.
     ///
     /// # Errors
     /// There is no such trace, or the note cannot be written.
@@ -97,7 +96,7 @@ impl Store {
         })
     }
 
-    /// Notes without a signature that holds, each with the name of its author.
+    /// Notes without a valid signature, each with the name of its author.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -121,7 +120,7 @@ impl Store {
         Ok(unsigned)
     }
 
-    /// The run that a trace is of.
+    /// The run of a trace.
     ///
     /// # Errors
     /// There is no such trace.

@@ -28,9 +28,9 @@ const FLUSH_AT_STEPS: usize = 256;
 /// Most steps that are buffered while writing fails.
 const MAX_WAITING_STEPS: usize = 16_384;
 
-/// The writing end of one run. Several may write to one store, and to one file.
+/// Writes one run. Several writers may write to one store, and to one file.
 ///
-/// Dropping it writes the buffered steps if it can; without [`finish`](Self::finish) the run then counts as
+/// A dropped writer writes the buffered steps if it can; without [`finish`](Self::finish) the run then counts as
 /// interrupted.
 pub struct RunWriter<'a> {
     pub(crate) store: &'a Store,
@@ -40,18 +40,18 @@ pub struct RunWriter<'a> {
     line: String,
     /// The run is an imported log, not a test.
     of_log: bool,
-    /// The last event in the file when the run began.
+    /// Row number of the last fault event in the file when the run began.
     known_events: i64,
     waiting: Vec<StepRecord>,
-    /// Computed from the records as they come.
+    /// Digest of the run, computed from the records as they come.
     pub(crate) seal: RunDigest,
     last_index: Option<u32>,
-    /// This file takes the rest of a run whose own file was busy for too long; the run is complete and sealed
-    /// where both are merged.
+    /// This file takes the rest of a run because the run's own file was busy for too long; the run is complete and
+    /// sealed where both files are merged.
     is_rest: bool,
-    /// The verdict of the run is written; whether others find the run in the file is still to be looked at.
+    /// The verdict is written; it is not yet checked that another program finds the run in the file.
     ended: bool,
-    /// Steps recorded.
+    /// Number of steps recorded.
     steps: usize,
     /// Occurrences that have a trace.
     traced: HashSet<Id>,
@@ -83,7 +83,7 @@ impl<'a> RunWriter<'a> {
         let sw_versions = serde_json::to_string(&record.unit.sw_versions).unwrap_or_default();
         let fields = run_fields(id, record, &sw_versions);
         let seal = RunDigest::begin(&fields, &record.scripts);
-        // Nothing is lost yet.
+        // Checked before anything is recorded, so that an error loses nothing.
         store.check_place()?;
         let began = store.head()?;
         let lock = store.hold_run(id)?;
@@ -112,13 +112,13 @@ impl<'a> RunWriter<'a> {
         })
     }
 
-    /// The file it writes to.
+    /// The file that the writer writes to.
     pub fn path(&self) -> &std::path::Path {
         self.store.path()
     }
 
-    /// Continues the same run in another file, with the buffered steps, which this file does not take.
-    /// Importing that file completes the run here.
+    /// Continues the run in another file, which gets the buffered steps that this file does not take. Importing the
+    /// other file completes the run here.
     ///
     /// # Errors
     /// The other file does not take the run; the steps stay buffered here.
@@ -135,7 +135,7 @@ impl<'a> RunWriter<'a> {
         Ok(rest)
     }
 
-    /// Begins the same run from its start in another file, where this one was lost.
+    /// Begins this run anew, under its id, in another file, where this file was lost.
     ///
     /// # Errors
     /// The other file does not take the run.
@@ -158,7 +158,7 @@ impl<'a> RunWriter<'a> {
     pub fn step(&mut self, mut step: StepRecord) -> Result<(), StoreError> {
         self.check_unfinished()?;
         step.check()?;
-        // A limit that no value reaches is none, and such a value was not measured.
+        // An infinite limit is no limit, and a value that is not finite was not measured.
         for measured in &mut step.measurements {
             for number in [&mut measured.value, &mut measured.low, &mut measured.high] {
                 *number = number.filter(|number| number.is_finite());
@@ -207,16 +207,15 @@ impl<'a> RunWriter<'a> {
 
     /// Commits an occurrence of a fault, with its freeze frame, and the buffered steps.
     ///
-    /// It belongs to the fault of the same unit, code and part that is not closed; if there is none, it
-    /// begins one. A repaired or verified fault is reopened.
+    /// The occurrence belongs to the unclosed fault of this unit, code and part; without one, it begins a fault. A
+    /// repaired or verified fault is reopened.
     pub fn fault(&mut self, record: &FaultRecord) -> Result<FaultStored, StoreError> {
         let occurrence = self.store.mint()?;
         self.fault_as(occurrence, record)
     }
 
-    /// Adds a fault from an entry of a unit's own log, under an id that follows from the entry: other stores that
-    /// import the entry make the same id, and where their histories meet there is one occurrence. The store must
-    /// not have the entry yet.
+    /// Commits a fault from an entry of a unit's own log, under an id computed from the entry: every store that imports
+    /// the entry has that id, so a merge of two histories keeps one occurrence. This store must not have the entry yet.
     pub fn logged_fault(
         &mut self,
         occurrence: Id,
@@ -258,8 +257,8 @@ impl<'a> RunWriter<'a> {
         Ok(stored)
     }
 
-    /// Commits a trace and links it to occurrences of this run; there may be none. An occurrence keeps its first trace, which
-    /// is sealed with it.
+    /// Commits a trace and links it to `occurrences` of this run, perhaps none. An occurrence that has a trace keeps
+    /// its first, with which it is sealed.
     ///
     /// # Errors
     /// The run has ended, or the trace cannot be written.
@@ -273,7 +272,7 @@ impl<'a> RunWriter<'a> {
         Ok(id)
     }
 
-    /// Commits a trace of a unit's own record, under an id that follows from it; it must not be known here.
+    /// Commits a trace of a unit's own record, under an id computed from the trace; the store must not have it yet.
     pub fn recorded_trace(&mut self, id: Id, trace: &TraceData) -> Result<(), StoreError> {
         self.check_unfinished()?;
         self.trace_as(id, &[], trace)
@@ -290,12 +289,12 @@ impl<'a> RunWriter<'a> {
         Ok(())
     }
 
-    /// Commits the buffered steps and the verdict, and notes a run that passed at the repairs it speaks for. After
-    /// an error it can be called again.
+    /// Commits the buffered steps and the verdict; a passing run is noted at the repairs that it tested. After an
+    /// error, `finish` can be called again.
     ///
     /// # Errors
-    /// The end of the run cannot be written, or the file that has the store's name does not hold the run as another program finds it: it
-    /// was removed, replaced or written over meanwhile, or has a second name. Within a transaction that is not looked at.
+    /// The end of the run cannot be written, or another program would not find the run under the store's name: the file
+    /// was removed, replaced or overwritten meanwhile, or has a second name. Within a transaction, that is not checked.
     pub fn finish(&mut self, end: &RunEnd) -> Result<(), StoreError> {
         if self.finished {
             return Err(StoreError::RunFinished(self.id));
@@ -350,7 +349,7 @@ impl<'a> RunWriter<'a> {
 
 impl Drop for RunWriter<'_> {
     fn drop(&mut self) {
-        // The caller returns an error of its own, which says more.
+        // The caller returns its own error, which says more than this one.
         let _ = self.flush();
     }
 }

@@ -1,10 +1,11 @@
 //! Proves repairs by passing runs.
 //!
-//! A run that passed, began when a repair was known here, and passed the step that saw the fault last is noted at
-//! the repaired fault, and at the repaired consequences in its case. Whether that proves the repair depends on how
-//! often the fault showed while it was there: an intermittent one hides. The caller, who knows the rate, decides
-//! ([`Store::repairs_to_prove`], [`Store::confirm_repairs`]); until then the repair is a claim, as is a state that a
-//! person sets. A fault that no step saw, for instance one read from a unit's log, is verified by a person.
+//! A passing run is noted at a repaired fault if the repair was known in this file when the run began, and the run
+//! passed the step that saw the fault last; it is noted at the repaired consequences in the fault's case, too. Whether
+//! that proves the repair depends on how often the fault showed before: an intermittent fault hides. The caller, who
+//! knows the rate, decides ([`Store::repairs_to_prove`], [`Store::confirm_repairs`]); until then the repair is a claim,
+//! as is a state that a person sets. A fault that no step saw, for instance one read from a unit's log, is verified by
+//! a person.
 
 use std::collections::BTreeMap;
 
@@ -25,14 +26,14 @@ use crate::values::record::{RepairRecord, RunEnd, Verdict};
 
 /// Kind of the event that notes a passing run after a repair.
 const PASSED: &str = "passed";
-/// Kind of the event by which a run has proved a repair; by hand it is `verified`.
+/// Kind of the event by which a run proves a repair; the event of a person is `verified`.
 const CONFIRMED: &str = "confirmed";
-/// Beginning of such an event's note, before the run's id.
+/// Beginning of the note of a `passed` or `confirmed` event; the run's id follows.
 const IN_RUN: &str = "in run ";
-/// Number of runs with the fault, the last ones, that are evidence of its rate.
+/// The last runs with the fault, at most this many, are the evidence of how often it shows.
 const MOST_RUNS: i64 = 8;
 
-/// Runs `r` with their seals `s`; a copy of a file seals a run again.
+/// SQL: joins to runs `r` their seals `s`, one each, although a copy of a file seals a run again.
 macro_rules! sealed_runs {
     () => {
         " LEFT JOIN seal s ON s.id = r.id AND s.what = 'run' AND s.origin = (SELECT x.origin FROM seal x
@@ -48,7 +49,7 @@ macro_rules! time_in_order {
     };
 }
 
-/// Repaired faults of a unit whose last step passed in a run.
+/// SQL: repaired faults of unit `?1` whose step, the last that saw them, passed in run `?2`.
 const SHOWN_GONE: &str = concat!(
     "SELECT f.seq, f.id FROM fault f
     WHERE f.unit = ?1 AND f.state = 'repaired'
@@ -68,7 +69,7 @@ const SHOWN_GONE: &str = concat!(
     ORDER BY f.seq"
 );
 
-/// The repaired consequences in the case of fault `?1`, which names the cause itself.
+/// SQL: repaired consequences in the case of fault `?1`, if that fault points at the part which is the cause.
 const WITH_IT: &str = concat!(
     " AND f.cause = lower(f.lru) AND c.cause <> lower(c.lru) AND c.state = 'repaired'
     AND (SELECT max(e.seq) FROM fault_event e WHERE e.fault = c.seq AND e.state = 'repaired'",
@@ -77,8 +78,8 @@ const WITH_IT: &str = concat!(
     ORDER BY c.seq"
 );
 
-/// The consequences in that case which a run has noted as passed, if every other fault naming the cause is
-/// verified.
+/// SQL: consequences in the case of fault `?1` at which a run is noted, if every other fault that points at the cause
+/// is verified.
 const PROVEN_WITH_IT: &str = "
     AND f.cause = lower(f.lru) AND c.cause <> lower(c.lru) AND c.state = 'repaired'
     AND EXISTS (SELECT 1 FROM fault_event e WHERE e.fault = c.seq AND e.kind = 'passed' AND e.body LIKE ?2)
@@ -86,8 +87,8 @@ const PROVEN_WITH_IT: &str = "
         AND other.cause = lower(other.lru) AND other.state NOT IN ('verified', 'closed'))
     ORDER BY c.seq";
 
-/// Whether a run was recorded no later than another run or an event: as their chain says, which no clock changes, or where
-/// two files recorded them by their times.
+/// SQL: whether a run was recorded no later than another run or an event: by the order of their chain of seals, which
+/// no clock changes, or by their times if two files recorded them.
 macro_rules! before {
     ($run:literal, $at_us:literal, $event:literal) => {
         before!($run, $at_us, "event", $event, ".at_us")
@@ -111,7 +112,8 @@ macro_rules! before {
     };
 }
 
-/// The last runs in which fault `?1` was there, the newest first: from the first that saw it in this opening until its repair.
+/// SQL: the last runs in which fault `?1` was present, newest first: from the first that saw it since it last opened to
+/// its repair.
 const THERE: &str = concat!(
     "SELECT r.id FROM run r JOIN fault f ON f.unit = r.unit
         JOIN run q ON q.seq = (SELECT o.run FROM fault_occurrence o JOIN run r ON r.seq = o.run",
@@ -142,14 +144,14 @@ pub struct RepairToProve {
     pub fault: Id,
     /// Name of the fault's code.
     pub code_name: String,
-    /// Runs of the unit in which the fault was there, oldest first: the last ones, from the one that saw it first.
+    /// Last runs of the unit in which the fault was present, oldest first; none is older than the first that saw it.
     pub there: Vec<Id>,
     /// Runs that passed since the repair, oldest first; the last one is the run that was asked about.
     pub passed: Vec<Id>,
 }
 
 impl Store {
-    /// The number of the last event this file knows.
+    /// Row number of the last event in this file; 0 without events.
     pub(crate) fn last_event(&self) -> Result<i64, StoreError> {
         let found = self.first(
             "beginning a run",
@@ -160,8 +162,8 @@ impl Store {
         Ok(found.unwrap_or_default())
     }
 
-    /// Notes a run at the repaired faults of its unit that it shows to be gone, in the caller's transaction: those repaired
-    /// no later than the event of this number.
+    /// Notes a passing run at those repaired faults of its unit that it shows to be gone, if they were repaired no
+    /// later than event `known_events`. Runs in the caller's transaction.
     pub(crate) fn note_passed(
         &self,
         (unit, run, id): (i64, i64, Id),
@@ -200,7 +202,7 @@ impl Store {
         Ok(())
     }
 
-    /// The repaired faults that a run has shown to be gone, each with what tells how often such a fault hides.
+    /// The repaired faults that a run has shown to be gone, each with the runs that tell how often the fault hides.
     ///
     /// # Errors
     /// There is no such run, or the file cannot be read.
@@ -247,9 +249,9 @@ impl Store {
         Ok(repairs.into_values().collect())
     }
 
-    /// Marks repaired faults as verified by a run, each with the reason in words, and with a fault that names the part
-    /// which its case comes from the consequences, provided that no other fault naming it is left. Returns all that are
-    /// verified now.
+    /// Marks repaired faults as verified by a run, each with the reason in words. With a fault that points at the cause
+    /// of its case, the consequences are verified, too, if no other unverified fault points at the cause. Returns all
+    /// faults that are verified now.
     ///
     /// # Errors
     /// There is no such run or fault, or the file does not take it.
@@ -298,12 +300,12 @@ impl Store {
     }
 }
 
-/// The run that a note says passed the fault's own step, rather than that of a fault beside it.
+/// The run whose id the note ends with; `None` if the run passed only the step of another fault of the case.
 fn noted_run(note: &str) -> Option<Id> {
     note.strip_prefix(IN_RUN)?.parse().ok()
 }
 
-/// A fault whose repair a run has proved.
+/// A fault that a run has verified.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SettledFault {
     /// The fault.
@@ -314,12 +316,12 @@ pub struct SettledFault {
     pub code_name: String,
     /// The part it points at.
     pub lru: String,
-    /// The repair that the run has proved; none if only its state was set.
+    /// The repair that the run has proved; `None` if a person only set the state `repaired`.
     pub repair: Option<RepairRecord>,
 }
 
 impl FaultEvent {
-    /// The run that passed after the repair, where the event notes one or is its proof.
+    /// The run that passed after the repair, if the event is `passed` or `confirmed`.
     pub fn passed_run(&self) -> Option<Id> {
         if !matches!(&*self.kind, PASSED | CONFIRMED) {
             return None;
@@ -328,13 +330,13 @@ impl FaultEvent {
         rest.split([',', ':']).next()?.parse().ok()
     }
 
-    /// A run has proved the repair.
+    /// Whether this event says that a run has proved the repair.
     pub fn is_proof(&self) -> bool {
         self.kind == CONFIRMED
     }
 }
 
-/// The faults that run `?1` of the unit has proved to be repaired; `?2` is how its events begin.
+/// SQL: faults that run `?1` of the unit has verified; the note of an event of that run begins with `?2`.
 pub(crate) const SETTLED: &str = concat!(
     "SELECT f.id, f.code, f.code_name, f.lru,
         (SELECT x.body FROM fault_event x WHERE x.fault = f.seq AND x.kind = 'repair' AND x.at_us <= e.at_us",
@@ -345,7 +347,7 @@ pub(crate) const SETTLED: &str = concat!(
     WHERE r.id = ?1 ORDER BY f.seq"
 );
 
-/// Pattern for the beginning of the events that a run has made.
+/// SQL pattern for the notes of the events that a run has made.
 pub(crate) fn made_by(run: Id) -> String {
     format!("{IN_RUN}{run}%")
 }

@@ -1,7 +1,8 @@
 //! Withdrawals: a person takes back what was written about a fault, by an event that says so.
 //!
-//! The event of the kind `withdrawn` follows the one that it takes back. Both stay in the history; whatever is derived from
-//! events (state, cause, repairs, counts, what diagnosis learns) is as if the withdrawn one had never been written.
+//! An event of the kind `withdrawn` names the event that it takes back. Both stay in the history; whatever is derived
+//! from events (state, cause, repairs, counts, what diagnosis learns) is as if the withdrawn event had never been
+//! written.
 
 use crate::backend::{Row, Value, from_row, values};
 use crate::error::StoreError;
@@ -14,15 +15,16 @@ use crate::id::Id;
 use crate::store::Store;
 use crate::values::withdrawal_error::WithdrawalError;
 
-/// Kind of the event that takes back the one it follows.
+/// Kind of the event that takes back another event.
 pub(crate) const WITHDRAWN: &str = "withdrawn";
 
 /// Extent of a withdrawal.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ToWithdraw {
-    /// Only what was written at this time, µs since 1970; `None`: what a person wrote last, whenever that was.
+    /// Withdraw only an event written at this time, µs since 1970; `None`: a person's last event, whenever it was
+    /// written.
     pub written_at_us: Option<i64>,
-    /// Take back for this fault alone, although the same was written about the others of its case.
+    /// Withdraw at this fault alone, even if the same was written at other faults of its case.
     pub only: bool,
 }
 
@@ -33,9 +35,9 @@ pub struct Withdrawn {
     pub kind: String,
     /// When it was written, µs since 1970.
     pub at_us: i64,
-    /// Author of what was withdrawn.
+    /// Author of the withdrawn event.
     pub who: String,
-    /// The fault that was named, then the others about which the same was written, each as it stands now.
+    /// The named fault, then the other faults at which the same event was withdrawn; each in its state afterwards.
     pub faults: Vec<CaseFault>,
 }
 
@@ -50,7 +52,7 @@ struct Written {
     lamport: i64,
 }
 
-/// Last event that a person wrote about fault `?1`.
+/// SQL: last event that a person wrote about fault `?1` and that is not withdrawn.
 const LAST_WRITTEN: &str = concat!(
     "SELECT e.seq, e.id, e.kind, e.at_us, e.who, CASE WHEN e.state IS NULL THEN 0 ELSE 1 END, e.turn
      FROM fault_event e WHERE e.fault = ?1 AND e.kind IN
@@ -59,8 +61,8 @@ const LAST_WRITTEN: &str = concat!(
     " ORDER BY e.turn DESC, e.id DESC LIMIT 1"
 );
 
-/// Events that stand after event `?2` of fault `?1`, of Lamport number `?3`, and were decided or found in knowledge
-/// of it.
+/// SQL: an event after event `?2` of fault `?1` that builds on it: not withdrawn, with a Lamport number above `?3`, and
+/// with a state or the note of a passing run.
 const RESTS_ON_IT: &str = concat!(
     "SELECT e.kind FROM fault_event e WHERE e.fault = ?1 AND e.turn > ?3 AND e.id <> ?2
         AND (e.state IS NOT NULL OR e.kind = 'passed')",
@@ -68,12 +70,12 @@ const RESTS_ON_IT: &str = concat!(
     " ORDER BY e.turn, e.id LIMIT 1"
 );
 
-/// A fault that took the place of fault `?1`, which is closed.
+/// SQL: an unclosed fault that replaced fault `?1`, which is closed.
 const SEEN_SINCE: &str =
     "SELECT 1 FROM fault f JOIN fault d ON d.unit = f.unit AND d.code = f.code AND d.lru = f.lru
      WHERE f.seq = ?1 AND f.state = 'closed' AND d.seq <> f.seq AND d.state <> 'closed' LIMIT 1";
 
-/// The other faults, as `c`, of the unit of fault `?1` about which the same was written as event `?2` says: the text after `FROM`.
+/// SQL after `FROM`: other faults `c` of the unit of fault `?1` at which the same was written as event `?2`.
 const WRITTEN_WITH_IT: &str = concat!(
     "fault f JOIN fault c ON c.unit = f.unit AND c.seq <> f.seq
      JOIN fault_event e ON e.fault = c.seq JOIN fault_event s ON s.seq = ?2
@@ -83,10 +85,11 @@ const WRITTEN_WITH_IT: &str = concat!(
 );
 
 impl Store {
-    /// Takes back what a person wrote last about a fault, and the same at the other faults of its case, in one transaction.
+    /// Withdraws what a person wrote last about a fault, in one transaction also at the other faults where the same was
+    /// written.
     ///
     /// # Errors
-    /// There is no such fault, nothing that could be withdrawn, a text is too long, or the file or server does not take it.
+    /// There is no such fault, nothing can be withdrawn, a text is too long, or the file or server refuses.
     pub fn withdraw(
         &self,
         fault: Id,
@@ -137,8 +140,7 @@ impl Store {
         })
     }
 
-    /// Last event that a person wrote about the fault, which has to be of this time if one is
-    /// given.
+    /// Last event that a person wrote about the fault; an error if `at_us` is given and the event is of another time.
     fn last_written(&self, fault: &CaseFault, at_us: Option<i64>) -> Result<Written, StoreError> {
         let row = |row: Row<'_>| {
             Ok(from_row!(row => Written:
@@ -161,7 +163,7 @@ impl Store {
         Ok(found)
     }
 
-    /// Refuses what others built on. Notes and causes stand alone.
+    /// Refuses to withdraw a state on which later events build. On notes and causes nothing builds.
     fn check_last(&self, fault: &CaseFault, written: &Written) -> Result<(), StoreError> {
         const DOING: &str = "looking at what was written since";
         if !written.has_state {
@@ -180,7 +182,7 @@ impl Store {
     }
 }
 
-/// Checks what an event of this kind from outside says of the state and of its parents.
+/// Checks an event from another store: a withdrawal must name one event as its parent, and no state.
 pub(crate) fn check_parents(
     kind: &str,
     state: &Value<'_>,

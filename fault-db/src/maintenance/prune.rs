@@ -9,21 +9,20 @@ use crate::id::Id;
 use crate::seal::{PRUNED, PrunedPayload, append_statement, hex, trace};
 use crate::store::Store;
 
-/// Which traces may be deleted. A trace that shows a fault that is not closed never is.
+/// Which traces may be deleted. A trace of a fault that is not closed is never deleted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PruneRule {
-    /// Only those recorded before this time.
+    /// Only traces recorded before this time, µs since 1970.
     pub older_than_us: Option<i64>,
-    /// Only those of runs that passed.
+    /// Only traces of runs that passed.
     pub passed_only: bool,
-    /// Only as many, the oldest first, as it takes to bring the file down to this size.
+    /// Only as many traces, the oldest first, as bring the file down to this size, bytes.
     pub max_file_bytes: Option<u64>,
-    /// Keep those that are still to be sent to the server this file syncs with; without a server there are
-    /// none.
+    /// Keep traces that are still to be sent to a server with which this file is synced.
     pub keep_unsent: bool,
     /// Count only.
     pub dry_run: bool,
-    /// The time to be sealed with the deletion.
+    /// Time of the deletion for its seals, µs since 1970.
     pub at_us: i64,
 }
 
@@ -48,7 +47,7 @@ pub struct PruneCounts {
     pub traces: u32,
     /// Recordings deleted with the last trace cut from them.
     pub recordings: u32,
-    /// Bytes of samples in them.
+    /// Bytes of samples in the deleted traces.
     pub trace_bytes: u64,
     /// Traces matching the rule, but kept for a fault that is not closed.
     pub kept_for_faults: u32,
@@ -60,8 +59,8 @@ pub struct PruneCounts {
     pub over_bytes: u64,
 }
 
-/// A trace may be deleted when every fault it shows is closed; one that shows none, when its run has no fault
-/// that is not closed.
+/// SQL: trace `t` may be deleted if every fault it shows is closed; a trace that shows none, if every fault of its run
+/// is closed.
 const MAY_GO: &str = "
     NOT EXISTS (SELECT 1 FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
         WHERE o.trace = t.seq AND f.state <> 'closed')
@@ -69,15 +68,15 @@ const MAY_GO: &str = "
         OR NOT EXISTS (SELECT 1 FROM fault_occurrence o JOIN fault f ON f.seq = o.fault
             WHERE o.run = t.run AND f.state <> 'closed'))";
 
-/// Traces still to be sent to one of the servers, including those of interrupted runs, which the next sync
-/// puts into the outbox.
+/// SQL: trace `t` is still to be sent to a server. Traces of interrupted runs count, too: the next sync puts them into
+/// the outbox.
 const UNSENT: &str = "
     t.seq IN (SELECT row FROM outbox
         WHERE what = 'trace' AND seq > (SELECT min(sent_traces) FROM sync_server))
     OR r.verdict IS NULL AND EXISTS (SELECT 1 FROM sync_server)
         AND t.seq NOT IN (SELECT row FROM outbox WHERE what = 'trace')";
 
-/// The traces matching the rule, in a temporary table, with what happens to each.
+/// `fate` of a trace that matches the rule, in the temporary table `pruned`: deleted, or kept for one of three reasons.
 const GOES: i64 = 0;
 const FOR_FAULT: i64 = 1;
 const IS_UNSENT: i64 = 2;
@@ -86,7 +85,7 @@ const FITS: i64 = 3;
 /// Approximate bytes of a seal of a deletion.
 const SAID_BYTES: i64 = 512;
 
-/// Recordings from which no remaining trace was cut.
+/// SQL from `FROM` on: recordings from which no remaining trace was cut.
 const RECORDINGS: &str = "
     FROM recording AS r WHERE NOT EXISTS (SELECT 1 FROM trace t
         WHERE t.run = r.run AND t.recording = r.ordinal
@@ -130,11 +129,11 @@ impl Store {
     fn give_back_room(&self, pages_before: u64) -> Result<u64, StoreError> {
         let conn = self.file()?;
         let give = || -> rusqlite::Result<u64> {
-            // Each step frees one page; executed as a batch it would stop after the first.
+            // Each step frees one page; `execute_batch` would stop after the first.
             let mut vacuum = conn.prepare("PRAGMA incremental_vacuum")?;
             let mut steps = vacuum.query([])?;
             while steps.next()?.is_some() {}
-            // Another program may have recorded more meanwhile than was freed.
+            // The file may even have grown: another program may have recorded more than was freed.
             let freed = pages_before.saturating_sub(pragma(conn, "page_count")?);
             Ok(freed * pragma(conn, "page_size")?)
         };
@@ -164,7 +163,7 @@ fn plan(conn: &Connection, rule: &PruneRule) -> rusqlite::Result<PruneCounts> {
     )?;
     let over_bytes = over(conn, rule)?;
     if rule.max_file_bytes.is_some() {
-        // The oldest, until their size in whole pages suffices.
+        // Deletes the oldest traces until their size in whole pages suffices.
         let page_bytes = pragma(conn, "page_size")?;
         conn.execute(
             &format!(
@@ -197,7 +196,7 @@ fn plan(conn: &Connection, rule: &PruneRule) -> rusqlite::Result<PruneCounts> {
     })
 }
 
-/// Seals the deletion of each trace and recording, with the digest that their run was sealed with.
+/// Seals the deletion of each trace and recording, with the digest that the seal of its run has.
 fn seal_deleted(backend: &Backend, at_us: i64) -> SqlResult<()> {
     let recordings = format!("SELECT u.id, r.run, r.ordinal {RECORDINGS}");
     let recordings = recordings.replace("AS r WHERE", "AS r JOIN run u ON u.seq = r.run WHERE");
@@ -236,7 +235,7 @@ fn delete(conn: &Connection) -> rusqlite::Result<()> {
     conn.execute_batch("DROP TABLE temp.pruned")
 }
 
-/// Bytes by which the file would exceed the limit after freeing its free pages.
+/// Bytes by which the file exceeds the limit, not counting its free pages.
 fn over(conn: &Connection, rule: &PruneRule) -> rusqlite::Result<u64> {
     let Some(max_file_bytes) = rule.max_file_bytes else {
         return Ok(0);

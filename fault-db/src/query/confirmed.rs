@@ -1,7 +1,7 @@
-//! Confirmed repairs of all units: what diagnosis learns from the depot.
+//! Confirmed repairs of all units, from which diagnosis learns.
 //!
-//! A repair is confirmed when a run has proved it and its fault has not come back. What a person has set to verified by hand
-//! is a claim, from which nothing is learnt.
+//! A repair is confirmed when a run has proved it and its fault has not come back. A state that a person set to
+//! verified is a claim, from which nothing is learnt.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,11 +20,11 @@ pub struct RepairsOf<'a> {
     pub before_us: i64,
     /// Type of the units: the name of their configuration.
     pub unit_type: &'a str,
-    /// Faults of simulated units, and those that were injected, count as well.
+    /// Whether practice counts, too: faults of simulated units, and injected faults.
     pub practice: bool,
 }
 
-/// A fault of practice, `f`: one that a run of practice saw, as [`is_practice`] has it.
+/// SQL: whether fault `f` was seen by a run of practice, by the rule of [`is_practice`].
 macro_rules! practised {
     () => {
         "EXISTS (SELECT 1 FROM fault_occurrence o JOIN run x ON x.seq = o.run
@@ -32,9 +32,9 @@ macro_rules! practised {
     };
 }
 
-/// Confirmed repairs `r`, each with the event `c` that a run has confirmed it by, for [`RepairsOf`]: the text from
-/// `FROM` on. Each opening of a fault gives its last repair, and none where parts of several names were changed at
-/// once: which of them helped is not known.
+/// SQL from `FROM` on: confirmed repairs `r`, each with the event `c` by which a run confirmed it, for [`RepairsOf`].
+/// Of all repairs since a fault was opened the last counts; none counts if several parts were changed at once, as
+/// nobody knows which of them helped.
 macro_rules! confirmed {
     () => {
         concat!(
@@ -50,26 +50,26 @@ macro_rules! confirmed {
     };
 }
 
-/// Confirmed repairs of a part. What one run confirms of a part of one unit is one repair, however many faults it was for
-/// and however often it was written down.
+/// Confirmed repairs of a part. All that one run confirms of one part of a unit is one repair, for however many faults
+/// and however often it was recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ConfirmedRepairs {
     /// Repairs of this part.
     pub repairs: u32,
-    /// Repairs of any part, where a diagnosis had attributed the fault to this one.
+    /// Repairs (of any part) of faults that a diagnosis had attributed to this part before.
     pub named: u32,
-    /// Repairs counted in `named` that were of the part itself.
+    /// Repairs counted in `named` in which this part itself was repaired.
     pub right: u32,
-    /// Repairs of this part after which the fault came back, each unit's once.
+    /// Units in which a fault came back after a repair of this part.
     pub in_vain: u32,
 }
 
-/// A run that shows what a confirmed repair has settled.
+/// A run that shows a fault which a confirmed repair removed.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ConfirmedCase {
     /// The part that was repaired.
     pub part: String,
-    /// The last run before it in which the fault showed.
+    /// The last failed run before the repair that saw the fault.
     pub run: Id,
     /// Serial number of the unit.
     pub unit: String,
@@ -82,7 +82,7 @@ impl RunSummary {
     }
 }
 
-/// Whether a run with this source and these injected faults is practice: on a simulated unit, or with such faults.
+/// Whether a run is practice: on a simulated unit, or with injected faults.
 pub fn is_practice(source: &str, injected: Option<&str>) -> bool {
     source == "sim" || source.starts_with("lockstep:") || injected.is_some()
 }
@@ -146,7 +146,7 @@ impl Store {
         Ok(counted)
     }
 
-    /// The runs in which faults with a confirmed repair showed last before it, of `most` repairs, the last ones; in order.
+    /// For each of the last `most` confirmed repairs, the last failed run before it that saw the fault; sorted.
     ///
     /// # Errors
     /// The file cannot be read.

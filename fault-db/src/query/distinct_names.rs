@@ -4,8 +4,8 @@ use crate::error::StoreError;
 use crate::store::Store;
 use crate::values::record::part_name;
 
-/// Selects each value of an indexed column once, in order, from the rows `x` of a table for which a condition holds.
-/// It goes from one value to the next by the index, without reading all rows.
+/// SQL: each value of an indexed column once, in order, from the rows `x` of a table that meet a condition. The index
+/// leads from one value to the next, without reading all rows.
 pub(super) fn each_value(column: &str, table: &str, condition: &str) -> String {
     format!(
         "WITH RECURSIVE each_value(value) AS (
@@ -17,7 +17,7 @@ pub(super) fn each_value(column: &str, table: &str, condition: &str) -> String {
 }
 
 impl Store {
-    /// Every code a fault was ever recorded with, and its latest name.
+    /// Every code of a fault, with the code's latest name.
     pub fn known_codes(&self) -> Result<Vec<(i64, String)>, StoreError> {
         let codes = each_value("code", "fault", "true");
         let sql = format!(
@@ -41,7 +41,7 @@ impl Store {
         self.select("listing parts", sql, &[], |row| row.get(0))
     }
 
-    /// Every part a fault pointed at or a repair was made of, in one of its spellings.
+    /// Every part that a fault pointed at or that was repaired, in one of its spellings.
     pub fn known_parts(&self) -> Result<Vec<String>, StoreError> {
         let mut known = self.known_lrus()?;
         let sql = "SELECT DISTINCT part FROM repairs ORDER BY part";

@@ -25,9 +25,9 @@ pub struct FaultFilter {
     pub train: Option<String>,
     /// Number (decimal, or hex after `0x`) or name of the fault, or several of these, separated by commas.
     pub code: Option<String>,
-    /// The part it points at.
+    /// The part that the fault points at.
     pub lru: Option<String>,
-    /// The part it comes from: the attributed one, or else the one it points at.
+    /// The part that the fault comes from: the attributed one, or else the one it points at.
     pub cause: Option<String>,
     /// Severity.
     pub severity: Option<String>,
@@ -43,9 +43,9 @@ pub struct FaultFilter {
     pub since_us: Option<i64>,
     /// Seen before this time, µs since 1970.
     pub until_us: Option<i64>,
-    /// Words of a note on it, or of a note on a run that saw it.
+    /// Words of a note on the fault, or of a note on a run that saw it.
     pub note: Option<String>,
-    /// Most faults in a list.
+    /// Greatest number of faults in a list.
     pub limit: Option<u32>,
 }
 
@@ -68,22 +68,22 @@ pub(crate) struct Resolved<'a> {
     frequent: FrequentWords,
 }
 
-/// Whether the search words occur so often that it is faster to look through faults for them than to look up
-/// all their matches.
+/// Whether the search words occur so often that searching the texts of each listed fault is faster than looking up all
+/// matches.
 #[derive(Clone, Copy, Debug, Default)]
 struct FrequentWords {
     of_faults: bool,
     of_runs: bool,
 }
 
-/// Words are frequent if they match this many of the latest texts, within so many.
+/// Words are frequent if they match `FREQUENT` or more of the latest `WITHIN_LATEST` texts.
 const FREQUENT: u32 = 3000;
 const WITHIN_LATEST: i64 = 300_000;
-/// Longest list for which single faults are searched.
+/// Longest list for which the texts of each fault are searched.
 const FEW: u32 = 200;
 
 impl FaultFilter {
-    /// Looks the names up.
+    /// Looks up the stored numbers and spellings of the filter's names.
     pub(crate) fn resolve(&self, store: &Store) -> Result<Resolved<'_>, StoreError> {
         let unit = self.unit.as_deref().map(|serial| store.unit_seq(serial));
         let code = self.code.as_deref().map(|code| codes(store, code));
@@ -133,7 +133,7 @@ impl Resolved<'_> {
         self.filter
     }
 
-    /// The conditions on rows called `x`, without the span of time.
+    /// SQL conditions on rows `x`; `span` is the span of time in which an occurrence must lie.
     fn conditions(&self, backend: &Backend, of: FilteredTable, span: Option<Span>) -> Conditions {
         let filter = self.filter;
         let mut all = Conditions::default();
@@ -194,7 +194,7 @@ impl Resolved<'_> {
         all
     }
 
-    /// The conditions on an occurrence; one occurrence has to meet all of them.
+    /// SQL conditions on occurrences; one occurrence must meet all of them.
     fn of_occurrence(
         &self,
         of: FilteredTable,
@@ -235,8 +235,8 @@ impl Resolved<'_> {
                 .for_each(|condition| all.require(condition));
             return;
         }
-        // The fault's own row tells whether it was seen since a time; an end, or another condition, needs its
-        // occurrences.
+        // The fault's own row tells whether the fault was seen since a time; an end of the span, or another condition,
+        // needs its occurrences.
         let (since_us, until_us) = span.unwrap_or_default();
         if until_us.is_some() || !asked.is_empty() {
             for (compared, at_us) in [(">=", since_us), ("<", until_us)] {
@@ -250,7 +250,7 @@ impl Resolved<'_> {
             return;
         }
         let asked = asked.join(" AND ");
-        // With few runs their occurrences are read; otherwise each fault's occurrences.
+        // If few runs are asked for, their occurrences are read; otherwise the occurrences of each fault.
         all.require(match by_run {
             true => format!("{fault} IN (SELECT o.fault FROM fault_occurrence o WHERE {asked})"),
             false => format!(
@@ -259,8 +259,7 @@ impl Resolved<'_> {
         });
     }
 
-    /// The faults of a file with the words and the part's serial number asked for; `None` if neither is asked
-    /// for.
+    /// The faults of a file with the words, or the part's serial number, that the filter has; `None` if it has neither.
     pub fn faults_by_text(&self, backend: &Backend) -> SqlResult<Option<HashSet<i64>>> {
         let mut found = None;
         if let Some(search) = &self.search {
@@ -282,7 +281,7 @@ impl Resolved<'_> {
         Ok(found)
     }
 
-    /// The runs of the train and the one run asked for; `None` if neither is asked for.
+    /// The runs of the train, or the one run, that the filter has; `None` if it has neither.
     pub fn runs(&self, backend: &Backend) -> SqlResult<Option<HashSet<i64>>> {
         let FaultFilter { train, run, .. } = self.filter;
         if train.is_none() && run.is_none() {

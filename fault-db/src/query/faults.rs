@@ -13,7 +13,7 @@ use crate::values::event::{Correction, FaultEvent};
 use crate::values::fault_state::FaultState;
 use crate::values::record::{CAUSE, CauseRecord, DIAGNOSED, FreezeSample, REPAIR, RepairRecord};
 
-/// A fault in a list: one row per unit, code and part until it is closed.
+/// A fault in a list: one row for each unit, code and part, until the fault is closed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FaultSummary {
     /// The fault.
@@ -24,9 +24,9 @@ pub struct FaultSummary {
     pub code: i64,
     /// Name of the code.
     pub code_name: String,
-    /// The part it points at.
+    /// The part that the fault points at.
     pub lru: String,
-    /// The part it comes from, if a diagnosis or a person has attributed it.
+    /// The part that the fault comes from, if a diagnosis or a person has attributed it.
     pub cause: Option<String>,
     /// Severity.
     pub severity: String,
@@ -47,7 +47,7 @@ pub struct FaultSummary {
 }
 
 impl FaultSummary {
-    /// The part it counts for: the one it comes from, or else the one it points at.
+    /// The part that the fault counts for: the one it comes from, or else the one it points at.
     pub fn cause(&self) -> &str {
         self.cause.as_deref().unwrap_or(&self.lru)
     }
@@ -58,21 +58,21 @@ impl FaultSummary {
 pub struct FaultDetail {
     /// The fault.
     pub fault: FaultSummary,
-    /// The other faults of its case: of its unit, not closed, and from the same part.
+    /// The other faults of the fault's case: of the same unit, not closed, and from the same part.
     pub case: Vec<FaultSummary>,
     /// Occurrences of the fault, newest first, at most [`FaultDetail::MAX_OCCURRENCES`].
     pub occurrences: Vec<Occurrence>,
-    /// Events that stand, oldest first.
+    /// Events that are not withdrawn, oldest first.
     pub events: Vec<FaultEvent>,
     /// Withdrawn events, oldest first; they count for nothing.
     pub withdrawn: Vec<FaultEvent>,
 }
 
 impl FaultDetail {
-    /// Most occurrences that are read of a fault.
+    /// Greatest number of occurrences that are read of a fault.
     pub const MAX_OCCURRENCES: u32 = 200;
 
-    /// All its events, those that were withdrawn among them, oldest first.
+    /// All events of the fault, including withdrawn ones, oldest first.
     pub fn history(&self) -> Vec<&FaultEvent> {
         let mut events: Vec<_> = self.events.iter().chain(&self.withdrawn).collect();
         events.sort_by_key(|event| event.at_us);
@@ -91,7 +91,7 @@ pub struct Occurrence {
     pub step_index: Option<u32>,
     /// When, µs since 1970.
     pub at_us: i64,
-    /// When, on the bench's clock.
+    /// Bench time of the occurrence.
     pub bench_us: i64,
     /// Description, in English.
     pub message: String,
@@ -165,8 +165,7 @@ impl Store {
         )
     }
 
-    /// Events of a fault. An event that several stores have withdrawn has the correction made
-    /// first.
+    /// All events of a fault. An event that several stores have withdrawn has the first of these corrections.
     fn events(&self, fault: i64) -> SqlResult<Vec<FaultEvent>> {
         let mut events = self.backend.select(
             "SELECT e.id, e.kind, e.at_us, e.who, e.body, e.state, w.at_us, w.who, w.body

@@ -10,7 +10,7 @@ pub(crate) struct Conditions {
 }
 
 impl Conditions {
-    /// Adds a condition with `?` for a value, if there is a value for it.
+    /// Adds a condition in which `?` stands for the value; adds nothing without a value.
     pub fn add(&mut self, sql: &str, value: Option<impl Into<Value<'static>>>) {
         if let Some(value) = value {
             let place = self.place(value);
@@ -32,7 +32,7 @@ impl Conditions {
         });
     }
 
-    /// Binds a value; the placeholder to use.
+    /// Binds a value; returns its placeholder.
     pub fn place(&mut self, value: impl Into<Value<'static>>) -> String {
         self.values.push(value.into());
         format!("?{}", self.values.len())
@@ -47,7 +47,7 @@ impl Conditions {
         }
     }
 
-    /// The values, in order of their places.
+    /// The bound values, in the order of their placeholders.
     pub fn values(&self) -> &[Value<'_>] {
         &self.values
     }

@@ -1,11 +1,11 @@
-//! Resolves the names of a filter: units, codes and parts by their stored numbers and spellings.
+//! Resolves the names in a filter: codes to their numbers, parts to their stored spellings, texts to search words.
 
 use crate::backend::values;
 use crate::error::StoreError;
 use crate::schema::full_text::Search;
 use crate::store::Store;
 
-/// The words to search for.
+/// The search for a filter's text.
 ///
 /// # Errors
 /// [`StoreError::NoWords`] if the text has none.
@@ -13,7 +13,7 @@ pub(super) fn search(note: &str) -> Result<Search, StoreError> {
     Search::new(note).ok_or_else(|| StoreError::NoWords(note.to_owned()))
 }
 
-/// The numbers of codes: given as such, or by the name of the fault.
+/// The numbers of codes, which are given as numbers or by the names of faults, separated by commas.
 pub(super) fn codes(store: &Store, asked: &str) -> Result<Vec<i64>, StoreError> {
     let mut numbers = Vec::new();
     let mut known = None;
@@ -42,7 +42,7 @@ pub fn code_number(code: &str) -> Option<i64> {
     }
 }
 
-/// The stored spellings of a part's name, in capitals or not.
+/// The stored spellings of a part's name, whatever the case of its letters.
 pub(super) fn lrus(store: &Store, lru: &str) -> Result<Vec<String>, StoreError> {
     let mut known = store.known_lrus()?;
     known.retain(|known| known.eq_ignore_ascii_case(lru));

@@ -13,14 +13,14 @@ use crate::values::record::LOG_SOURCE;
 use crate::values::record::REPAIR;
 use crate::values::record::{RepairRecord, part_name};
 
-/// Two readings of a log may date the same entry this far apart, µs: the unit's clock and ours drift, and an
-/// answer takes time. From one power-up to the same event after the next a unit needs longer.
+/// Greatest difference, µs, of the times that two readings of a log give one entry: the unit's clock and this
+/// computer's drift, and an answer takes time. The same event after another power-up comes later than this.
 pub const SAME_ENTRY_US: i64 = 5_000_000;
 
 /// The history of one part in a unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PartHistory {
-    /// Runs in which a fault pointed at it since its last repair.
+    /// Runs since the part's last repair in which a fault pointed at the part.
     pub runs: u32,
     /// Last repair of the part.
     pub repair: Option<PartRepair>,
@@ -29,13 +29,13 @@ pub struct PartHistory {
 /// The last repair of a part.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PartRepair {
-    /// When.
+    /// Time of the repair, µs since 1970.
     pub at_us: i64,
     /// Whether the part was replaced; otherwise it was worked on.
     pub replaced: bool,
-    /// The faults it was repaired for, then or earlier, by number and part named.
+    /// The faults for which the part was repaired, this time or earlier: number, and the part that the fault names.
     pub faults: BTreeSet<(i64, String)>,
-    /// Whether one of these came back after its repair.
+    /// Whether one of these faults came back after its repair.
     pub came_back: bool,
 }
 
@@ -100,7 +100,7 @@ impl Store {
                 of_log: row.get::<&str>(1)?.starts_with(LOG_SOURCE)
             ))
         };
-        // No id is empty: nothing is left out then.
+        // No run has an empty id, so without `but` no run is left out.
         let but = but.map_or_else(Vec::new, |id| id.as_bytes().to_vec());
         let all = self.backend.select(
             "SELECT r.seq, r.source, f.code, f.lru, o.at_us, o.message
@@ -144,8 +144,8 @@ impl Store {
         )
     }
 
-    /// Whether an occurrence of this fault with this message is stored for the unit, at about this time or,
-    /// with `None`, at any time.
+    /// Whether the unit has a stored occurrence of this fault with this message, at about the time `at_us`, or at any
+    /// time if `None`.
     pub fn knows_occurrence(
         &self,
         unit: &str,
@@ -189,8 +189,8 @@ impl Store {
         )
     }
 
-    /// The times at which the unit itself, on a port, was under test: start and end, µs UTC. An interrupted
-    /// run lasted until its last step.
+    /// The spans in which the unit itself, on a port, was under test: start and end, µs UTC. An interrupted run lasted
+    /// until its last step.
     pub fn tested_spans(&self, unit: &str) -> Result<Vec<(i64, i64)>, StoreError> {
         self.select(
             "listing a unit's runs",
@@ -206,7 +206,7 @@ impl Store {
     }
 }
 
-/// Whether another run reports it, too: any test, or a log that was imported earlier.
+/// Whether another run reports this occurrence, too: any test, or a log that was imported earlier.
 fn told_before(seen: &Seen, all: &[Seen]) -> bool {
     all.iter().any(|other| {
         other.run != seen.run
@@ -217,7 +217,7 @@ fn told_before(seen: &Seen, all: &[Seen]) -> bool {
     })
 }
 
-/// Part names are compared as `part_name` writes them.
+/// Repairs by part; the names of parts are compared in the form that `part_name` gives.
 fn by_part(repairs: Vec<Repaired>) -> BTreeMap<String, Vec<Repaired>> {
     let mut parts: BTreeMap<String, Vec<Repaired>> = BTreeMap::new();
     for repaired in repairs {
@@ -227,8 +227,8 @@ fn by_part(repairs: Vec<Repaired>) -> BTreeMap<String, Vec<Repaired>> {
     parts
 }
 
-/// The last of a part's repairs, which are in order of time; a fault came back if it was seen after the last
-/// repair for it.
+/// The last of a part's repairs, which are in order of time. A fault came back if it was seen after the last repair
+/// made for it.
 fn part_repair(repairs: &[Repaired], seen: &[Seen]) -> Option<PartRepair> {
     let last = repairs.last()?;
     let mut repaired_at: BTreeMap<(i64, String), i64> = BTreeMap::new();

@@ -1,9 +1,9 @@
 //! The life of a unit, a train or a part by its serial number: where it was, and everything stored about it in order of time.
 //!
-//! All three are lives of units in spans of time. A unit's own is one span without ends. A train's are the *stays* of units
-//! in it: from the first run of a unit in the train to its first run in another one. A part's are the stays in units: from
-//! the repair that put it in to the one that took it out; of the unit's faults only those count that come from a part of this
-//! name.
+//! Each is made of units in spans of time. A unit's own life is one span without ends. A train's life is the *stays* of
+//! units in the train: from a unit's first run there to its first run in another train. A part's life is its stays in
+//! units: from the repair that put the part in to the repair that took it out; of the unit's faults only those count
+//! that come from a part of this name.
 
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ text_enum! {
 /// The life of a thing with a serial number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Life {
-    /// Kind of the thing.
+    /// What has the serial number.
     pub of: LifeOf,
     /// The serial number.
     pub serial: String,
@@ -44,7 +44,7 @@ pub struct Life {
     pub events: Vec<LifeEvent>,
 }
 
-/// Something that is stored about it.
+/// A stored event in the life of a unit, train or part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LifeEvent {
     /// When, µs since 1970.
@@ -77,7 +77,7 @@ pub struct LifeRun {
     pub operator: String,
     /// Where the unit was.
     pub source: String,
-    /// The train it was in; empty if not given.
+    /// The train the unit was in; empty if not given.
     pub train: String,
     /// Number of faults seen.
     pub faults: u32,
@@ -94,11 +94,11 @@ pub struct LifeFault {
     pub note: String,
     /// Findings behind the text as data, for an occurrence.
     pub findings: Option<String>,
-    /// The repair, if it is one.
+    /// The repair, if the event is one.
     pub repair: Option<RepairRecord>,
-    /// The part it comes from, if it says that.
+    /// The part that the fault comes from, if the event says so.
     pub cause: Option<CauseRecord>,
-    /// The faults, of one case where they are several.
+    /// The fault, or several faults of one case.
     pub faults: Vec<NamedFault>,
 }
 
@@ -111,12 +111,12 @@ pub struct NamedFault {
     pub code: i64,
     /// Name of the code.
     pub code_name: String,
-    /// The part it comes from, or points at.
+    /// The part that the fault comes from, or else points at.
     pub part: String,
 }
 
 impl Store {
-    /// The lives of everything that has this serial number: a unit, a train, a part; none if nothing has it.
+    /// The lives of everything with this serial number: a unit, a train, a part; empty if nothing has it.
     ///
     /// # Errors
     /// The file or the server cannot be read.
@@ -182,7 +182,7 @@ impl Store {
         )
     }
 
-    /// Events of faults in a span; what was written at several faults at once is one.
+    /// Events of a unit's faults in a span; an event written at several faults at once counts as one.
     fn fault_events_of(&self, span: &Span) -> SqlResult<Vec<LifeEvent>> {
         let mut together: BTreeMap<(i64, String, String, String), LifeFault> = BTreeMap::new();
         self.backend.each(

@@ -5,7 +5,7 @@ use crate::backend::Backend;
 use crate::history::graph_sql::standing;
 use crate::schema::full_text::Search;
 
-/// Selects the faults with these words in an event's text.
+/// SQL: the faults with these words in the text of an event.
 pub(super) fn faults_with_note(backend: &Backend, search: &Search, all: &mut Conditions) -> String {
     match backend {
         Backend::File(_) => {
@@ -26,7 +26,7 @@ pub(super) fn faults_with_note(backend: &Backend, search: &Search, all: &mut Con
     }
 }
 
-/// Whether a fault has an event with these words.
+/// SQL: whether a fault has an event with these words.
 pub(super) fn has_note(fault: &str, typed: String, all: &mut Conditions) -> String {
     let place = all.place(typed);
     format!(
@@ -36,7 +36,7 @@ pub(super) fn has_note(fault: &str, typed: String, all: &mut Conditions) -> Stri
     )
 }
 
-/// Whether a fault was seen by a run with these words in a note.
+/// SQL: whether a fault was seen by a run with these words in a note.
 pub(super) fn has_run_note(fault: &str, typed: String, all: &mut Conditions) -> String {
     let place = all.place(typed);
     format!(
@@ -45,7 +45,7 @@ pub(super) fn has_run_note(fault: &str, typed: String, all: &mut Conditions) -> 
     )
 }
 
-/// Selects the faults seen by runs with these words in a note.
+/// SQL: the faults seen by runs with these words in a note.
 pub(super) fn faults_with_run_note(
     backend: &Backend,
     search: &Search,
@@ -69,7 +69,8 @@ pub(super) fn faults_with_run_note(
     }
 }
 
-/// Selects the faults repaired with a part of this serial number: found by its words, then compared in full.
+/// SQL: the faults with a repair that took out or put in a part of this serial number, found by its words, then
+/// compared in full.
 pub(super) fn repaired_with(backend: &Backend, serial: &str, all: &mut Conditions) -> String {
     let Some(search) = Search::exactly(serial) else {
         return "SELECT seq FROM fault WHERE 1 = 0".to_owned();

@@ -14,13 +14,13 @@ pub struct RunOccurrence {
     pub code: i64,
     /// Name of the fault's code.
     pub code_name: String,
-    /// Part it points at.
+    /// Part that the fault points at.
     pub lru: String,
-    /// Step that was under way.
+    /// Index of the step that was under way, if any.
     pub step_index: Option<u32>,
-    /// When, on the bench's clock.
+    /// Bench time of the occurrence.
     pub bench_us: i64,
-    /// Trace that shows it.
+    /// Trace that shows the occurrence.
     pub trace_id: Option<Id>,
     /// Finding in English.
     pub message: String,

@@ -46,7 +46,7 @@ pub struct RunFilter {
     pub since_us: Option<i64>,
     /// Started before this time, µs since 1970.
     pub until_us: Option<i64>,
-    /// Most runs in a list.
+    /// Greatest number of runs in a list.
     pub limit: Option<u32>,
 }
 
@@ -85,22 +85,21 @@ pub struct RunSummary {
     pub wall_time_us: Option<i64>,
     /// Version of the program that ran it.
     pub app_version: String,
-    /// SHA-256 over its scripts.
+    /// SHA-256 over the run's scripts, in hex.
     pub scripts_sha256: String,
     /// SHA-256 of the unit configuration.
     pub unit_config_sha256: String,
     /// Faults injected on purpose.
     pub injected: Option<String>,
-    /// The earlier run whose open procedures it ran.
+    /// The earlier run whose unfinished procedures this run ran.
     pub continues: Option<Id>,
-    /// Connection to the unit: `harness`, or `ptu` for the maintenance port alone; none where no tester led the
-    /// run.
+    /// Connection to the unit: `harness`, or `ptu` for the maintenance port alone; `None` if no tester led the run.
     pub connection: Option<String>,
     /// Symptom reported with the unit: a name of `symptoms.toml`.
     pub symptom: Option<String>,
-    /// Content of the bench, its clock and its instruments: JSON of the caller's own.
+    /// What the bench, its clock and its instruments were: JSON that the caller defines.
     pub evidence: Option<String>,
-    /// Counts of the steps that the run has a result of; how many were due, the evidence of the run may say.
+    /// Counts of the steps with a result in this run; how many were due, `evidence` may say.
     pub recorded: StepCounts,
     /// Number of distinct faults seen.
     pub faults: u32,
@@ -117,13 +116,13 @@ pub struct RunDetail {
     pub steps: Vec<StepRecord>,
     /// The faults seen in it, in order of their first occurrence.
     pub faults: Vec<RunFault>,
-    /// The faults whose repair it has proved.
+    /// The faults whose repair the run has proved.
     pub settled: Vec<SettledFault>,
     /// Notes on it, oldest first.
     pub notes: Vec<RunNote>,
     /// Seal of the run; `None` before its end.
     pub seal: Option<RunSealed>,
-    /// Signature of the run, where it holds; whether the key is to be trusted is not looked at.
+    /// Signature of the run, if valid; whether the key can be trusted is not checked.
     pub signature: Option<Statement>,
 }
 
@@ -136,9 +135,9 @@ pub struct RunFault {
     pub code: i64,
     /// Name of the code.
     pub code_name: String,
-    /// The part it points at.
+    /// The part that the fault points at.
     pub lru: String,
-    /// The part it comes from, if a diagnosis or a person has attributed it.
+    /// The part that the fault comes from, if a diagnosis or a person has attributed it.
     pub cause: Option<String>,
     /// Severity.
     pub severity: String,
@@ -152,7 +151,7 @@ pub struct RunFault {
     pub first_bench_us: i64,
     /// Occurrences in this run.
     pub occurrences: u32,
-    /// First trace of it in this run.
+    /// First trace of the fault in this run.
     pub trace_id: Option<Id>,
 }
 
@@ -296,7 +295,7 @@ impl Store {
     }
 }
 
-/// The rows of [`Store::summary`].
+/// The SQL that selects the columns which [`Store::summary`] reads.
 fn select_runs() -> String {
     format!(
         "SELECT r.id, u.serial, u.kind, u.config_name, r.line, r.seed, r.operator, r.source,

@@ -17,9 +17,9 @@ pub struct Stay {
     pub unit: String,
     /// Number of the train, or name of the part.
     pub place: String,
-    /// Since when; `None`: it was there before anything was stored.
+    /// Start of the stay, µs since 1970; `None`: before anything was stored.
     pub from_us: Option<i64>,
-    /// End of the stay; `None`: it lasts.
+    /// End of the stay, µs since 1970; `None`: the stay lasts.
     pub until_us: Option<i64>,
     /// Runs of the unit in this time.
     pub runs: u32,
@@ -31,12 +31,12 @@ pub(super) struct Span {
     pub serial: String,
     pub from_us: i64,
     pub until_us: i64,
-    /// Only what concerns the part of this name.
+    /// Restricts the span to what concerns the part of this name.
     pub part: Option<String>,
 }
 
 impl Store {
-    /// The trains a unit was in, and its whole life.
+    /// The trains a unit was in, and the one span of its whole life.
     pub(super) fn stays_of_unit(&self, serial: &str) -> SqlResult<(Vec<Stay>, Vec<Span>)> {
         let found = self.backend.first(
             "SELECT seq FROM unit WHERE serial = ?1",
@@ -56,7 +56,7 @@ impl Store {
         Ok((self.trains_of(unit, serial)?, vec![span]))
     }
 
-    /// The units that were in a train.
+    /// The stays of units in a train, with a span for each.
     pub(super) fn stays_in_train(&self, train: &str) -> SqlResult<(Vec<Stay>, Vec<Span>)> {
         let units = self.backend.select(
             "SELECT DISTINCT u.seq, u.serial FROM run r JOIN unit u ON u.seq = r.unit
@@ -68,7 +68,7 @@ impl Store {
         for (unit, serial) in units {
             let in_trains = self.trains_of(unit, &serial)?.into_iter();
             for stay in in_trains.filter(|stay| stay.place == train) {
-                // At its end the unit is in the next train already.
+                // The run at the end of the stay is the first in the next train.
                 let until_us = stay.until_us.map_or(i64::MAX, |until_us| until_us - 1);
                 spans.push(Span {
                     unit,
@@ -110,7 +110,7 @@ impl Store {
         Ok(stays)
     }
 
-    /// The units a part was in, by the repairs that put it in and took it out.
+    /// The stays of a part in units, by the repairs that put it in and took it out, with a span for each.
     pub(super) fn stays_of_part(&self, serial: &str) -> SqlResult<(Vec<Stay>, Vec<Span>)> {
         let mut all = Conditions::default();
         let faults = repaired_with(&self.backend, serial, &mut all);
@@ -146,7 +146,7 @@ impl Store {
             let ended_now = |(in_unit, stay): &(i64, Stay)| {
                 *in_unit == unit && stay.place == part && stay.until_us == Some(at_us)
             };
-            // A repair of a case is written at each of its faults, and says the same each time.
+            // A repair of a case is stored at each of its faults, each time with the same text.
             if is_it(&repair.serial_old) && !stays.iter().any(ended_now) {
                 match stays.iter_mut().rev().find(is_open) {
                     Some((_, open)) => open.until_us = Some(at_us),

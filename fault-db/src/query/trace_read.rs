@@ -17,7 +17,7 @@ const DOING: &str = "reading a trace";
 
 /// Blobs up to this size, bytes, are read whole, which is faster than reading parts of them.
 const FETCHED_WHOLE: usize = 32 << 10;
-/// Bytes of a blob that are read for its directory; a longer one is read again.
+/// Bytes read of a blob to get its directory; a longer directory takes a second read.
 const HEAD_GUESS: usize = 4096;
 
 /// The description of a trace, without its samples.
@@ -37,9 +37,9 @@ pub struct TraceHead {
     pub period_us: i64,
     /// Rows.
     pub rows: usize,
-    /// The row at which it was triggered.
+    /// The row at which the trace was triggered.
     pub trigger_row: Option<u32>,
-    /// The trace ends before its window did: the link dropped or the program was closed.
+    /// The trace ends earlier than planned: the link dropped or the program was closed.
     pub partial: bool,
     /// Some samples are missing.
     pub gaps: bool,
@@ -72,12 +72,11 @@ impl Store {
         self.read_trace(id, Some(names), None)
     }
 
-    /// Some rows of the named channels, in that order; of all channels if none is named. Rows that the trace
-    /// does not have are left out. Other channels, and distant rows of a long trace, are neither read nor
+    /// Some rows of the named channels, in the order of the names; of all channels if none is named. Rows that the
+    /// trace does not have are left out. Other channels, and distant rows of a long trace, are neither read nor
     /// decompressed.
     ///
-    /// Times and the trigger's row refer to the first row returned; there is no trigger if its row is not
-    /// among them.
+    /// Times and the trigger's row count from the first row returned; there is no trigger if its row is not returned.
     pub fn trace_window(
         &self,
         id: Id,
@@ -127,7 +126,7 @@ impl Store {
         names: Option<&[&str]>,
         rows: Option<Range<usize>>,
     ) -> Result<TraceData, StoreError> {
-        // A server's connection answers one query at a time, so the samples come last.
+        // A server's connection answers one query at a time, so the samples are read last.
         let row = self.row_of(id)?;
         let all = self.channel_set(id, row.channel_set)?;
         let failed = |source| StoreError::Trace { trace: id, source };
@@ -178,7 +177,7 @@ impl Store {
             let (Ok(hash), Ok(data)) = (row.get::<&[u8]>(0), row.get::<&[u8]>(1)) else {
                 return Ok(Err(TraceError::Checksum));
             };
-            // The checksums of the parts suffice, where there are some.
+            // If only a part is wanted, the checksums of its pieces suffice.
             let whole = !is_part;
             let columns = self.codec().decode(data, shape, wanted, rows.clone());
             // Damage with a known place is reported before damage without.

@@ -1,4 +1,4 @@
-//! Lists traces, and shows how one is stored.
+//! Lists traces, and stores them.
 
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -24,11 +24,11 @@ pub struct TraceSummary {
     pub t0_us: i64,
     /// Time from row to row.
     pub period_us: i64,
-    /// Rows.
+    /// Number of rows.
     pub rows: u32,
     /// Size in the file, bytes.
     pub size_bytes: u64,
-    /// Fault occurrences it shows.
+    /// Number of fault occurrences that the trace shows.
     pub occurrences: u32,
 }
 
@@ -64,7 +64,7 @@ impl Store {
         )
     }
 
-    /// Compresses and commits a trace of a run, and links it to occurrences; returns its digest, too.
+    /// Compresses and commits a trace of a run, and links it to occurrences; returns the trace's digest.
     pub(crate) fn insert_trace(
         &self,
         id: Id,
@@ -100,7 +100,7 @@ impl Store {
         .to_vec();
         let digest = seal::trace::of(&fields, occurrences);
         let channel_set = self.write(DOING, |_| {
-            // A list is never changed or deleted, so a known one need not be looked up.
+            // A channel list is never changed or deleted, so a known one need not be looked up.
             let channel_set = match known {
                 Some(seq) => seq,
                 None => self.ask(DOING, |file| channel_set_seq(file, &json))?,

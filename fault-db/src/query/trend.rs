@@ -37,7 +37,7 @@ pub struct TrendQuery {
 /// One value of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrendPoint {
-    /// When: the run's start. Within a run, points come in the order of its steps.
+    /// Start of the run, µs since 1970. Points of one run come in the order of its steps.
     pub at_us: i64,
     /// The run.
     pub run_id: Id,
@@ -64,13 +64,13 @@ pub struct TrendDay {
     pub n: u32,
     /// Their mean.
     pub mean: f64,
-    /// The sum of their squares.
+    /// Sum of the squares of the values.
     pub sum_of_squares: f64,
-    /// Smallest.
+    /// Smallest value.
     pub least: f64,
-    /// Greatest.
+    /// Greatest value.
     pub most: f64,
-    /// Number of values not passed.
+    /// Number of values whose verdict is not `passed`.
     pub not_passed: u32,
 }
 
@@ -83,11 +83,11 @@ pub struct TrendUnit {
     pub n: u32,
     /// Their mean.
     pub mean: f64,
-    /// Slope in a day by least squares; `None` for fewer than two times.
+    /// Change in a day, by least squares; `None` for fewer than two different times.
     pub slope_per_day: Option<f64>,
 }
 
-/// A step that measures it, with the limits it had in one of the latest runs.
+/// A step that makes the measurement, with its limits in one of the latest runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrendStep {
     /// The procedure.
@@ -115,7 +115,7 @@ impl Store {
     /// Every value, oldest first.
     ///
     /// # Errors
-    /// No such measurement or unit; or of the file or server.
+    /// There is no such measurement or unit, or the file or server cannot be read.
     pub fn trend(&self, query: &TrendQuery) -> Result<Vec<TrendPoint>, StoreError> {
         let mut conditions = self.measured(query)?;
         conditions.require("u.seq = r.unit");
@@ -141,7 +141,7 @@ impl Store {
             && query.line.is_none()
             && query.train.is_none()
             && query.step.is_none();
-        // Counts are kept for whole days; at both ends of the span an incomplete day may remain.
+        // The file keeps sums of whole days; at both ends of the span an incomplete day may remain.
         let low = query.since_us.map_or(i64::MIN, |us| utc_day(us - 1) + 1);
         let high = query.until_us.map_or(i64::MAX, utc_day);
         if matches!(&self.backend, Backend::Server(_)) || !is_fleet || low >= high {
@@ -176,7 +176,7 @@ impl Store {
         Ok(days)
     }
 
-    /// Days of the trend, from single values.
+    /// The values day by day, computed from single values.
     fn days(&self, query: &TrendQuery) -> Result<Vec<TrendDay>, StoreError> {
         let mut conditions = self.measured(query)?;
         conditions.require("m.value IS NOT NULL");
@@ -311,10 +311,10 @@ impl Store {
         })
     }
 
-    /// The last repair of a part of this unit, µs since 1970.
+    /// Time of the last repair of a part of this unit, µs since 1970.
     ///
     /// # Errors
-    /// No such unit; or of the file or server.
+    /// There is no such unit, or the file or server cannot be read.
     pub fn last_repair(&self, unit: &str, part: &str) -> Result<Option<i64>, StoreError> {
         let unit = self.unit_seq(unit)?;
         let found = self.first(

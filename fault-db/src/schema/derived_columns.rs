@@ -1,10 +1,10 @@
-//! Columns derived from the text of events and notes: search words, and the part that a repair replaced.
-//! In a file triggers fill them; for a server they are computed here.
+//! Columns derived from the texts of events and notes: search words, and the part that an event names. In a file
+//! triggers fill these columns; for a server they are computed here.
 
 use crate::schema::full_text;
 use crate::values::record::{CAUSE, DIAGNOSED, REPAIR, RepairRecord, part_name};
 
-/// PostgreSQL limits a `tsvector` to one megabyte, and positions to 16 383.
+/// Longest text whose words are indexed, bytes: a `tsvector` holds at most one megabyte and positions up to 16 383.
 const MOST_TEXT_BYTES: usize = 100_000;
 
 /// The search words of an event, as text of a `tsvector`; `None` for events made by the program.
@@ -13,7 +13,7 @@ pub(crate) fn event_words(kind: &str, body: &str) -> Option<String> {
     has_words.then(|| note_words(&said(body)))
 }
 
-/// The search words of a note, as text of a `tsvector`; of a very long note those of its beginning.
+/// The search words of a note, as the text of a `tsvector`; of a very long note only its beginning counts.
 pub(crate) fn note_words(text: &str) -> String {
     let mut end = text.len().min(MOST_TEXT_BYTES);
     while !text.is_char_boundary(end) {
@@ -22,12 +22,12 @@ pub(crate) fn note_words(text: &str) -> String {
     full_text::for_server(&text[..end])
 }
 
-/// The part that an event names, in lower case: a repair the one replaced, an attribution the cause.
+/// The part that an event names, in lower case: a repair the repaired part, an attribution the cause.
 pub(crate) fn part(kind: &str, body: &str) -> Option<String> {
     matches!(kind, REPAIR | CAUSE | DIAGNOSED).then(|| part_of(body))
 }
 
-/// The readable text of an event's body: of a repair its fields.
+/// The text of an event's body: of a repair its fields, one on each line.
 pub(crate) fn said(body: &str) -> String {
     match serde_json::from_str::<RepairRecord>(body) {
         Ok(repair) => {
@@ -41,7 +41,7 @@ pub(crate) fn said(body: &str) -> String {
     }
 }
 
-/// The part named in a repair's body, in lower case; empty if there is none.
+/// The part named in the body of a repair or an attribution, in lower case; empty if there is none.
 pub(crate) fn part_of(body: &str) -> String {
     let repair = serde_json::from_str::<serde_json::Value>(body).unwrap_or_default();
     let part = repair.get("part").and_then(serde_json::Value::as_str);

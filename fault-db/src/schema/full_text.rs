@@ -1,4 +1,4 @@
-//! Full-text search with the same words in a file and on a server.
+//! Full-text search that finds the same in a file and on a server.
 //!
 //! A word is a run of letters and digits, in lower case. A Korean, Chinese or Japanese character is a word
 //! of its own, because a search for 교체 has to find 부품교체함. Words that are adjacent in the search text
@@ -6,7 +6,7 @@
 
 use unicode_normalization::UnicodeNormalization as _;
 
-/// Longest word that is indexed; longer ones are not searched for.
+/// Longest word that is indexed, bytes; longer words are not searched for.
 const MOST_BYTES: usize = 200;
 
 /// The words of a text, in order.
@@ -38,12 +38,12 @@ pub(crate) fn words(text: &str) -> Vec<String> {
     found
 }
 
-/// A search text: all its phrases have to be found.
+/// A search text: a match has all its phrases.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Search(Vec<Vec<String>>);
 
 impl Search {
-    /// Each part between blanks is a phrase; `None` without any word.
+    /// A search in which each part between blanks is a phrase; `None` without any word.
     pub fn new(text: &str) -> Option<Self> {
         let phrases: Vec<_> = text
             .split_whitespace()
@@ -53,7 +53,7 @@ impl Search {
         (!phrases.is_empty()).then_some(Self(phrases))
     }
 
-    /// The whole text is one phrase; `None` without any word.
+    /// A search in which the whole text is one phrase; `None` without any word.
     pub fn exactly(text: &str) -> Option<Self> {
         let words = words(text);
         (!words.is_empty()).then_some(Self(vec![words]))
@@ -102,7 +102,7 @@ pub(crate) fn for_server(text: &str) -> String {
     places.join(" ")
 }
 
-/// The last word matches as a prefix, unless it is a single Hangul, kana or Chinese character.
+/// Whether the last word matches as a prefix: not if it is a single Hangul, kana or Chinese character.
 fn goes_on(words: &[String]) -> bool {
     words
         .last()
@@ -110,7 +110,7 @@ fn goes_on(words: &[String]) -> bool {
         .is_some_and(|letter| !stands_alone(letter))
 }
 
-/// Hangul, kana and Chinese characters.
+/// Whether a character is a word by itself: Hangul, kana and Chinese characters.
 fn stands_alone(letter: char) -> bool {
     matches!(letter,
         '\u{1100}'..='\u{11ff}' | '\u{3040}'..='\u{30ff}' | '\u{3130}'..='\u{318f}'

@@ -11,11 +11,11 @@ use crate::error::{Damage, SchemaObject};
 use crate::schema::sql_functions;
 use crate::schema::{self, SCHEMA_VERSION};
 
-/// Type and name of a table, index, view or trigger; the table it belongs to, and its SQL.
+/// By type and name of a table, index, view or trigger: its table and its SQL.
 type Objects = BTreeMap<(String, String), (String, String)>;
 
-/// Restricts the SQL stored in a file to what this program's own needs, and protects SQLite's shadow tables
-/// from direct writes. Readers fire no triggers.
+/// Restricts the SQL stored in a file to what this program's own SQL needs, and protects SQLite's shadow tables from
+/// direct writes. A reader's connection fires no triggers.
 pub(crate) fn harden(conn: &Connection, triggers: bool) -> Result<()> {
     conn.set_db_config(DbConfig::SQLITE_DBCONFIG_DEFENSIVE, true)?;
     conn.set_db_config(DbConfig::SQLITE_DBCONFIG_TRUSTED_SCHEMA, false)?;
@@ -53,7 +53,7 @@ fn named((kind, name): &(String, String), on: Option<String>) -> SchemaObject {
     }
 }
 
-/// The objects of a file of this version as the program makes them.
+/// The objects of this schema version, as the program makes them.
 fn made(version: i32) -> Result<&'static Objects> {
     static MADE: [OnceLock<Objects>; SCHEMA_VERSION as usize + 1] =
         [const { OnceLock::new() }; SCHEMA_VERSION as usize + 1];
@@ -90,7 +90,7 @@ fn objects(conn: &Connection) -> Result<Objects> {
     Ok(objects)
 }
 
-/// SQLite's own shadow tables of a full-text index.
+/// Whether a table is one of SQLite's own shadow tables of a full-text index.
 fn is_of_search(name: &str) -> bool {
     ["event_words_", "note_words_"]
         .iter()

@@ -11,13 +11,13 @@ pub(crate) mod views;
 use rusqlite::Connection;
 use rusqlite::config::DbConfig;
 
-/// Marks a SQLite file as ours: the letters `FTDB`.
+/// SQLite's application id of this program's files: the letters `FTDB`.
 pub const APPLICATION_ID: i32 = 0x4654_4442;
 
 /// The schema version this crate reads and writes.
 pub const SCHEMA_VERSION: i32 = STEPS.len() as i32;
 
-/// The first creates all; each later one changes what the one before it left.
+/// SQL of each schema version: the first creates everything, each later one changes the schema before it.
 const STEPS: &[&str] = &[concat!(
     include_str!("tables.sql"),
     include_str!("triggers.sql"),
@@ -43,7 +43,7 @@ pub(crate) fn create(conn: &Connection, version: i32) -> Result<(), rusqlite::Er
 
 fn bring_to(conn: &Connection, steps: &[&str]) -> Result<(), rusqlite::Error> {
     let from = usize::try_from(user_version(conn)?).unwrap_or(steps.len());
-    // This is the program's own SQL: a step may widen the check of a column, which no `ALTER TABLE` does.
+    // Off for the program's own SQL, which may widen the check of a column, as no `ALTER TABLE` can.
     let defensive = conn.db_config(DbConfig::SQLITE_DBCONFIG_DEFENSIVE)?;
     conn.set_db_config(DbConfig::SQLITE_DBCONFIG_DEFENSIVE, false)?;
     let steps_left = steps.get(from..).unwrap_or_default();
@@ -71,7 +71,7 @@ mod tests {
          CREATE INDEX run_by_depot ON run(depot);",
     ];
 
-    /// Statements that make `count` runs of a unit.
+    /// SQL that inserts `count` runs of a unit.
     fn runs(count: u32) -> String {
         format!(
             "INSERT INTO unit VALUES (1, 'ATC-1', 'atc', 'sg100', '{{}}');
@@ -107,9 +107,9 @@ mod tests {
         assert_eq!(last, "depot 2000");
     }
 
-    /// Goal: a program killed in the middle of bringing a file up to date leaves the file it found.
-    /// Method: the disk as it would be then, with part of the work in the log and no commit: a page cache
-    /// too small for it drives it there.
+    /// Goal: a program killed in the middle of a migration leaves the file as it was. Method: the disk as it would be
+    /// then, with part of the work in the log and no commit; a page cache that is too small drives that part to the
+    /// disk.
     #[test]
     fn a_file_whose_migration_was_interrupted_is_unchanged() {
         let dir = tempfile::tempdir().expect("a directory");
@@ -119,7 +119,7 @@ mod tests {
         conn.execute_batch("PRAGMA journal_mode = WAL")
             .expect("set");
         bring_up_to_date(&conn).expect("created");
-        // Enough of them also while caches of other tests lend this one pages, so that it writes later.
+        // Enough runs to overflow the page cache, even while caches of other tests lend it pages.
         conn.execute_batch(&runs(20_000)).expect("runs");
         let begin = "PRAGMA wal_checkpoint(TRUNCATE); PRAGMA cache_size = 5; BEGIN IMMEDIATE";
         conn.execute_batch(begin).expect("begun");

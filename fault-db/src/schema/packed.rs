@@ -1,11 +1,11 @@
-//! Rows packed by column, to be read faster than SQLite returns rows one by one: a question about a million
-//! occurrences goes through all of them.
+//! Rows packed by column, which are read faster than SQLite returns rows one by one: statistics read all of a million
+//! occurrences.
 //!
-//! A column holds whole numbers or texts. A number is stored as its distance from the least of the column, a
-//! text as its place among the column's texts; both plus one, 0 is NULL, in as few bytes as the greatest
-//! needs. Layout, all numbers little-endian: rows `u32`, columns `u8`; of each column the base `i64`, bytes per
-//! row `u8`, number of texts `u32`, each text as length `u32` and UTF-8, then the rows. Eight zero bytes end it, so
-//! that every number can be read as eight bytes.
+//! A column holds whole numbers or texts. A number is stored as its distance from the column's least number, plus one;
+//! a text as its index among the column's texts, plus one; 0 is NULL. All take as few bytes as the greatest needs.
+//! Layout, all numbers little-endian: rows `u32`, columns `u8`; of each column the base `i64`, bytes per row `u8`,
+//! number of texts `u32`, each text as length `u32` and UTF-8, then the rows. Eight zero bytes end it, so that every
+//! number can be read as eight bytes.
 
 use std::collections::HashMap;
 
@@ -15,7 +15,7 @@ use rusqlite::types::ValueRef;
 
 use crate::backend::{Backend, Row, SqlResult, values};
 
-/// Faults of a block `p`, as the schema packs them.
+/// SQL: packs the faults of a block `p`.
 const FAULTS: &str =
     "SELECT packed_rows(f.seq, f.unit, f.code, f.lru, f.line, f.severity, f.state, f.first_at_us,
         f.last_at_us, f.closed_at_us, f.repairs, f.cause)
@@ -25,13 +25,13 @@ const OCCURRENCES: &str = "SELECT packed_rows(o.fault, o.at_us, o.line, s.proced
     FROM fault_occurrence o LEFT JOIN step s ON s.run = o.run AND s.step_index = o.step_index
     WHERE o.fault BETWEEN p.block * 32 AND p.block * 32 + 31";
 
-/// Their repairs, found by the unit, code and part of each fault.
+/// SQL: packs the repairs of a block's faults, found by the unit, code and part of each fault.
 const REPAIRS: &str = "SELECT packed_rows(r.fault, r.at_us, r.opened_at_us, r.back_at_us)
     FROM fault f CROSS JOIN repair r
     WHERE f.seq BETWEEN p.block * 32 AND p.block * 32 + 31
         AND r.unit = f.unit AND r.code = f.code AND r.lru = f.lru AND r.fault = f.seq";
 
-/// Passes the packed faults, occurrences and repairs of each block of a file.
+/// Calls `take` with the packed faults, occurrences and repairs of each block of a file.
 pub(crate) fn each_block(
     backend: &Backend,
     take: impl FnMut(Row<'_>) -> SqlResult<()>,
@@ -43,11 +43,11 @@ pub(crate) fn each_block(
     backend.each(&sql, &[], take)
 }
 
-/// Up to this many blocks are left empty at the end of a run: the next runs change the same blocks again, and a
-/// reader packs them for itself in a few milliseconds.
+/// Up to this many blocks may stay empty at the end of a run: the next runs change the same blocks again, and a reader
+/// packs them for itself in a few milliseconds.
 const FEW_EMPTY: u32 = 64;
 
-/// Packs the empty blocks of a file if they are more than a few. A server has none.
+/// Packs the empty blocks of a file if they are more than [`FEW_EMPTY`]. A server has none.
 pub(crate) fn fill_empty_blocks(backend: &Backend) -> SqlResult<()> {
     let Backend::File(_) = backend else {
         return Ok(());
@@ -74,7 +74,7 @@ pub(crate) enum Cell {
     Text(String),
 }
 
-/// Packs rows, which are sorted first: the same rows make the same bytes, in whatever order they come.
+/// Packs rows. They are sorted first: the same rows in any order give the same bytes.
 pub(crate) fn pack(mut rows: Vec<Vec<Cell>>) -> Vec<u8> {
     rows.sort_unstable();
     let columns = rows.first().map_or(0, Vec::len);
@@ -132,12 +132,12 @@ pub(crate) struct Column<'a> {
     width: usize,
     mask: u64,
     pub texts: Vec<&'a str>,
-    /// The rows, and what is behind them.
+    /// The bytes of the rows, and of everything behind them.
     codes: &'a [u8],
 }
 
 impl<'a, const COLUMNS: usize> Packed<'a, COLUMNS> {
-    /// Reads what [`pack`] made of rows with as many columns; `None` for anything else.
+    /// Reads bytes that [`pack`] made of rows with `COLUMNS` columns; `None` for anything else.
     pub fn read(bytes: &'a [u8]) -> Option<Self> {
         let mut rest = bytes;
         let rows = take_u32(&mut rest)?;
@@ -146,7 +146,7 @@ impl<'a, const COLUMNS: usize> Packed<'a, COLUMNS> {
         for _ in 0..columns {
             read.push(Column::read(&mut rest, rows)?);
         }
-        // Without a row the number of columns is not known either.
+        // Without rows, `pack` does not know the number of columns either.
         if rows == 0 && columns == 0 {
             read.resize(COLUMNS, Column::default());
         }
@@ -180,7 +180,7 @@ impl<'a> Column<'a> {
         })
     }
 
-    /// The stored code: 0 is NULL, of a text its place among the texts plus one.
+    /// The stored code: 0 is NULL; a text has its index among the column's texts plus one.
     pub fn code(&self, row: usize) -> usize {
         (self.raw(row) as usize).min(self.texts.len())
     }

@@ -51,12 +51,12 @@ pub(crate) fn register(conn: &Connection) -> rusqlite::Result<()> {
     })
 }
 
-/// NULL in, NULL out.
+/// Applies `number` to the argument; NULL gives NULL.
 fn at(context: &Context<'_>, number: fn(i64) -> i64) -> rusqlite::Result<Option<i64>> {
     Ok(context.get::<Option<i64>>(0)?.map(number))
 }
 
-/// The number of the day of a time since 1970, UTC.
+/// Number of the UTC day of a time, counted from 1970.
 pub(crate) fn utc_day(at_us: i64) -> i64 {
     at_us.div_euclid(DAY_US)
 }
@@ -67,7 +67,7 @@ pub(crate) fn utc_month(at_us: i64) -> i64 {
     (i64::from(at.year()) - 1970) * 12 + i64::from(at.month0())
 }
 
-/// The beginning of a month, counted from January 1970.
+/// Beginning of a month, which is numbered from January 1970; µs since 1970.
 pub(crate) fn month_start_us(month: i64) -> i64 {
     let year = i32::try_from(1970 + month.div_euclid(12)).unwrap_or(i32::MAX);
     let first = NaiveDate::from_ymd_opt(year, month.rem_euclid(12) as u32 + 1, 1);

@@ -1,10 +1,10 @@
-//! Statistics for questions in SQL that SQLite does not have: `median(x)`, `percentile(x, p)` with `p` from 0 to 100,
-//! `stddev(x)` of a sample, `sqrt(x)`. NULL is left out; of nothing they are NULL.
+//! Statistics for SQL queries, which SQLite lacks: `median(x)`, `percentile(x, p)` with `p` from 0 to 100, `stddev(x)`
+//! of a sample, `sqrt(x)`. NULL is left out; without values the result is NULL.
 
 use rusqlite::functions::{Aggregate, Context, FunctionFlags};
 use rusqlite::{Connection, Error, Result};
 
-/// Values of one group that are kept in memory, 32 MB.
+/// Greatest number of values of a group that are kept in memory: 32 MB.
 const MOST_VALUES: usize = 4_000_000;
 
 pub(crate) fn register(conn: &Connection, flags: FunctionFlags) -> Result<()> {
@@ -17,7 +17,7 @@ pub(crate) fn register(conn: &Connection, flags: FunctionFlags) -> Result<()> {
     conn.create_aggregate_function("stddev", 1, flags, StandardDeviation)
 }
 
-/// The value below which a share of the values lies, between two of them in proportion.
+/// The value below which a share of the values lies, interpolated between two values.
 struct Percentile;
 
 /// All values of a group, and the share.
@@ -64,8 +64,7 @@ impl Aggregate<Values, Option<f64>> for Percentile {
     }
 }
 
-/// Standard deviation of a sample: over one less than the number of values. By Welford's sums,
-/// which lose no digits.
+/// Standard deviation of a sample (divisor: number of values less one), by Welford's sums, which lose no digits.
 struct StandardDeviation;
 
 #[derive(Default)]

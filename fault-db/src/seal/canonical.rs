@@ -1,5 +1,4 @@
-//! The canonical byte encoding of sealed fields, so that different contents never give the same bytes.
-//! SEALS.md describes it.
+//! The canonical byte encoding of sealed fields, which gives different contents different bytes. SEALS.md describes it.
 
 use sha2::{Digest as _, Sha256};
 
@@ -10,12 +9,12 @@ use crate::backend::{Backend, Field, SqlResult, Value};
 pub(crate) struct CanonicalHash(Sha256);
 
 impl CanonicalHash {
-    /// Without a prefix: for the table of a run.
+    /// A hash without a prefix: for a table of a run.
     pub fn new() -> Self {
         Self(Sha256::new())
     }
 
-    /// Hash of an entry, with a prefix: the kind of entry and the digest version.
+    /// A hash with a prefix (kind of entry and digest version): for an entry.
     pub fn of(what: &str) -> Self {
         let mut canon = Self::new();
         canon.text(what);
@@ -35,13 +34,13 @@ impl CanonicalHash {
         self.take(Field::Bytes(bytes));
     }
 
-    /// Values about to be stored.
+    /// Adds values about to be stored.
     pub fn values(&mut self, values: &[Value<'_>]) {
         values.iter().for_each(|value| self.take(value.field()));
     }
 
-    /// A field as a database returns it: NaN is stored as NULL, and −0 as 0. PostgreSQL stores no NUL
-    /// character in text.
+    /// Adds a field as a database would return it: NaN as NULL, −0 as 0, and text without NUL characters, which
+    /// PostgreSQL does not store.
     pub fn take(&mut self, field: Field<'_>) {
         match field {
             Field::Real(value) if value.is_nan() => self.raw(Field::Null),
@@ -53,7 +52,7 @@ impl CanonicalHash {
         }
     }
 
-    /// A field with its type and length.
+    /// Adds a field with its type and length.
     pub fn raw(&mut self, field: Field<'_>) {
         let (kind, bytes): (u8, &[u8]) = match &field {
             Field::Null => (0, &[]),
@@ -67,7 +66,7 @@ impl CanonicalHash {
         self.plain(bytes);
     }
 
-    /// Bytes without type and length.
+    /// Adds bytes without type and length.
     pub fn plain(&mut self, bytes: &[u8]) {
         self.0.update(bytes);
     }
@@ -77,7 +76,7 @@ impl CanonicalHash {
     }
 }
 
-/// The version of the fields that a digest covers: another list of fields takes another number.
+/// Version of the list of fields that a digest covers; another list needs another number.
 const DIGEST_VERSION: i64 = 1;
 
 /// Adds all fields of each row of a result.

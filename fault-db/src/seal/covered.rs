@@ -1,4 +1,4 @@
-//! What a seal covers: a run, an event or a note, each by its row. Any other entry of a chain covers its own payload.
+//! The rows that seals cover: runs, events and notes. Any other entry of a chain covers only its own payload.
 
 use super::canonical::{CanonicalHash, take_rows};
 use super::events_and_notes::{EVENT, EventPayload, NOTE, is_of_its_fault};
@@ -52,7 +52,7 @@ impl Covered {
         Ok(hash.finish())
     }
 
-    /// Whether a stored row is what was sealed; an event also has to belong to the fault that it was sealed for.
+    /// Whether a stored row matches its seal; an event must also belong to the fault for which it was sealed.
     pub fn fits(
         self,
         backend: &Backend,
@@ -67,7 +67,7 @@ impl Covered {
     }
 }
 
-/// Seals a run, event or note that came without a seal; `found` is the way by which the row came.
+/// Seals a run, event or note that came without a seal; `found` says how it came.
 pub(crate) fn seal_as_found(
     backend: &Backend,
     kind: Covered,

@@ -4,19 +4,19 @@ use super::head::head_of;
 use crate::backend::{Backend, Row, SqlResult, values};
 use crate::id::Id;
 
-/// The relation of a chain here to the same chain elsewhere.
+/// How a chain here compares with the same chain elsewhere (`there`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum ChainComparison {
-    /// The chain is unknown there, equal, or a prefix of this one.
+    /// The chain there is missing, equal, or the beginning of this one.
     Extends {
-        /// Entries known there.
+        /// Number of entries there.
         known: i64,
     },
-    /// This chain is a prefix of the one there: an older copy, perhaps a backup.
+    /// This chain is the beginning of the one there: an older copy, perhaps a backup.
     Behind { here: i64, there: i64 },
-    /// Both have different entries after this one: one is a copy of the other.
+    /// The chains have different entries after entry `after`: one of the files is a copy of the other.
     Forked { after: i64 },
-    /// After this entry, the same run, event or note is sealed with another digest here than there.
+    /// After entry `after`, a run, event or note is sealed with another digest here than there.
     Rewritten { after: i64, what: String, id: Id },
 }
 

@@ -7,16 +7,16 @@ use super::canonical::CanonicalHash;
 use crate::backend::{Backend, SqlResult, Value, values};
 use crate::id::Id;
 
-/// Fields of an event that its row may lose: two faults may be merged, and a laptop that receives the event
-/// may know fewer occurrences of its fault.
+/// Sealed fields of an event that its row may lose: its fault may be merged with another, and a laptop that receives
+/// the event may know fewer occurrences of the fault.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EventPayload {
-    /// The id of its fault when it was made.
+    /// Id of the event's fault when the event was made.
     pub fault: String,
-    /// Occurrences known then. The key is part of what is hashed.
+    /// Number of occurrences known when the event was made. The key `seen` is part of what is hashed.
     #[serde(rename = "seen")]
     pub occurrences_known: i64,
-    /// Way by which the event came, if it came without a seal.
+    /// How the event came (`import`, `sync`), if it came without a seal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found: Option<String>,
 }
@@ -44,12 +44,12 @@ impl EventPayload {
     }
 }
 
-/// The fields of an event that are sealed, and those of its fault.
+/// SQL: the sealed fields of an event, and of its fault.
 pub(super) const EVENT: &str =
     "SELECT e.id, e.kind, e.at_us, e.who, e.body, e.state, e.turn, e.follows, u.serial, f.code, f.lru
      FROM fault_event e JOIN fault f ON f.seq = e.fault JOIN unit u ON u.seq = f.unit WHERE e.seq = ?1";
 
-/// Whether an event belongs to the fault it was sealed for, with no more occurrences known than sealed.
+/// Whether an event belongs to the fault for which it was sealed, with no more known occurrences than were sealed.
 pub(crate) fn is_of_its_fault(
     backend: &Backend,
     event: i64,
@@ -68,7 +68,7 @@ pub(crate) fn is_of_its_fault(
     )
 }
 
-/// Seals an event of this fault; `fields` as given, in the order of [`EVENT`], without those of the fault.
+/// Seals an event of a fault; `fields` are the event's own, in the order of [`EVENT`].
 pub(crate) fn event(
     backend: &Backend,
     fault: i64,
@@ -105,11 +105,11 @@ pub(crate) fn event(
     append(backend, "event", id, &payload, &hash.finish())
 }
 
-/// The fields of a note that are sealed.
+/// SQL: the sealed fields of a note.
 pub(super) const NOTE: &str = "SELECT n.id, r.id, n.at_us, n.who, n.trace, n.place_us, n.text
      FROM run_note n JOIN run r ON r.seq = n.run WHERE n.seq = ?1";
 
-/// Seals a note; `fields` as given, in the order of [`NOTE`].
+/// Seals a note; `fields` are in the order of [`NOTE`].
 pub(crate) fn note(backend: &Backend, id: Id, fields: &[Value<'_>]) -> SqlResult<()> {
     let mut hash = CanonicalHash::of("note");
     hash.values(fields);

@@ -9,7 +9,7 @@ use crate::id::Id;
 /// The last entry of a chain.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct SealHead {
-    /// The file whose chain it is.
+    /// The file of the chain.
     pub file: Id,
     /// Number of entries.
     pub entries: i64,
@@ -28,7 +28,7 @@ pub struct RunSealed {
     pub seal: String,
     /// SHA-256 of the run's content, in hex.
     pub digest: String,
-    /// Way by which the run came, if it came without a seal and was sealed as found.
+    /// How the run came (`import`, `sync`), if it came without a seal and was sealed as found.
     pub found: Option<String>,
 }
 
@@ -48,7 +48,7 @@ pub(crate) fn head_of(backend: &Backend, origin: Id) -> SqlResult<Option<(i64, V
     )
 }
 
-/// The seal of a run; that of the file which recorded it before those of files which found it.
+/// The seal of a run: by the file that recorded it, or else by a file that sealed it as found.
 pub(crate) fn sealed_as(backend: &Backend, run: Id) -> SqlResult<Option<RunSealed>> {
     let sealed = backend.select(
         "SELECT origin, ordinal, hash, digest, says FROM seal

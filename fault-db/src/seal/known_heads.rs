@@ -1,5 +1,5 @@
-//! Ends of chains that were seen once, of this file and of others: a chain that is rewritten or cut later no longer has
-//! them. A sync brings those of all laptops, an import those that the other file has seen.
+//! Ends of chains of seals, of this file and of others, as they were seen once: a chain that is rewritten or cut later
+//! lacks the end that was seen. A sync brings the ends of all laptops, an import those that the other file has seen.
 
 use super::{copied_from, hash_of};
 use crate::backend::{Backend, SqlResult, from_row, values};
@@ -15,7 +15,7 @@ pub(crate) struct KnownHead {
     pub seen_at_us: i64,
 }
 
-/// Keeps the end of a chain; of one chain the longest counts.
+/// Stores the end of a chain; of each chain the longest is kept.
 pub(crate) fn keep(file: &Backend, head: &KnownHead) -> SqlResult<()> {
     file.execute(
         "INSERT INTO chain_head(origin, ordinal, hash, seen_at_us) VALUES (?1, ?2, ?3, ?4)
@@ -34,7 +34,7 @@ pub(crate) fn of_file(file: &Backend) -> SqlResult<Vec<KnownHead>> {
     })
 }
 
-/// Ends of chains that a file has seen, and of the chains that it holds of others by import: the time of these is 0.
+/// Ends of chains that a file has seen, and of the chains of other files that it holds by import, with the time 0.
 pub(crate) fn seen_by(file: &Backend) -> SqlResult<Vec<KnownHead>> {
     let sql = "SELECT origin, max(ordinal), hash FROM seal
         WHERE origin IS NOT (SELECT value FROM about WHERE key = 'file_id') GROUP BY origin";
@@ -69,8 +69,8 @@ pub(crate) fn of_server(server: &Backend, seen_at_us: i64) -> SqlResult<Vec<Know
     })
 }
 
-/// Chains of a store that are not what was seen of them. `own` is the chain that must be there as a whole: of others a
-/// store may have a part.
+/// Chains of a store that lack the end which was seen of them. The store must have the chain `own` as a whole; of other
+/// chains it may have a part.
 pub(crate) fn broken(
     store: &Backend,
     known: &[KnownHead],
@@ -79,7 +79,7 @@ pub(crate) fn broken(
     let mut found = Vec::new();
     for head in known {
         let (origin, ordinal) = (head.origin, head.ordinal);
-        // A copy that has an id of its own kept what it recorded before, and said so.
+        // A copy that got an id of its own kept the entries made before, and recorded where it parted.
         if copied_from(store, origin)?.is_some_and(|after| ordinal > after) {
             continue;
         }

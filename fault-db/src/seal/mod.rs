@@ -27,7 +27,7 @@ use crate::backend::{Backend, SqlError, SqlResult, values};
 use crate::id::Id;
 use crate::schema::SCHEMA_VERSION;
 
-/// Way by which a run, event or note came that was sealed as found.
+/// Values of `found`: how a run, event or note came that was sealed as found.
 pub(crate) const BY_IMPORT: &str = "import";
 pub(crate) const BY_SYNC: &str = "sync";
 
@@ -66,7 +66,7 @@ pub(crate) fn chained(before: Option<&[u8]>, digest: &[u8]) -> [u8; 32] {
     hash.chain_update(digest).finalize().into()
 }
 
-/// The file's id, under which its entries are made; a server has none.
+/// The file's id, under which its entries are made; `None` for a server.
 pub(crate) fn own_file_id(backend: &Backend) -> SqlResult<Option<Id>> {
     if let Backend::Server(_) = backend {
         return Ok(None);
@@ -107,7 +107,7 @@ pub(crate) const PRUNED: &str = "pruned";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PrunedPayload {
     pub run: String,
-    /// The digest of what was deleted, as in its run's seal.
+    /// The digest of the deleted trace or recording, as in its run's seal.
     pub sha256: String,
     /// The position of the recording in its run; `None` for a trace.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -168,16 +168,16 @@ pub(crate) struct RecountedPayload {
 /// The payload of the first entry of a copy that got an id of its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CopiedPayload {
-    /// The file it is a copy of.
+    /// Id of the file that this is a copy of.
     pub file: String,
-    /// The last common entry, and its hash.
+    /// Number and hash of the last entry that both files have.
     pub after: i64,
     pub seal: String,
     pub at_us: i64,
 }
 
 impl CopiedPayload {
-    /// Entry of a file that is a copy from entry `after` on.
+    /// The payload for a copy of file `origin` that goes its own way after entry `after`.
     pub fn of(backend: &Backend, origin: Id, after: i64, at_us: i64) -> SqlResult<Self> {
         let hash = hash_of(backend, origin, after)?;
         Ok(Self {
@@ -191,7 +191,7 @@ impl CopiedPayload {
 
 const COPIED: &str = "copied";
 
-/// Gives a copy its own id, begins its chain, and repeats in it the entries made since the copy, with their
+/// Gives a copy its own id, begins its chain, and repeats in that chain the entries made since the copy, with their
 /// digests, so that rows changed meanwhile still do not match.
 pub(crate) fn start_chain_of_copy(
     backend: &Backend,
@@ -224,7 +224,8 @@ pub(crate) fn start_chain_of_copy(
     Ok(())
 }
 
-/// The last entry that a file shares with the one it is a copy of, if it recorded that.
+/// Number of the last entry of file `origin` that this file, a copy, shares with it; `None` if this file is no such
+/// copy.
 pub(crate) fn copied_from(backend: &Backend, origin: Id) -> SqlResult<Option<i64>> {
     let payload = backend.select(
         "SELECT says FROM seal WHERE what = 'copied' ORDER BY origin",

@@ -22,11 +22,11 @@ pub(crate) struct RunPayload {
     pub traces: Vec<TracePayload>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recordings: Vec<RecordingPayload>,
-    /// Entries of an imported log that are faults. Where two laptops imported the same entry, the one that a
-    /// store knew first stays with its run.
+    /// Entries of an imported log that are faults. If two laptops imported the same entry, a store keeps it in the run
+    /// that it knew first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub entries: Vec<EntryPayload>,
-    /// Way by which the run came, if it came without a seal and was sealed as found.
+    /// How the run came (`import`, `sync`), if it came without a seal and was sealed as found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found: Option<String>,
 }
@@ -34,7 +34,7 @@ pub(crate) struct RunPayload {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TracePayload {
     pub id: String,
-    /// Digest over all its fields, including the checksum of its samples.
+    /// Digest over all fields of the trace, including the checksum of its samples.
     pub sha256: String,
     /// The recording it was cut from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -75,7 +75,7 @@ pub(crate) struct RunDigest {
     payload: RunPayload,
 }
 
-/// The fields of a run at its beginning, in the order of [`RUN`]; of the unit the serial number.
+/// The fields of a run at its beginning, in the order of [`RUN`]; of the unit only the serial number.
 pub(crate) fn run_fields<'a>(
     id: Id,
     record: &'a RunRecord,
@@ -188,7 +188,7 @@ impl RunDigest {
         self.occurrences.insert(id, digest);
     }
 
-    /// Names an occurrence that other runs may bring, too.
+    /// Lists in the payload an occurrence that other runs may bring, too.
     pub fn share_occurrence(&mut self, id: Id) {
         if let Some(digest) = self.occurrences.get(&id) {
             self.payload.entries.push(EntryPayload {
@@ -299,7 +299,7 @@ pub(crate) fn digest(backend: &Backend, run: i64, payload: &str) -> SqlResult<[u
     Ok(whole(whole_run, parts, payload))
 }
 
-/// Entries of an imported log that stand under another run, with the digests that this run's seal has of them.
+/// Entries of this run's imported log that are stored with another run, with their digests in this run's seal.
 fn brought_by_others(
     backend: &Backend,
     run: i64,
@@ -307,7 +307,7 @@ fn brought_by_others(
 ) -> SqlResult<BTreeMap<Id, [u8; 32]>> {
     const BY_OTHER: &str = "SELECT 1 FROM fault_occurrence WHERE id = ?1 AND run <> ?2";
     let mut brought = BTreeMap::new();
-    // Most runs are no logs, and are not parsed.
+    // Most runs are no imported logs; their payload need not be parsed.
     let payload = payload
         .contains("\"entries\"")
         .then(|| RunPayload::of(payload));

@@ -1,4 +1,4 @@
-//! Traces and recordings of a run, held against the payload of the run's seal.
+//! Compares the traces and recordings of a run with the payload of the run's seal.
 
 use std::collections::BTreeSet;
 
@@ -12,13 +12,13 @@ use crate::id::Id;
 
 /// Differences between the traces and recordings of a run and those that its seal names.
 pub(crate) struct SamplesHeld {
-    /// Changed or added ones.
+    /// Traces and recordings that were changed or added.
     pub changed: Vec<Damage>,
-    /// Those that are not there: a trace by its id, a recording by its run and number.
+    /// Traces and recordings that are missing: a trace by its id, a recording by its run and number.
     pub missing: BTreeSet<(Id, Option<i64>)>,
 }
 
-/// Holds the traces and recordings of a run against the payload of a seal.
+/// Compares the traces and recordings of a run with the payload of a seal.
 pub(crate) fn hold(
     backend: &Backend,
     (id, run): (Id, i64),
@@ -39,7 +39,7 @@ pub(crate) fn hold(
         };
         match traces.iter().find(|(_, trace, _)| *trace == of) {
             None => {
-                // Two laptops that read the same record of a unit: the seal of the other's run covers it.
+                // If two laptops read the same record of a unit, the seal of the other laptop's run covers the trace.
                 let elsewhere = "SELECT 1 FROM trace WHERE id = ?1";
                 if !backend.has(elsewhere, &values![of])? {
                     missing.insert((of, None));
@@ -77,8 +77,8 @@ pub(crate) fn hold(
     Ok(SamplesHeld { changed, missing })
 }
 
-/// Whether a missing trace or recording was pruned, as a seal of the deletion says. A server has traces where they
-/// were sent.
+/// Whether a seal says that a missing trace or recording was pruned. Always true on a server, which has only the traces
+/// that were sent.
 pub(crate) fn is_pruned(backend: &Backend, (id, recording): (Id, Option<i64>)) -> SqlResult<bool> {
     if let Backend::Server(_) = backend {
         return Ok(true);
@@ -91,8 +91,7 @@ pub(crate) fn is_pruned(backend: &Backend, (id, recording): (Id, Option<i64>)) -
     Ok(deletions.any(|pruned| pruned.recording == recording))
 }
 
-/// Samples and channel lists of a run's traces that do not match the checksums which their digests cover, as
-/// sentences.
+/// Samples and channel lists of a run's traces that do not match the checksums in the traces' digests, as sentences.
 pub(crate) fn changed_samples(backend: &Backend, run: i64) -> SqlResult<Vec<String>> {
     let mut changed = Vec::new();
     backend.each(

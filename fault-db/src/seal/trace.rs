@@ -1,10 +1,10 @@
-//! The digests of traces and recordings, which stand in the seal of their run.
+//! The digests of traces and recordings, which the seal of their run lists.
 
 use super::canonical::{CanonicalHash, take_rows};
 use crate::backend::{Backend, SqlResult, Value, values};
 use crate::id::Id;
 
-/// The fields of a trace; the ids of the occurrences it shows follow, concatenated.
+/// SQL: the sealed fields of a trace; the ids of the occurrences that the trace shows follow, concatenated.
 const TRACE: &str =
     "SELECT t.id, t.t0_bench_us, t.t0_us, t.period_us, t.row_count, t.trigger_row, t.flags, t.encoding,
         t.sha256, c.sha256
@@ -17,7 +17,7 @@ pub(crate) fn of(fields: &[Value<'_>], shows: &[Id]) -> [u8; 32] {
     ended(hash, shows.to_vec())
 }
 
-/// The digest of a stored trace; its samples are checked against their own checksum elsewhere.
+/// The digest of a stored trace; the samples are compared with their own checksum elsewhere.
 pub(crate) fn digest(backend: &Backend, trace: i64) -> SqlResult<[u8; 32]> {
     let mut hash = CanonicalHash::of("trace");
     take_rows(&mut hash, backend, TRACE, &values![trace])?;
@@ -55,7 +55,7 @@ pub(crate) fn recording_digest(backend: &Backend, run: i64, ordinal: i64) -> Sql
     Ok(hash.finish())
 }
 
-/// Positions of the recordings of a run.
+/// Numbers of the recordings of a run.
 pub(crate) fn recordings(backend: &Backend, run: i64) -> SqlResult<Vec<i64>> {
     let sql = "SELECT ordinal FROM recording WHERE run = ?1 ORDER BY ordinal";
     backend.select(sql, &values![run], |row| row.get(0))

@@ -18,9 +18,9 @@ const OPTIONS: &str =
 
 /// Protection of a connection.
 ///
-/// The names are libpq's, with two differences: without `sslmode` a server on another machine has to prove
-/// its identity; and `require` and `verify-ca` verify issuer and host name like `verify-full`, because
-/// encryption to an unknown peer protects nothing.
+/// The options' names are libpq's, with two differences: without `sslmode` a server on another computer has to prove
+/// its identity; and `require` and `verify-ca` verify issuer and host name like `verify-full`, because encryption to an
+/// unknown peer protects nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Guard {
     /// No TLS.
@@ -46,7 +46,7 @@ pub struct Address {
 }
 
 impl Address {
-    /// A socket in a folder, or this machine.
+    /// Whether the server is on this computer: a socket in a folder, or a local host name.
     pub(super) fn is_local(&self) -> bool {
         let host = self.host.as_str();
         let loopback = host
@@ -55,12 +55,12 @@ impl Address {
         self.is_socket() || loopback || host == "localhost"
     }
 
-    /// A folder that holds a socket.
+    /// Whether the host is a folder, which holds a socket.
     pub(super) fn is_socket(&self) -> bool {
         self.host.starts_with('/')
     }
 
-    /// Whether the address holds a password, which is nowhere to be shown or kept.
+    /// Whether the address holds a password, which must never be shown or stored.
     pub fn has_password(&self) -> bool {
         self.password.is_some()
     }
@@ -70,7 +70,7 @@ impl Address {
         self.user.as_deref()
     }
 
-    /// The protection that applies, with its default.
+    /// The protection of the connection: as in the address, or else the default.
     pub(super) fn guard(&self) -> Guard {
         match self.guard {
             _ if self.is_socket() => Guard::Disable,
@@ -89,14 +89,14 @@ impl FromStr for Address {
     }
 }
 
-/// The error quotes nothing of the text: any part may belong to a misspelt password. Files and the protection are options
-/// of ours; the rest is read by the client.
+/// Reads an address. The error quotes nothing of the text, any part of which may belong to a misspelt password. The
+/// options for files and for protection are read here, the rest by the client.
 fn parse(text: &str) -> Result<Address, String> {
     if !text.starts_with("postgres://") && !text.starts_with("postgresql://") {
         return Err("it begins with neither postgres:// nor postgresql://".to_owned());
     }
     let (place, options) = text.split_once('?').unwrap_or((text, ""));
-    // The client ends a login at its first @, which may belong to a password.
+    // The client takes the first @ for the end of the login, but it may belong to a password.
     let place = place.rsplit_once('@').map_or_else(
         || place.to_owned(),
         |(login, host)| format!("{}@{host}", login.replace('@', "%40")),
@@ -178,7 +178,7 @@ impl fmt::Display for Address {
             write!(f, "{user}@")?;
         }
         match self.host.as_str() {
-            // A slash would end the host.
+            // An unescaped slash would end the host.
             host if self.is_socket() => f.write_str(&host.replace('/', "%2F"))?,
             host if host.contains(':') => write!(f, "[{host}]")?,
             host => f.write_str(host)?,

@@ -1,11 +1,10 @@
-//! Recognises server addresses, and passwords in them, in any text: in file names, arguments and saved commands,
-//! also misspelt ones.
+//! Recognises server addresses, and passwords in them, in any text: file names, arguments and saved commands, even if
+//! they are misspelt.
 
 use super::address::Address;
 
 impl Address {
-    /// Whether a text is meant as a server's address rather than as a file's name: it begins with a scheme,
-    /// even a misspelt one.
+    /// Whether a text is meant as a server's address, not as a file name: it begins with a scheme, even a misspelt one.
     pub fn is_meant(text: &str) -> bool {
         let is_postgres = |scheme: &str| scheme.to_ascii_lowercase().starts_with("postgres");
         scheme(text).is_some_and(|(scheme, rest)| rest.starts_with("//") || is_postgres(scheme))

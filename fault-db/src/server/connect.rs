@@ -1,4 +1,4 @@
-//! Connects to a server.
+//! Connects to a PostgreSQL server.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
@@ -21,8 +21,8 @@ const DOING: &str = "connecting";
 /// Time after which unacknowledged data counts as lost.
 const NETWORK_PATIENCE: Duration = Duration::from_secs(30);
 
-/// Session settings: a laptop whose cable was pulled releases the writers' lock soon rather than after two
-/// hours; and queries are not JIT-compiled, which takes longer than to run them.
+/// Session settings: if a laptop's cable is pulled, the writers' lock is released soon rather than after two hours;
+/// queries are not JIT-compiled, which takes longer than to run them.
 const MANNERS: &str = "
     SET statement_timeout = '300s';
     SET lock_timeout = '60s';
@@ -89,7 +89,7 @@ fn config(address: &Address, user: &str, database: &str) -> Config {
     config
         .user(user)
         .dbname(database)
-        // A folder is one of a socket.
+        // A host that is a folder means the socket in it.
         .host(&address.host)
         .port(address.port)
         // Whoever may put a socket into that folder is trusted.
@@ -107,8 +107,8 @@ fn config(address: &Address, user: &str, database: &str) -> Config {
     config
 }
 
-/// Connects on a thread of its own, because resolving a name, and a server that accepts a connection and then
-/// falls silent, both block longer than the time limit. Also the encoding of its texts.
+/// Connects on a separate thread, because resolving a name, or a server that accepts a connection and then falls
+/// silent, blocks longer than the time limit. Returns the encoding of the server's texts, too.
 fn reach(
     config: Config,
     address: &Address,
@@ -129,7 +129,7 @@ fn reach(
                 let encoding = client.query_one("SHOW server_encoding", &[])?;
                 Ok((client, encoding.try_get(0)?))
             });
-            // Nobody receives it if it took too long.
+            // Nobody receives a connection that took too long.
             let _ = done.send(connected);
         });
     let away = |reason| StoreError::ServerUnreachable {

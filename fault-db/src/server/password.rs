@@ -10,7 +10,7 @@ use crate::files::regular_file::read_regular_file;
 /// Longest password file that is read, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
 
-/// A password, or why a password file was not used.
+/// A password, or the reason why a password file was not used.
 #[derive(Default, PartialEq, Eq)]
 pub(super) struct Password {
     pub secret: Option<String>,
@@ -78,7 +78,7 @@ fn file(address: &Address, environment: Environment<'_>) -> Option<PathBuf> {
         .filter(|file| address.password_file.is_some() || file.exists())
 }
 
-/// The text of the file; as in libpq, a file that others can read is not used.
+/// The text of a password file; as in libpq, a file that others can read is not used.
 fn read(file: &Path) -> Result<String, String> {
     let shown = file.display();
     let about = std::fs::metadata(file)
@@ -97,7 +97,7 @@ fn read(file: &Path) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|error| cannot(&error))
 }
 
-/// The password of a line `host:port:database:user:password`, if the line matches.
+/// The password in a line `host:port:database:user:password`, if the other fields match.
 fn matching(line: &str, asked: [&str; 4]) -> Option<String> {
     if line.starts_with('#') {
         return None;
@@ -114,7 +114,7 @@ fn matching(line: &str, asked: [&str; 4]) -> Option<String> {
     (!password.is_empty()).then_some(password)
 }
 
-/// A field up to its `:`, and the rest; a backslash escapes the next character.
+/// Splits a line at the first `:`; in the field before it a backslash escapes the next character.
 fn field(text: &str) -> (String, &str) {
     let mut field = String::new();
     let mut letters = text.char_indices();

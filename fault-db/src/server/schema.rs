@@ -1,4 +1,4 @@
-//! The server's schema: recognising it, its version, and its migrations.
+//! Recognises the server's schema and its version, and migrates it.
 
 use std::path::Path;
 
@@ -6,17 +6,17 @@ use crate::backend::{Backend, Server, SqlResult, values};
 use crate::error::StoreError;
 use crate::id::Id;
 
-/// The schema's migrations; `meta` holds the version.
+/// SQL of each schema version: the first creates everything; the table `meta` has the number of the version.
 const STEPS: &[&str] = &[concat!(
     include_str!("tables.sql"),
     include_str!("rules.sql"),
     include_str!("views.sql"),
 )];
 
-/// The schema this crate reads and writes on a server.
+/// Version of the schema that this crate reads and writes on a server.
 pub const SERVER_SCHEMA_VERSION: i32 = STEPS.len() as i32;
 
-/// The value in `meta` that marks a database as ours.
+/// The value in the table `meta` that marks a database as this program's.
 const APPLICATION: &str = "ptu fault history";
 
 const DOING: &str = "looking at the server's tables";
@@ -55,7 +55,7 @@ pub(super) fn check(backend: &Backend, path: &Path) -> Result<(), StoreError> {
 /// Creates the tables of a new database, or migrates those of an earlier version; runs in the caller's
 /// transaction, which excludes all other writers.
 pub(super) fn bring_up_to_date(backend: &Backend, server: &Server, new_id: Id) -> SqlResult<()> {
-    // Another program may have been first.
+    // Another program may have migrated the tables meanwhile.
     match look(backend)? {
         Found::Nothing => steps(server, 0)?,
         Found::Ours { schema } if schema < SERVER_SCHEMA_VERSION => {

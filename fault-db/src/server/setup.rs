@@ -1,4 +1,4 @@
-//! Sets a server up for its administrator: creates the tables and grants the rights.
+//! Sets a server up, by an administrator: creates the tables and grants the rights.
 
 use serde::Serialize;
 
@@ -22,13 +22,13 @@ const GRANTS: &str = include_str!("grants.sql");
 pub struct ServerSetup {
     /// Address of the server, without a password.
     pub server: String,
-    /// The database.
+    /// Name of the database.
     pub database: String,
     /// The account that owns the tables; it alone may change or drop them.
     pub owner: String,
     /// The laptops' account; it may insert and select.
     pub laptops: String,
-    /// Whether that account was created now; it has no password yet.
+    /// Whether the laptops' account was created now; it has no password yet.
     pub made_account: bool,
     /// The schema version before; `None` if there were no tables.
     pub schema_before: Option<i32>,
@@ -36,12 +36,12 @@ pub struct ServerSetup {
     pub schema: i32,
 }
 
-/// A step's result, or the reason why it was refused.
+/// Result of a step of the set-up, or the reason why it was refused.
 type Step<T> = SqlResult<Result<T, String>>;
 
 impl Store {
-    /// Creates the tables of a server, or migrates those of an earlier version, and lets the laptops' account
-    /// insert and select, and nothing else. One transaction, idempotent.
+    /// Creates the tables of a server, or migrates those of an earlier version, and grants the laptops' account the
+    /// right to insert and select, nothing else. One transaction; may be repeated.
     ///
     /// # Errors
     /// The connecting account lacks the right, or the laptops' account is the same or has more rights.
@@ -134,12 +134,12 @@ fn set_up(backend: &Backend, server: &Server, ids: &mut IdSource, laptops: &str)
 fn functions() -> String {
     let moved = MOVE_ROWS.join(";\n    ");
     let moved = moved.replace("?1", "stays").replace("?2", "goes");
-    // A laptop sends the part that an event names beside its body.
+    // The part that an event names is a column here: laptops send it beside the event's body.
     let settle = RECOMPUTE_FAULT.replace("part_of(e.body)", "e.part");
     (include_str!("functions.sql").replace("{settle}", &settle)).replace("{move}", &moved)
 }
 
-/// Creates the laptops' account if need be; whether it did.
+/// Creates the laptops' account if need be; returns whether it was created.
 fn account(backend: &Backend, server: &Server, laptops: &str, owner: &str) -> Step<bool> {
     if laptops == owner {
         return Ok(Err(format!(
@@ -169,7 +169,7 @@ fn account(backend: &Backend, server: &Server, laptops: &str, owner: &str) -> St
         "SELECT set_config('ptu.laptops', ?1, true)",
         &values![laptops],
     )?;
-    // Another program may be first.
+    // Another program may create the account at the same moment.
     server.batch(
         "DO $$ BEGIN
            EXECUTE format('CREATE ROLE %I LOGIN', current_setting('ptu.laptops'));

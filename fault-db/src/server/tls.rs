@@ -13,10 +13,10 @@ use tokio_postgres_rustls::MakeRustlsConnect;
 use super::address::{Address, Guard};
 use crate::files::regular_file::read_regular_file;
 
-/// Longest certificate file, bytes; all public issuers together take less.
+/// Longest certificate file that is read, bytes; the certificates of all public issuers together take less.
 const LONGEST_FILE: u64 = 16 << 20;
 
-/// A connector for this address; the error says which certificates cannot be read.
+/// The TLS connector for an address; the error says which certificates cannot be read.
 pub(super) fn connector(address: &Address) -> Result<MakeRustlsConnect, String> {
     let provider = Arc::new(ring::default_provider());
     let builder = ClientConfig::builder_with_provider(Arc::clone(&provider))
@@ -60,7 +60,7 @@ fn trusted(file: Option<&Path>) -> Result<RootCertStore, String> {
     Ok(roots)
 }
 
-/// Accepts any certificate, but only from the holder of its key.
+/// Accepts any certificate if the server holds the certificate's key.
 #[derive(Debug)]
 struct AcceptAnyCertificate(Arc<CryptoProvider>);
 

@@ -19,8 +19,8 @@ struct Entry {
     hash: Vec<u8>,
 }
 
-/// Signs the entries of the file's own chain after `known` that seal a run, event, note or instrument. What was sealed
-/// as found is left out: who imports it does not vouch for it.
+/// Signs the entries of the file's own chain after number `known` that seal a run, event, note or instrument. An entry
+/// sealed as found is left out: who imports it does not vouch for it.
 pub(crate) fn sign_new_entries(backend: &Backend, signer: &Signer, known: i64) -> SqlResult<()> {
     let Some(file) = seal::own_file_id(backend)? else {
         return Ok(());
@@ -60,7 +60,7 @@ fn is_found(payload: &str) -> bool {
     parsed.is_ok_and(|payload| payload.get("found").is_some_and(|found| !found.is_null()))
 }
 
-/// Adds the time and what a run says; the id under which the signature is found.
+/// Adds the time, and of a run the summary, to a statement; returns the id under which the signature is stored.
 fn complete(backend: &Backend, entry: &Entry, statement: &mut Statement) -> SqlResult<Id> {
     let id = values![entry.id];
     let time_and_group = match &entry.what[..] {

@@ -1,7 +1,7 @@
 //! Signatures of persons and benches over what is sealed. SEALS.md describes them.
 //!
-//! A signature is an entry of the chain of seals by itself, of the kind `signature`: so it travels, is kept and is
-//! checked as every other seal. While a [`Signer`] is set, each run, event, note and instrument that is sealed is signed in
+//! A signature is itself an entry of the chain of seals, of the kind `signature`: so it is copied, kept and checked
+//! like every other entry. While a [`Signer`] is set, each run, event, note and instrument that is sealed is signed in
 //! the same transaction.
 
 mod append;
@@ -20,7 +20,7 @@ use ring::signature::{Ed25519KeyPair, KeyPair as _};
 
 use crate::seal::hex;
 
-/// A private key with the name that it signs by.
+/// A private key, with the name and kind of its owner.
 pub struct Signer {
     who: String,
     kind: String,
@@ -36,8 +36,7 @@ impl std::fmt::Debug for Signer {
 }
 
 impl Signer {
-    /// A signer with the 32 bytes of a private key; `kind` = kind of its owner, in the caller's
-    /// words.
+    /// A signer with the 32 bytes of a private key; `kind` is the kind of the key's owner, in the caller's words.
     ///
     /// # Errors
     /// The bytes are no key.
@@ -50,7 +49,7 @@ impl Signer {
         })
     }
 
-    /// The name it signs by.
+    /// Name of the key's owner.
     pub fn who(&self) -> &str {
         &self.who
     }

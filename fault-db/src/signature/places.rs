@@ -1,5 +1,5 @@
-//! Locates a change in a run: the signature holds the beginning of a digest of each row, and of each field of the run's
-//! own row.
+//! Locates a change in a run: the signature holds a mark of each row, and of each field of the run's own row. A mark is
+//! the beginning of a digest.
 
 use std::collections::BTreeMap;
 
@@ -10,20 +10,20 @@ use crate::seal::canonical::{CanonicalHash, columns};
 use crate::seal::hex;
 use crate::seal::run::{OCCURRENCES, PARTS, RUN};
 
-/// Digits of a mark.
+/// Number of hex digits of a mark.
 const DIGITS: usize = 8;
 
-/// Marks of the rows in the order of the run's digest, by the kind of row.
+/// Marks by kind of row, in the order in which the run's digest takes the rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Places(BTreeMap<String, String>);
 
-/// A row or field now: its mark, and what it is called.
+/// Mark of a row or field as it is now, and the name for a person.
 struct RowMark {
     mark: String,
     name: String,
 }
 
-/// The kinds, as they are named to a person.
+/// The kinds of rows, as they are named to a person.
 const KINDS: [&str; 5] = ["fields", "scripts", "steps", "measurements", "occurrences"];
 
 impl Places {
@@ -128,7 +128,7 @@ fn rows(backend: &Backend, run: i64, kind: &str) -> SqlResult<Vec<RowMark>> {
     })
 }
 
-/// The run's own row, field by field.
+/// Marks of the run's own row, field by field.
 fn fields(backend: &Backend, run: i64) -> SqlResult<Vec<RowMark>> {
     let list = RUN.split("FROM").next().unwrap_or_default();
     let names = list.trim_start_matches("SELECT").split(',');

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::Signer;
 use crate::seal::from_hex;
 
-/// Signed bytes before the document: a signature made for another purpose never fits.
+/// Bytes that are signed before the document, so that a signature made for another purpose never fits.
 const PURPOSE: &[u8] = b"ptu signature 1\n";
 /// The longest text that is read as a signed document.
 const LONGEST: usize = 16 << 20;
@@ -53,7 +53,7 @@ impl Signed {
         }
     }
 
-    /// Reads a signed document in its one form, byte for byte, and checks its signature.
+    /// Reads a signed document, which must have its one form byte for byte, and checks its signature.
     ///
     /// # Errors
     /// The text is no signed document, or the signature does not fit.
@@ -64,7 +64,7 @@ impl Signed {
         }
         let signed: Self = serde_json::from_str(text)
             .map_err(|error| SignatureError::Unreadable(error.to_string()))?;
-        // Readers differ in what they skip: an order, a space, a key that stands twice.
+        // JSON readers tolerate different things: the order of keys, blanks, a key that stands twice.
         if signed.text() != text {
             return Err(SignatureError::Form);
         }
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(Signed::read(&spaced), Err(SignatureError::Form));
     }
 
-    /// Goal: no changed byte of a signed document is taken. Method: each byte is changed in two ways, and cut.
+    /// Goal: a signed document with a changed byte is refused. Method: each byte is changed in two ways, and cut off.
     #[test]
     fn every_changed_byte_is_found() {
         let text = signed().text();
@@ -171,7 +171,7 @@ mod tests {
         assert!(Signer::new("Kim", "technician", &[8; 31]).is_err());
     }
 
-    /// The key, the message and the signature are those of RFC 8032, test 1, but for the message's content.
+    /// Key, message and signature are those of RFC 8032, test 1, except for the content of the message.
     #[test]
     fn the_public_key_is_that_of_the_standard() {
         let seed =

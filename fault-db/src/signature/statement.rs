@@ -18,21 +18,21 @@ pub(crate) const SIGNATURE: &str = "signature";
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Statement {
-    /// Version of this list.
+    /// Version of this list of fields.
     pub version: u32,
     /// `run`, `event`, `note` or `instrument`.
     pub what: String,
     /// The id of what is signed.
     pub id: String,
-    /// The file that sealed it, and the position in its chain.
+    /// Id of the file whose chain has the seal.
     pub file: String,
-    /// The position there.
+    /// Number of the seal in that file's chain, from 1.
     pub entry: i64,
     /// SHA-256 of the content, as the seal has it.
     pub digest: String,
     /// The seal, which covers all entries before.
     pub seal: String,
-    /// When it was made: the end of a run, the time of an event or note.
+    /// Time of what is signed, µs since 1970: the end of a run, the time of an event or note.
     pub at_us: i64,
     /// Name of the person who signed.
     #[serde(default)]
@@ -46,12 +46,12 @@ pub struct Statement {
     /// Summary of a run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub about: Option<About>,
-    /// Beginnings of digests of each row of a run, by which a change is located.
+    /// Beginning of the digest of each row of a run; a change is located by comparing these.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub places: Option<Places>,
 }
 
-/// Summary of a run, by which a certificate speaks without the database.
+/// Summary of a run, so that a certificate can be read without the database.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct About {
     /// Serial number of the unit.
@@ -66,11 +66,11 @@ pub struct About {
     pub line: String,
     /// The train; empty: not stated.
     pub train: String,
-    /// When it began.
+    /// When the run began, µs since 1970.
     pub started_at_us: i64,
-    /// Different steps that were run.
+    /// Number of different steps that were run.
     pub steps: i64,
-    /// Measured values.
+    /// Number of measured values.
     pub measurements: i64,
     /// Version of the program.
     pub app_version: String,
@@ -80,7 +80,7 @@ pub struct About {
 }
 
 impl Statement {
-    /// Whether it signs the entry of this kind and id.
+    /// Whether the statement is about the entry of this kind and id.
     pub(crate) fn is_about(&self, what: &str, id: Id) -> bool {
         self.what == what && self.id == id.to_string()
     }
@@ -90,14 +90,15 @@ impl Statement {
         self.key.get(..16).unwrap_or(&self.key)
     }
 
-    /// The statement in a signed document, if it is one about an entry.
+    /// The statement in a signed document; `None` if the document is about something else than an entry.
     pub fn of(signed: &Signed) -> Option<Self> {
         serde_json::from_value(signed.statement().clone()).ok()
     }
 }
 
-/// The signed documents about what belongs to this id that hold, in the order in which they were made: of a run its own and
-/// those of its notes, of a fault those of its events, each if what it names still has the content that was signed.
+/// The valid signed documents that belong to this id, in the order of their seals: of a run its own and those of its
+/// notes, of a fault those of its events. Left out is a document whose run, note or event no longer has the signed
+/// content.
 pub(crate) fn signatures_of(backend: &Backend, group: Id) -> SqlResult<Vec<(String, Statement)>> {
     let texts = backend.select(
         "SELECT says FROM seal WHERE id = ?1 AND what = 'signature' ORDER BY origin, ordinal",
@@ -115,7 +116,7 @@ pub(crate) fn signatures_of(backend: &Backend, group: Id) -> SqlResult<Vec<(Stri
     Ok(held)
 }
 
-/// Whether the run, note or event that a statement names has the content that was signed; a run with its traces.
+/// Whether the run (with its traces), note or event that a statement names still has the signed content.
 fn has_content(backend: &Backend, statement: &Statement) -> SqlResult<bool> {
     let Some(kind) = Covered::of(&statement.what) else {
         return Ok(true);
@@ -138,8 +139,8 @@ fn has_content(backend: &Backend, statement: &Statement) -> SqlResult<bool> {
     Ok(false)
 }
 
-/// Reads a signature that hangs on a run, fault or instrument, and holds it against the seal that it signs and against what
-/// it hangs on; what is wrong with it. Nothing else reads one.
+/// Reads a signature stored with a run, fault or instrument (`group`), and compares it with the seal that it signs and
+/// with `group`; an error says what is wrong. Signatures are read here only.
 pub(crate) fn read_signature(
     backend: &Backend,
     group: Id,
@@ -159,8 +160,8 @@ pub(crate) fn read_signature(
     Ok(wrong.map_or(Ok(statement), Err))
 }
 
-/// Error of a signature that is stored with another thing than it names: a run or instrument has its own, a note its
-/// run's, an event its fault's.
+/// Error of a signature that is stored with the wrong thing: the signature of a run or instrument belongs to itself, of
+/// a note to its run, of an event to its fault.
 fn wrong_subject(
     backend: &Backend,
     group: Id,
@@ -206,7 +207,7 @@ fn seal_mismatch(backend: &Backend, statement: &Statement) -> SqlResult<Option<W
     if sealed == Some(true) {
         return Ok(None);
     }
-    // In a copy that was given a name of its own the same content is sealed again.
+    // A copy that got its own id has sealed the same content again.
     let sql = "SELECT digest FROM seal WHERE id = ?1 AND what = ?2";
     let again = backend.select(sql, &values![id, &statement.what], |row| {
         Ok(hex(row.get(0)?))

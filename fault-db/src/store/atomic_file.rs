@@ -14,13 +14,12 @@ use crate::files::held_file::{make_locked, remove_abandoned};
 use crate::files::platform;
 use crate::schema;
 
-/// Between the name of a file and the random letters while it is unfinished: nobody else's file is called so.
+/// Stands in the temporary name between the file's name and the random letters; only this program uses it.
 const MARK: &str = ".ptu-";
-/// Random letters there.
+/// Number of random letters in the temporary name.
 const RANDOM: usize = 16;
 
-/// An unfinished file. Dropped before [`replace`](Self::replace) or [`publish_as`](Self::publish_as), it is
-/// removed.
+/// An unfinished file. It is removed if dropped before [`replace`](Self::replace) or [`publish_as`](Self::publish_as).
 #[derive(Debug)]
 pub struct AtomicFile {
     beside: NamedTempFile,
@@ -28,8 +27,8 @@ pub struct AtomicFile {
 }
 
 impl AtomicFile {
-    /// Begins a file that is to be called `to`, in the same folder. Unfinished files that killed programs left in the folder
-    /// are removed.
+    /// Begins a file that is to be called `to`, in the folder of `to`. Removes unfinished files that killed programs
+    /// left there.
     ///
     /// # Errors
     /// The file system allows no file in that folder.
@@ -55,10 +54,11 @@ impl AtomicFile {
         Ok(())
     }
 
-    /// Gives it a name that must be free. What was written must be on the disk already.
+    /// Gives the file a name that must be free. What was written must be on the disk already.
     ///
     /// # Errors
-    /// [`ErrorKind::AlreadyExists`], or of the file system; another name can be tried then with what is given back.
+    /// [`ErrorKind::AlreadyExists`], or an error of the file system; the file is returned, so that another name can be
+    /// tried.
     pub fn publish_as(self, name: &Path) -> Result<(), (std::io::Error, Self)> {
         let Self { beside, to } = self;
         match beside.persist_noclobber(name) {
@@ -76,7 +76,7 @@ impl AtomicFile {
         }
     }
 
-    /// Copies a whole file, compacted, beside `to`.
+    /// Copies a whole database, compacted, into an unfinished file beside `to`.
     pub(crate) fn copy(
         conn: &Connection,
         to: &Path,
@@ -103,7 +103,7 @@ impl AtomicFile {
     /// [`StoreError::TargetExists`], or [`StoreError::CannotWrite`] with the system's reason, which SQLite does not give.
     pub(crate) fn can_be_made(to: &Path) -> Result<(), StoreError> {
         let is_of_database = is_of_database(to);
-        // After that look: a file that another program makes meanwhile is there, whatever it belongs to.
+        // Tested after `is_of_database`: a file that another program makes meanwhile exists, whatever it belongs to.
         if to.exists() {
             let path = to.to_path_buf();
             return Err(StoreError::TargetExists(path));
@@ -118,7 +118,7 @@ impl AtomicFile {
             let reason = format!("there is no folder {}", folder.display());
             return Err(cannot_write(to, reason));
         }
-        // Not under its own name, which another program may take the next moment.
+        // Tried under a temporary name: another program may take the final name the next moment.
         let made = Self::make(to, true).map(drop);
         made.map_err(|error| cannot_write(to, error.to_string()))
     }
@@ -132,7 +132,7 @@ impl AtomicFile {
         Self::remove_left(to);
         let mut name = to.file_name().unwrap_or_default().to_owned();
         name.push(MARK);
-        // From the root: SQLite takes `file:x` for something else than a file.
+        // An absolute path, because SQLite does not take `file:x` for the name of a file.
         let folder = std::path::absolute(folder_of(to))?;
         let beside = Builder::new()
             .prefix(&name)
@@ -156,7 +156,7 @@ impl AtomicFile {
     /// Gives the copy its name, which must still be free.
     ///
     /// # Errors
-    /// The name is taken; or of the file system.
+    /// The name is taken, or the file system refuses.
     pub(crate) fn publish(self) -> Result<(), StoreError> {
         let path = self.to.clone();
         let published = self.publish_as(&path);
@@ -201,7 +201,7 @@ fn folder_of(file: &Path) -> &Path {
     folder.unwrap_or(Path::new("."))
 }
 
-/// Whether a name is one of [`AtomicFile::make`].
+/// Whether [`AtomicFile::make`] gives such a name.
 fn is_part(name: &str) -> bool {
     let name = name.strip_suffix(".part");
     let random = name.and_then(|name| name.rsplit_once(MARK));
@@ -214,7 +214,7 @@ mod tests {
 
     use super::*;
 
-    /// Goal: what a program that is gone left is removed, and no file that is being written.
+    /// Goal: unfinished files of dead programs are removed, and none that is still being written.
     #[test]
     fn a_file_that_nobody_writes_any_more_is_removed() {
         let dir = tempfile::tempdir().expect("a directory");

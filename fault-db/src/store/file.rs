@@ -1,4 +1,4 @@
-//! SQLite files: recognising our own, opening, setting up, and keeping a copy before a migration.
+//! SQLite files: recognises those of this program, opens them, sets them up, and keeps a copy before a migration.
 
 use std::path::{Path, PathBuf};
 
@@ -11,10 +11,10 @@ use crate::schema::{self, APPLICATION_ID, SCHEMA_VERSION, guard, sql_functions};
 use crate::store::atomic_file::AtomicFile;
 use crate::store::open_options::Synchronous;
 
-/// Programs that create one file at the same time may disturb each other this often.
+/// Number of tries to enter write-ahead logging: programs that create one file at the same time disturb each other.
 const WAL_TRIES: u32 = 200;
 
-/// Copies of files of an earlier schema that may lie beside a file.
+/// Greatest number of copies of earlier schemas beside a file.
 const MAX_COPIES: u32 = 9;
 
 /// Page cache: enough for the upper levels of all indexes.
@@ -43,7 +43,7 @@ pub(crate) fn connect(
         return Err(StoreError::NotADatabase(path.to_path_buf()));
     }
     let failed = |error| StoreError::from_sqlite(path, "opening", error);
-    // From the root: SQLite takes `:memory:`, `file:x` and no name for something else than a file.
+    // An absolute path, because SQLite does not take `:memory:`, `file:x` or an empty text for the name of a file.
     let from_root = match flags.contains(OpenFlags::SQLITE_OPEN_URI) {
         true => Ok(name.to_path_buf()),
         false => std::path::absolute(name),
@@ -61,7 +61,7 @@ pub(crate) fn connect(
     Ok(conn)
 }
 
-/// The schema version of a file of ours, 0 for an empty one; an error for any other file. Reads only, so that
+/// The schema version of a file of this program, 0 for an empty file; an error for any other file. Only reads, so that
 /// a foreign file stays as it is.
 pub(crate) fn identify(conn: &Connection, path: &Path) -> Result<i32, StoreError> {
     // SQLite takes a file too short for its header for an empty one, and would overwrite it.
@@ -96,7 +96,7 @@ pub(crate) fn identify(conn: &Connection, path: &Path) -> Result<i32, StoreError
     Ok(version)
 }
 
-/// Settings to make before a file is migrated.
+/// Sets what must be set before a file is migrated.
 pub(crate) fn set_up(
     conn: &Connection,
     version: i32,
@@ -114,7 +114,7 @@ pub(crate) fn set_up(
     conn.execute_batch("PRAGMA foreign_keys = ON")
 }
 
-/// Settings for recording, in a file of the current schema.
+/// Sets what recording needs, in a file of the current schema.
 pub(crate) fn set_up_to_record(
     conn: &Connection,
     max_pages: Option<u32>,
@@ -133,7 +133,7 @@ pub(crate) fn set_up_to_record(
 pub(crate) fn keep_copy(conn: &Connection, path: &Path, version: i32) -> Result<(), StoreError> {
     const DOING: &str = "keeping a copy of the older schema";
     let failed = |error| StoreError::from_sqlite(path, DOING, error);
-    // Another program may be migrating it: then the first one makes the copy.
+    // Another program may be migrating the file, and then has made the copy.
     if schema::user_version(conn).map_err(failed)? != version {
         return Ok(());
     }
@@ -159,8 +159,8 @@ pub(crate) fn copy_to(conn: &Connection, to: &Path, doing: &'static str) -> Resu
     AtomicFile::copy(conn, to, doing)?.publish()
 }
 
-/// Turns write-ahead logging on. SQLite does not wait for others while it changes the mode of a new file;
-/// waiting for a write lock in between does, up to the busy timeout.
+/// Turns write-ahead logging on. SQLite does not wait for other programs while it changes the mode of a new file;
+/// waiting for a write lock between two tries does, up to the busy timeout.
 fn enter_wal(conn: &Connection) -> Result<(), rusqlite::Error> {
     let turn_on = || conn.query_row("PRAGMA journal_mode = WAL", [], |_| Ok(()));
     for _ in 1..WAL_TRIES {

@@ -1,4 +1,4 @@
-//! The last seal of a file.
+//! The last seal of a file, and the comparison of chains with what this file knows of them.
 
 use super::Store;
 use crate::backend::Backend;
@@ -22,10 +22,11 @@ impl Store {
         })
     }
 
-    /// Holds the chains of another file against what this one has seen of them; what was rewritten or cut there.
+    /// Compares the chains of another file with what this file has seen of them; returns what was rewritten or cut
+    /// there.
     ///
     /// # Errors
-    /// One of them cannot be read.
+    /// One of the files cannot be read.
     pub fn seen_otherwise(&self, other: &Store) -> Result<Vec<String>, StoreError> {
         const DOING: &str = "comparing chains of seals";
         if !matches!(&self.backend, Backend::File(_)) {

@@ -18,10 +18,10 @@ const MATCHES_SHOWN: usize = 4;
 /// A table whose rows users name.
 struct NamedTable {
     name: &'static str,
-    /// Aliases of its rows: a table expression with `id` and `named`, the row's own id.
+    /// SQL: a table expression of aliases, with `id` and `named`, the row's own id.
     aliases: Option<&'static str>,
     newest_first: &'static str,
-    /// Rows among which the latest is looked for.
+    /// SQL: condition on the rows among which `latest` is looked for.
     among: &'static str,
 }
 
@@ -48,7 +48,8 @@ const TRACE: NamedTable = NamedTable {
     among: "",
 };
 
-/// The last run of each chain, as it was recorded whatever the clock said, and one that has not ended.
+/// SQL: the last run of each chain of seals, in the order of recording whatever the clock said, and a last run that has
+/// not ended.
 const LAST_RUNS: &str = "WHERE seq = (SELECT max(seq) FROM run) AND verdict IS NULL OR id IN (
     SELECT (SELECT s.id FROM seal s WHERE s.origin = o.origin AND s.what = 'run' ORDER BY s.ordinal DESC LIMIT 1)
     FROM (SELECT DISTINCT origin FROM seal) o)";
@@ -113,7 +114,7 @@ impl Store {
         }
     }
 
-    /// The run whose seal names a trace of this id that a file does not have.
+    /// The run whose seal names a trace with these digits that the file does not have.
     fn run_that_names(&self, named: &NamedTable, digits: &str) -> Result<Option<Id>, StoreError> {
         if named.name != "trace" || !matches!(&self.backend, Backend::File(_)) {
             return Ok(None);
@@ -140,7 +141,7 @@ fn matches(backend: &Backend, named: &NamedTable, digits: &str) -> SqlResult<Vec
         }
         return backend.select(&exact, &[low], |row| row.get(0));
     }
-    // A beginning is a range of the index, and so is the end that tables show; any other end scans all ids.
+    // An index finds a beginning (as a range) and the end that tables show; any other end scans all ids.
     let (by_end, end) = if digits.len() == SHORT_DIGITS {
         ("substr(id, 13) = ?3".to_owned(), bytes(digits))
     } else {

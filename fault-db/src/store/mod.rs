@@ -27,7 +27,7 @@ use crate::seal;
 use crate::signature::{Signer, sign_new_entries};
 use crate::trace::{Channel, TraceCodec, TraceError};
 
-/// More than the number of distinct repeated statements in this crate.
+/// SQL statements kept prepared; more than this crate repeats.
 const STATEMENT_CACHE: usize = 64;
 
 /// One open history. Not shared between threads; open it once per thread instead.
@@ -42,7 +42,7 @@ pub struct Store {
     signer: RefCell<Option<Arc<Signer>>>,
     /// Identity of the file when it was opened.
     identity: Option<Identity>,
-    /// Identity of its write-ahead log at that time; none for a store that only reads.
+    /// Identity of the file's write-ahead log at that time; `None` for a store that only reads.
     log: Option<Identity>,
 }
 
@@ -55,8 +55,8 @@ impl std::fmt::Debug for Store {
 }
 
 impl Store {
-    /// Descriptions of objects in this file that this program did not make or that were altered. Opening such
-    /// a file for writing is refused; a reader may be warned.
+    /// Objects in this file that this program did not make, or that were altered. Such a file is not opened for
+    /// writing; a reader may be warned.
     pub fn foreign_objects(&self) -> Result<Vec<Damage>, StoreError> {
         let Backend::File(conn) = &self.backend else {
             return Ok(Vec::new());
@@ -65,8 +65,8 @@ impl Store {
         found.map_err(|error| self.failed("looking at its tables", error))
     }
 
-    /// Sets how long to wait for other writers of the file. While opening, a short wait is best; work under
-    /// way in the background may wait longer rather than lose what it has.
+    /// Sets how long to wait for other writers of the file. While opening, a short wait is best; work in the background
+    /// may rather wait longer than lose what it has.
     ///
     /// # Errors
     /// The store is on a server, which has no such time-out.
@@ -76,28 +76,28 @@ impl Store {
         set.map_err(|error| self.failed("setting how long to wait", error))
     }
 
-    /// From now on what is recorded in this file is signed: runs, events, notes and instruments, each in the transaction
-    /// that seals it. `None`: no longer.
+    /// Signs from now on what is recorded in this file: runs, events, notes and instruments, each in the transaction
+    /// that seals it. `None` ends signing.
     pub fn sign_with(&self, signer: Option<Arc<Signer>>) {
         *self.signer.borrow_mut() = signer;
     }
 
-    /// Signer whose signature is put under what is recorded.
+    /// The signer that [`sign_with`](Self::sign_with) set.
     pub fn signer(&self) -> Option<Arc<Signer>> {
         self.signer.borrow().clone()
     }
 
-    /// The file's path as it was given; of a server its address without the password.
+    /// The file's path as it was given, or a server's address without the password.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether it was opened for reading only.
+    /// Whether the store was opened for reading only.
     pub fn is_read_only(&self) -> bool {
         self.ids.is_none()
     }
 
-    /// The file's id. Without it its chain of seals is lost, and must not be begun again.
+    /// The file's id. Without the id the file's chain of seals is lost, and must not be begun again.
     fn name(&self) -> Result<Id, StoreError> {
         let name = self.ask("reading its name", seal::own_file_id)?;
         name.ok_or_else(|| StoreError::Altered {
@@ -113,11 +113,12 @@ impl Store {
         self.name()
     }
 
-    /// Checkpoints the write-ahead log and closes the file. Dropping closes it too, but cannot report an error.
+    /// Checkpoints the write-ahead log and closes the file. Dropping the store closes the file, too, but cannot report
+    /// an error.
     ///
     /// # Errors
-    /// The log cannot be written back, or the file or its log was removed or replaced, or has a second name: what was
-    /// written is not where others find it.
+    /// The log cannot be written back, or other programs do not find what was written: the file or its log was removed
+    /// or replaced, or has a second name.
     pub fn close(self) -> Result<(), StoreError> {
         let written_back = self.write_back();
         let path = self.path;
@@ -128,7 +129,7 @@ impl Store {
         written_back
     }
 
-    /// Writes the log back to the file where others find it.
+    /// Writes the log back to the file, if that file is the one that others find under its name.
     fn write_back(&self) -> Result<(), StoreError> {
         match self.backend {
             Backend::File(_) if !self.is_read_only() => {
@@ -147,11 +148,11 @@ impl Store {
         done.map_err(|error| self.failed("writing back the log", error))
     }
 
-    /// Ends work on the file once `stops` says so, within milliseconds and with [`StoreError::Stopped`]: what one
-    /// transaction was to add is not added, and a copy that is not whole is removed. It holds until another one is set.
+    /// Ends work on the file once `stops` returns true, within milliseconds and with [`StoreError::Stopped`]: the open
+    /// transaction adds nothing, and an incomplete copy is removed. Holds until another `stops` is set.
     ///
     /// # Errors
-    /// SQLite does not take it, or this is a server, whose work is not ended so.
+    /// SQLite refuses, or the store is a server, whose work cannot be stopped like this.
     pub fn stop_when(
         &self,
         stops: impl FnMut() -> bool + Send + 'static,
@@ -223,14 +224,14 @@ impl Store {
                 Ok(result)
             }
             Err(error) => {
-                // If even this fails, the server drops the connection, and the work with it.
+                // If the rollback fails, too, the server drops the connection, and the work with it.
                 let _ = server.batch("ROLLBACK");
                 Err(error)
             }
         }
     }
 
-    /// Asks the file or server, or writes to it in the caller's transaction.
+    /// Runs `work`, which reads the file or server, or writes to it in the caller's transaction.
     pub(crate) fn ask<T>(
         &self,
         doing: &'static str,
@@ -320,5 +321,5 @@ impl Store {
     }
 }
 
-/// Steps of SQLite's engine between two looks at whether to stop; a statement of a few rows has about as many.
+/// Steps of SQLite's engine between two calls of `stops`; a statement of a few rows takes about as many.
 const STEPS_AT_ONCE: i32 = 50;

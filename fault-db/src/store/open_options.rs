@@ -5,9 +5,9 @@ use crate::id::IdSource;
 /// Durability of a commit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Synchronous {
-    /// On the disk: survives a power cut. For everything that is recorded.
+    /// A commit is on the disk and survives a power cut. For everything that is recorded.
     Full,
-    /// In the system's cache: survives the program's death, not a power cut. For benchmarks.
+    /// A commit is in the system's cache: it survives the program's death, but no power cut. For benchmarks.
     Normal,
 }
 
@@ -31,19 +31,19 @@ impl OpenOptions {
         }
     }
 
-    /// Time to wait for another writer before the file counts as locked.
+    /// Sets how long to wait for another writer before the file counts as locked, ms.
     pub fn busy_timeout_ms(mut self, busy_timeout_ms: u32) -> Self {
         self.busy_timeout_ms = busy_timeout_ms;
         self
     }
 
-    /// How far a commit reaches.
+    /// Sets the durability of a commit.
     pub fn synchronous(mut self, synchronous: Synchronous) -> Self {
         self.synchronous = synchronous;
         self
     }
 
-    /// Refuses to let the file grow beyond this many 4096-byte pages, to simulate a full disk.
+    /// Keeps the file from growing beyond this many 4096-byte pages, to simulate a full disk.
     pub fn max_pages(mut self, max_pages: u32) -> Self {
         self.max_pages = Some(max_pages);
         self

@@ -19,11 +19,11 @@ use crate::store::{Store, place};
 use crate::{schema, seal};
 
 impl Store {
-    /// Opens a file for writing; creates it, or migrates its schema, if need be. A file of an earlier schema
-    /// is copied first, to `FILE.schemaN` beside it. Created files are readable for their owner only.
+    /// Opens a file for writing; creates it, or migrates its schema, if need be. A file of an earlier schema is copied
+    /// first, to `FILE.schemaN` beside it. Only its owner may read a created file.
     pub fn open(path: &Path, options: OpenOptions) -> Result<Self, StoreError> {
-        // An existing file is not opened here: closing it would release SQLite's locks on it. If none can be
-        // created, SQLite's own attempt gives the reason.
+        // Only a new file is created here: opening and closing an existing one would release SQLite's locks on it. If
+        // none can be created, SQLite's own attempt gives the reason.
         if !path.exists() {
             let _ = make_private(path);
         }
@@ -33,8 +33,8 @@ impl Store {
         let looked = connect(path, path, flags, options.busy_timeout_ms)
             .and_then(|conn| identify(&conn, path).map(|version| (conn, version)));
         let (conn, version) = match looked {
-            // On a write-protected disk SQLite fails without the reason; a file that can be read but not
-            // opened for writing is read-only.
+            // On a write-protected disk SQLite fails without the reason; a file that opens for reading only is
+            // read-only.
             Err(StoreError::CannotOpen { .. }) if Self::open_read_only(path).is_ok() => {
                 return Err(StoreError::ReadOnly(path.to_path_buf()));
             }
@@ -57,7 +57,7 @@ impl Store {
         } = options;
         set_up(&conn, version, synchronous).map_err(failed)?;
         let mut store = Self::of_file(conn, path, Some(ids))?;
-        // What is written to a file with two names is lost to one of them.
+        // A file with two names is refused: what is written under one is lost to the other.
         store.check_place()?;
         store.bring_up_to_date(version)?;
         store.log = Identity::at(&place::log_of(path));
@@ -110,7 +110,7 @@ impl Store {
             let minted = self.mint()?;
             return self.write(DOING, |conn| {
                 let failed = |error| self.failed(DOING, error);
-                // Another program may have been first.
+                // Another program may have migrated the file meanwhile.
                 let from = schema::user_version(conn).map_err(failed)?;
                 if from == SCHEMA_VERSION {
                     return self.name();

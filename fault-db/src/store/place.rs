@@ -35,7 +35,7 @@ impl Store {
         Err(self.file_changed(what))
     }
 
-    /// Whether another name is left once the names that killed programs left are removed.
+    /// Whether the file still has another name once temporary names left by killed programs are removed.
     fn has_second_name(&self) -> bool {
         AtomicFile::remove_left(&self.path);
         Identity::at(&self.path).is_some_and(|now| now.names > 1)
@@ -55,11 +55,11 @@ impl Store {
         }
     }
 
-    /// Checks that another program finds an ended run in the file of this store's name, with all its steps and with
-    /// the chain of seals up to its end at the run's beginning.
+    /// Checks that another program finds an ended run under the store's name: the run with all its steps, and the chain
+    /// of seals as it ended when the run began.
     ///
     /// # Errors
-    /// The run, its steps or that chain are not there, and why. From then on nothing of the log is written back to the file when it is closed.
+    /// The reason why not. From then on, closing the file writes nothing of the log back.
     pub(crate) fn check_holds(
         &self,
         run: Id,
@@ -69,8 +69,8 @@ impl Store {
         self.or_keep_log_back(self.holds(run, began, steps))
     }
 
-    /// After an error nothing of the log is written back any more when the file is closed: a removed log would
-    /// overwrite what others have written since.
+    /// Returns `held`; if it is an error, closing the file no longer writes the log back: a removed log would overwrite
+    /// what other programs have written since.
     pub(super) fn or_keep_log_back(&self, held: Result<(), StoreError>) -> Result<(), StoreError> {
         if held.is_err() {
             let no_checkpoint = DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE;
@@ -108,7 +108,7 @@ impl Store {
         }
     }
 
-    /// Looks at as much of the file as a moment allows.
+    /// Checks as much of the file for damage as [`LOOK`] allows.
     fn looks_sound(&self) -> Result<bool, StoreError> {
         let until = Instant::now() + LOOK;
         self.stop_when(move || Instant::now() > until)?;

@@ -6,24 +6,24 @@ use crate::error::StoreError;
 use crate::store::Store;
 
 impl Store {
-    /// Commits all writes of `work` to this file at once, or none if it fails. For many small writes, as each
-    /// commit costs more than a small write. Others wait for the file until it is done.
+    /// Commits all writes of `work` to this file at once, or none if `work` fails. Meant for many small writes, as a
+    /// commit costs more than a small write. Other writers of the file wait until it is done.
     ///
-    /// A single write that fails within is rolled back alone; `work` decides whether to go on. If all is
-    /// rolled back, what a [`RunWriter`](crate::RunWriter) wrote within is gone, too: drop it then.
+    /// A single write that fails within `work` is rolled back alone, and `work` decides whether to go on. If everything
+    /// is rolled back, so is what a [`RunWriter`](crate::RunWriter) wrote within: drop that writer.
     pub fn transaction<T>(
         &self,
         work: impl FnOnce() -> Result<T, StoreError>,
     ) -> Result<T, StoreError> {
         let done = self.write("writing several things at once", |_| work());
         if done.is_err() {
-            // What was read within may have been rolled back.
+            // Channel lists read within `work` may have been rolled back.
             self.channel_sets.borrow_mut().clear();
         }
         done
     }
 
-    /// A write within an open transaction, rolled back alone if it fails.
+    /// Runs a write within an open transaction; rolled back alone if it fails.
     pub(crate) fn write_within<T>(
         &self,
         doing: &'static str,

@@ -1,4 +1,4 @@
-//! Which runs are under way: the program that records one holds a file beside the database.
+//! Which runs are under way: the program that records a run holds a lock file beside the database.
 
 use std::path::PathBuf;
 
@@ -26,7 +26,7 @@ impl Store {
             });
         }
         let lock = self.lock_of(run);
-        // The lock file holds nothing; every user of the history has to see that it is locked.
+        // The lock file is empty; every user of the history must be able to see that it is locked.
         let made = HeldFile::make(&lock).and_then(|held| for_all(&held.file).map(|()| held));
         made.map_err(|error| StoreError::CannotWrite {
             path: lock.clone(),
@@ -34,12 +34,12 @@ impl Store {
         })
     }
 
-    /// The file of [`Self::hold_run`].
+    /// Path of the lock file that [`Self::hold_run`] makes.
     fn lock_of(&self, run: Id) -> PathBuf {
         with_end(&self.locks(), &format!("{}.lock", run.short()))
     }
 
-    /// Beginning of the paths of [`Self::hold_run`], beside the database.
+    /// Beginning of the paths of all lock files, beside the database.
     fn locks(&self) -> PathBuf {
         let real = std::fs::canonicalize(self.path());
         with_end(real.as_deref().unwrap_or(self.path()), ".run-")

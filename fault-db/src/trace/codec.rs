@@ -1,8 +1,8 @@
 //! Encodes a trace into one blob with the layout that `layout` describes.
 //!
-//! A compressed body is the varint length of the plain body, then a zstd frame without its
-//! four-byte magic number. Every column is compressed alone: one channel is then read in a few
-//! microseconds, for a third more bytes than one frame around all would take.
+//! A compressed body is the varint length of the plain body, then a zstd frame without its four-byte magic number.
+//! Every column is compressed separately: one channel is then read in a few microseconds, at the price of a third more
+//! bytes than one frame for all would take.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use super::layout::{self, Layout, Shape};
 use super::varint::{put, take};
 use super::{TraceData, TraceError};
 
-/// Most rows of a trace.
+/// Greatest number of rows in a trace.
 pub const MAX_ROWS: usize = 1_000_000;
 
 /// Most samples of a trace, and of a single read (64 MiB of doubles).
@@ -22,7 +22,7 @@ pub const MAX_SAMPLES: usize = 8 << 20;
 /// Compression level 1 is within a per cent of level 3 on columns this short, at half its time.
 const ZSTD_LEVEL: i32 = 1;
 const ZSTD_MAGIC: [u8; 4] = [0x28, 0xB5, 0x2F, 0xFD];
-/// Approximate overhead of a frame, bytes.
+/// Plain bodies below this length, bytes, are not compressed: about the overhead of a frame.
 const ZSTD_WORTH: usize = 24;
 
 /// Encodes and decodes traces; reuses its buffers and compressor.
@@ -53,7 +53,7 @@ impl TraceCodec {
         })
     }
 
-    /// Encodes a trace; refuses one that could not be read back.
+    /// Encodes a trace; refuses a trace that could not be read back.
     pub fn encode(&mut self, trace: &TraceData) -> Result<Vec<u8>, TraceError> {
         trace.check()?;
         self.directory.clear();
@@ -125,7 +125,7 @@ impl TraceCodec {
             .collect()
     }
 
-    /// Decodes `rows` of the column at `place`; `bytes` are those of the layout's span.
+    /// Decodes `rows` of the channel at index `place`; `bytes` are the bytes of the layout's span.
     pub(crate) fn part(
         &mut self,
         layout: &Layout,
@@ -190,12 +190,12 @@ impl TraceCodec {
     }
 }
 
-/// The largest plain body of a column: presence and raw doubles, or the longest varints.
+/// Greatest length of a column's plain body, bytes: presence and raw doubles, or the longest varints.
 fn max_plain(rows: usize) -> usize {
     rows * 20 + 32
 }
 
-/// Refuses sizes before anything is allocated for them.
+/// Refuses too many rows or samples, before memory is allocated for them.
 pub(crate) fn check_size(rows: usize, columns: usize) -> Result<(), TraceError> {
     let samples = rows.checked_mul(columns);
     if rows > MAX_ROWS || samples.is_none_or(|samples| samples > MAX_SAMPLES) {

@@ -81,7 +81,7 @@ pub(super) struct Scratch {
     filled: Vec<f64>,
 }
 
-/// Writes the plain body of a column to `out`; its tag.
+/// Writes the plain body of a column to `out`; returns its tag.
 pub(super) fn pack(samples: &[f64], lsb: f64, scratch: &mut Scratch, out: &mut Vec<u8>) -> Tag {
     out.clear();
     let sparse = has_gaps(samples);
@@ -111,7 +111,7 @@ pub(super) fn pack(samples: &[f64], lsb: f64, scratch: &mut Scratch, out: &mut V
     }
 }
 
-/// Fills missing samples with the one before, or 0.
+/// Fills each missing sample with the sample before, or 0.
 fn filled(samples: &[f64], out: &mut Vec<f64>) {
     out.clear();
     let filled = samples.iter().scan(0.0, |last, sample| {
@@ -123,7 +123,7 @@ fn filled(samples: &[f64], out: &mut Vec<f64>) {
     out.extend(filled);
 }
 
-/// Writes the integers in the form that is likely to be smallest once compressed.
+/// Writes integers in the form that probably compresses best.
 fn put_integers(integers: &[i64], out: &mut Vec<u8>) -> Form {
     let changes = changes(integers);
     if changes == 0 {
@@ -151,7 +151,8 @@ fn put_integers(integers: &[i64], out: &mut Vec<u8>) -> Form {
     }
 }
 
-/// A run costs at least two bytes; with more than one change in this many rows zstd does better on deltas.
+/// Runs are used if at most one sample in this many changes: a run costs at least two bytes, and zstd does better on
+/// deltas.
 const RUNS_WORTH: usize = 8;
 
 #[inline]
@@ -200,7 +201,7 @@ fn put_presence(samples: &[f64], out: &mut Vec<u8>) {
 
 fn put_planes<const N: usize>(samples: &[f64], bytes: impl Fn(f64) -> [u8; N], out: &mut Vec<u8>) {
     for plane in 0..N {
-        // The presence marks a missing sample; its value here only has to compress well.
+        // `presence` marks a missing sample; its value here only has to compress well.
         out.extend(
             samples
                 .iter()

@@ -8,8 +8,7 @@
 //! CRC-32 of all so far
 //! bodies, channel by channel, block by block
 //! ```
-//! Every piece has a checksum of its own, so a channel, or a part of one, is read and known to be what
-//! was written without touching any other.
+//! Every piece has its own checksum, so a channel, or a part of one, is read and verified without reading the others.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -25,7 +24,7 @@ pub const ENCODING: i64 = 1;
 const BLOCK_ROWS: usize = 4096;
 const CRC_BYTES: usize = 4;
 
-/// Description of a trace's blob by its row.
+/// Description of a trace's blob, from the trace's row.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<'a> {
     /// Number of the encoding.
@@ -42,7 +41,7 @@ impl Shape<'_> {
     }
 }
 
-/// Rows of each block that is written.
+/// The samples of each block of a column.
 pub(super) fn blocks(column: &[f64]) -> impl Iterator<Item = &[f64]> {
     column.chunks(BLOCK_ROWS)
 }
@@ -69,7 +68,7 @@ pub(super) fn put_piece(directory: &mut Vec<u8>, tag: Tag, body: &[u8]) {
 pub(super) struct Piece {
     pub tag: Tag,
     pub rows: Range<usize>,
-    /// Bytes of the blob.
+    /// Range of the piece's bytes in the blob.
     pub bytes: Range<usize>,
     crc: u32,
 }
@@ -90,7 +89,7 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// Length of the directory at the front of a blob; `start` is its first bytes, 32 or all.
+    /// Bytes of a blob's head, up to the end of the directory; `start` has the blob's first 32 bytes, or all of it.
     pub fn head_length(
         start: &[u8],
         length: usize,
@@ -120,8 +119,8 @@ impl Layout {
             .ok_or_else(|| damaged(rest, "the directory is cut off"))
     }
 
-    /// Reads the directory; `head` is as much of the blob as `head_length` says, `length` that of all
-    /// of it.
+    /// Reads the directory; `head` is the part of the blob that `head_length` gives, `length` the length of the whole
+    /// blob.
     pub fn read(head: &[u8], length: usize, shape: &Shape<'_>) -> Result<Self, TraceError> {
         let mut rest = head;
         // `head_length` has checked this.
@@ -140,7 +139,7 @@ impl Layout {
         rest = &rest[..rest.len().saturating_sub(CRC_BYTES)];
         let blocks = shape.blocks();
         let count = blocks.saturating_mul(shape.channels.len());
-        // A piece takes two bytes at least, so this allocates no more than the blob did.
+        // A piece's entry takes at least two bytes, so no more is allocated than the blob has.
         if rest.len() / 2 < count {
             return Err(damaged(rest, "the directory is cut off"));
         }
@@ -188,7 +187,7 @@ impl Layout {
         column.get(first..end).unwrap_or_default()
     }
 
-    /// The byte range of those pieces.
+    /// The byte range of the pieces that [`Self::pieces`] gives.
     pub fn span(&self, place: usize, rows: &Range<usize>) -> Range<usize> {
         match self.pieces(place, rows) {
             [] => 0..0,

@@ -1,7 +1,7 @@
 //! Traces: equally spaced rows of named channels.
 //!
-//! `codec` encodes one into a blob, column by column, so that one channel is read without decompressing the
-//! others; `layout` describes the blob, `column` the encoding of a column.
+//! `codec` encodes a trace into a blob, column by column, so that one channel is read without decompressing the others;
+//! `layout` describes the blob, `column` the encoding of a column.
 
 mod codec;
 mod column;
@@ -33,7 +33,7 @@ pub struct Channel {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChannelKind {
-    /// A quantity; its samples should be whole multiples of `lsb`. Others are stored as floating point:
+    /// A quantity; its samples should be whole multiples of `lsb`. Other samples are stored as floating-point numbers:
     /// exact, but larger.
     Number {
         /// Resolution of the quantity.
@@ -57,7 +57,7 @@ impl ChannelKind {
     }
 }
 
-/// A trace, whole or some of its channels.
+/// A trace: all its channels, or some.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TraceData {
     /// Bench time of row 0.
@@ -66,15 +66,15 @@ pub struct TraceData {
     pub t0_us: i64,
     /// Time from row to row.
     pub period_us: i64,
-    /// The row at which it was triggered.
+    /// The row at which the trace was triggered.
     pub trigger_row: Option<u32>,
-    /// The trace ends before its window did: the link dropped or the program was closed.
+    /// The trace ends earlier than planned: the link dropped or the program was closed.
     pub partial: bool,
     /// Some samples are missing.
     pub gaps: bool,
     /// The channels, one per column.
     pub channels: Vec<Channel>,
-    /// Samples by channel, then by row; a missing one is NaN here and null in JSON.
+    /// Samples by channel, then by row; a missing sample is NaN here and null in JSON.
     pub columns: Vec<Vec<f64>>,
 }
 
@@ -98,7 +98,7 @@ impl TraceData {
         self.columns.get(place).map(Vec::as_slice)
     }
 
-    /// Refuses what could not be read back.
+    /// Refuses a trace that could not be read back.
     pub(crate) fn check(&self) -> Result<(), TraceError> {
         if self.columns.len() != self.channels.len() {
             let (channels, columns) = (self.channels.len(), self.columns.len());
@@ -186,9 +186,9 @@ pub enum TraceError {
     /// The trigger's row is not in the trace.
     #[error("trigger row {row} of a trace with {rows} rows")]
     TriggerRow {
-        /// The row named.
+        /// The trigger's row as given.
         row: u32,
-        /// Rows there are.
+        /// Number of rows in the trace.
         rows: usize,
     },
     /// The trace has more than [`MAX_ROWS`] or [`MAX_SAMPLES`].
@@ -196,9 +196,9 @@ pub enum TraceError {
         "{rows} rows of {columns} channels are too many (at most {MAX_ROWS} rows and {MAX_SAMPLES} samples)"
     )]
     TooLarge {
-        /// Rows.
+        /// Number of rows.
         rows: usize,
-        /// Columns.
+        /// Number of channels.
         columns: usize,
     },
     /// There is no channel of that name.
@@ -206,10 +206,10 @@ pub enum TraceError {
     UnknownChannel {
         /// The name asked for.
         channel: String,
-        /// The names there are.
+        /// The names of the trace's channels.
         known: Vec<String>,
     },
-    /// Encoded by a later version.
+    /// A later version of the program encoded the trace.
     #[error("encoding {found} is not known; a newer version of the program wrote it")]
     Encoding {
         /// The encoding's number.
@@ -227,7 +227,7 @@ pub enum TraceError {
     /// The blob is too short or too long, or contains inconsistent sizes.
     #[error("damaged at byte {offset}: {what}")]
     Blob {
-        /// The part of the blob.
+        /// Byte of the blob at which reading failed.
         offset: usize,
         /// Defect of the blob.
         what: &'static str,

@@ -1,4 +1,4 @@
-//! Converts samples to whole multiples of their channel's lsb, where they are such.
+//! Converts samples to integers, where they are whole multiples of their channel's lsb.
 //!
 //! The loops over samples have no branches, so that the compiler vectorises them: they take most of the
 //! time of encoding a trace.
@@ -6,7 +6,7 @@
 /// Samples processed at a time.
 const LANES: usize = 16;
 
-/// Adding it to a double of up to 2^51 rounds that to an integer, which then stands in the low bits.
+/// Added to a double of up to 2^51, this rounds it to an integer, which then stands in the low bits.
 const ROUNDING: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 
 /// Beyond this, adding [`ROUNDING`] no longer rounds to integers.
@@ -19,8 +19,8 @@ pub(super) fn has_gaps(samples: &[f64]) -> bool {
     chunks.iter().any(|chunk| gap(chunk)) || gap(rest)
 }
 
-/// Samples as integers, and whether reading divides; `None` if reading would not return every sample exactly.
-/// No sample may be missing.
+/// Converts samples, none of which may be missing, to `integers`; returns whether reading has to divide. `None` if
+/// reading would not return every sample exactly.
 pub(super) fn scale(samples: &[f64], lsb: f64, integers: &mut Vec<i64>) -> Option<bool> {
     let per_unit = per_unit(lsb);
     let divides = per_unit >= 2.0 && (1.0 / per_unit - lsb).abs() <= lsb * 1e-9;
@@ -49,7 +49,7 @@ fn scale_by(
         *out = placed.to_bits().wrapping_sub(ROUNDING.to_bits()) as i64;
         (rounded.abs() <= MAX_SCALED) & (sample(rounded) == value)
     };
-    // What was there is overwritten.
+    // The old content is overwritten.
     integers.resize(samples.len(), 0);
     let (values, last_values) = samples.as_chunks::<LANES>();
     let (out, last_out) = integers.as_chunks_mut::<LANES>();
@@ -60,7 +60,7 @@ fn scale_by(
     values.iter().zip(out).all(|(values, out)| all(values, out)) && all(last_values, last_out)
 }
 
-/// Steps of one unit, where the lsb is a fraction of it.
+/// Number of lsb in one unit, if the lsb is a fraction of it.
 pub(super) fn per_unit(lsb: f64) -> f64 {
     (1.0 / lsb).round()
 }
@@ -76,7 +76,7 @@ pub(super) fn changes(integers: &[i64]) -> usize {
 mod tests {
     use super::*;
 
-    /// The straightforward way, half away from zero.
+    /// The plain conversion, which rounds halves away from zero.
     fn slow(samples: &[f64], lsb: f64) -> Option<Vec<i64>> {
         let whole = |sample: &f64| {
             let n = (sample / lsb).round();

@@ -10,7 +10,7 @@ pub(super) fn put(out: &mut Vec<u8>, mut value: u64) {
     out.push(value as u8);
 }
 
-/// Takes a value off the front of `input`; `None` if it is cut off or wider than 64 bits.
+/// Takes a value off the front of `input`; `None` if it is cut off or has more than 64 bits.
 #[inline]
 pub(super) fn take(input: &mut &[u8]) -> Option<u64> {
     let (&first, rest) = input.split_first()?;
@@ -32,13 +32,13 @@ pub(super) fn take(input: &mut &[u8]) -> Option<u64> {
     None
 }
 
-/// 0, -1, 1, -2 … to 0, 1, 2, 3 …
+/// Maps 0, -1, 1, -2 … to 0, 1, 2, 3 …
 #[inline]
 pub(super) fn zigzag(value: i64) -> u64 {
     ((value << 1) ^ (value >> 63)) as u64
 }
 
-/// 0, 1, 2, 3 … to 0, -1, 1, -2 …
+/// Maps 0, 1, 2, 3 … to 0, -1, 1, -2 …
 #[inline]
 pub(super) fn unzigzag(value: u64) -> i64 {
     (value >> 1) as i64 ^ -((value & 1) as i64)

@@ -12,19 +12,19 @@ pub struct FaultEvent {
     /// The event.
     pub id: Id,
     /// opened, recurred, acknowledged, repair, repaired, passed, confirmed, verified, closed, reopened, note, cause or
-    /// diagnosed. A run `confirmed` what a person may have `verified`.
+    /// diagnosed. A run makes `confirmed`, a person `verified`.
     pub kind: String,
-    /// When.
+    /// Time of the event, µs since 1970.
     pub at_us: i64,
     /// Name of the person; empty for the program itself.
     pub who: String,
     /// The text; empty for a repair and for a cause.
     pub note: String,
-    /// The fault's state after it; `None` if it did not change.
+    /// The fault's state after the event; `None` if the event did not change it.
     pub state: Option<FaultState>,
-    /// The repair, if it is one.
+    /// The repair, if the event is one.
     pub repair: Option<RepairRecord>,
-    /// The part it comes from, if it says that.
+    /// The part that the fault comes from, if the event says so.
     pub cause: Option<CauseRecord>,
     /// The correction that withdraws the event.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,14 +1,14 @@
 //! The life of a fault: open, acknowledged, repaired, verified, closed.
 //!
-//! A repair is only a claim until a passing run verifies it; a new occurrence before the fault is
-//! closed opens it again, one after it is closed begins a new fault.
+//! A repair is only a claim until a passing run verifies it. A new occurrence before the fault is closed opens the
+//! fault again; one after that begins a new fault.
 
 use crate::values::text_enum::text_enum;
 
 text_enum! {
     /// The state of a fault.
     FaultState {
-        /// Seen, not looked at yet.
+        /// The fault was seen; nobody works on it yet.
         Open = "open",
         /// Somebody works on it.
         Acknowledged = "acknowledged",
@@ -48,7 +48,7 @@ impl FaultAction {
         Self::Reopen,
     ];
 
-    /// The action that leads to `state`.
+    /// The action of a person that leads to `state`.
     pub fn towards(state: FaultState) -> Self {
         match state {
             FaultState::Open => Self::Reopen,
@@ -72,11 +72,11 @@ impl FaultAction {
     }
 }
 
-/// A transition that does not exist.
+/// An action that the fault's state does not allow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("it is {from}, and from there it cannot be {}; it can be {}", .action.event_kind(), choices(*.from))]
 pub struct TransitionError {
-    /// The state it is in.
+    /// The fault's state.
     pub from: FaultState,
     /// The action.
     pub action: FaultAction,
@@ -92,10 +92,10 @@ impl FaultState {
             (S::Acknowledged, A::Occur) => Ok(S::Acknowledged),
             (S::Repaired | S::Verified, A::Occur) => Ok(S::Open),
             (S::Open, A::Acknowledge) => Ok(S::Acknowledged),
-            // A second part replaced is a second repair.
+            // A fault may be repaired again, for instance by replacing a second part.
             (S::Open | S::Acknowledged | S::Repaired, A::Repair) => Ok(S::Repaired),
             (S::Repaired, A::Verify) => Ok(S::Verified),
-            // Without a repair: not found, or withdrawn. After a repair: only once it is verified.
+            // Without a repair a fault may be closed (no fault found); after a repair only once that is verified.
             (S::Open | S::Acknowledged | S::Verified, A::Close) => Ok(S::Closed),
             (S::Acknowledged | S::Repaired | S::Verified, A::Reopen) => Ok(S::Open),
             (from, action) => Err(TransitionError { from, action }),

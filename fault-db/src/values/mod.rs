@@ -1,4 +1,4 @@
-//! Recorded values, and their words.
+//! The values that are recorded, and the words for them in the database.
 
 pub(crate) mod event;
 pub(crate) mod fault_state;

@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 use crate::id::Id;
 use crate::values::text_enum::text_enum;
 
-/// The source of a run that is an imported log begins with this.
+/// Beginning of the `source` of a run that is an imported log.
 pub const LOG_SOURCE: &str = "log of ";
 
 text_enum! {
-    /// The verdict of a step, a measurement or a whole run: a column. This crate names no other, so the caller
-    /// converts its own verdict.
+    /// Verdict of a step, a measurement or a whole run, as a column holds it. This crate knows no other crate, so the
+    /// caller converts its own verdict.
     Verdict {
         /// Every expectation held.
         Passed = "passed",
@@ -22,8 +22,7 @@ text_enum! {
         Error = "error",
         /// Not run, by choice or condition.
         Skipped = "skipped",
-        /// Verdict of a search that found no fault: all that was run passed, and that was not enough to accept the
-        /// unit.
+        /// An adaptive run found no fault: all steps passed, but they were not enough to accept the unit.
         Inconclusive = "inconclusive",
         /// Stopped by the operator.
         Aborted = "aborted",
@@ -35,9 +34,9 @@ text_enum! {
     StepKind {
         /// The result of a step, or of one repetition of it.
         Step = "step",
-        /// A try at a step that was not tested; another follows.
+        /// A try at a step that could not be tested; another try follows.
         Attempt = "attempt",
-        /// A step that was run again only for the state that it leaves, and showed something else.
+        /// A step that was run again only to reach the state it leaves, and that ended otherwise than before.
         Again = "again",
         /// Failure outside steps; the name says where.
         Outside = "outside",
@@ -53,7 +52,7 @@ pub struct UnitRecord {
     pub kind: String,
     /// Name of the unit configuration.
     pub config_name: String,
-    /// Software version of each of its parts.
+    /// Software version of each part of the unit.
     pub sw_versions: BTreeMap<String, String>,
 }
 
@@ -62,7 +61,7 @@ pub struct UnitRecord {
 pub struct ScriptRecord {
     /// Path as the operator would name it.
     pub path: String,
-    /// SHA-256 of its text, in hex.
+    /// SHA-256 of the file's text, in hex.
     pub sha256: String,
 }
 
@@ -81,12 +80,11 @@ pub struct RunRecord {
     pub operator: String,
     /// Where the unit is: `sim`, `serial:…`, `tcp:…`.
     pub source: String,
-    /// Connection to the unit: `harness`, or `ptu` for the maintenance port alone; none where no tester led the
-    /// run.
+    /// Connection to the unit: `harness`, or `ptu` for the maintenance port alone; `None` if no tester led the run.
     pub connection: Option<String>,
     /// Symptom reported with the unit: a name of `symptoms.toml`.
     pub symptom: Option<String>,
-    /// Content of the bench, its clock and its instruments: JSON of the caller's own.
+    /// What the bench, its clock and its instruments were: JSON that the caller defines.
     pub evidence: Option<String>,
     /// When it began.
     pub started_at_us: i64,
@@ -102,7 +100,7 @@ pub struct RunRecord {
     pub owner: String,
     /// The procedure files used.
     pub scripts: Vec<ScriptRecord>,
-    /// The earlier run whose open procedures it runs.
+    /// The earlier run whose unfinished procedures this run runs.
     pub continues: Option<Id>,
 }
 
@@ -122,13 +120,13 @@ pub struct RunEnd {
 /// A finished step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepRecord {
-    /// Place in the run; must rise from step to step.
+    /// Index of the step in the run; rises from step to step.
     pub index: u32,
-    /// The procedure it belongs to.
+    /// The step's procedure.
     pub procedure: String,
     /// Kind of the step.
     pub kind: StepKind,
-    /// Place of the step in its procedure, from 0; none outside steps.
+    /// Index of the step in its procedure, from 0; `None` for a failure outside steps.
     pub place: Option<u32>,
     /// Name that the procedure gives the step, or the place outside steps.
     pub name: String,
@@ -138,17 +136,17 @@ pub struct StepRecord {
     pub turns: u32,
     /// The step's verdict.
     pub verdict: Verdict,
-    /// Bench time at its start.
+    /// Bench time at the start of the step.
     pub started_bench_us: i64,
-    /// Bench time it took.
+    /// Bench time that the step took.
     pub bench_time_us: i64,
     /// The reason of the verdict, in English; empty if there is nothing to say.
     pub message: String,
-    /// The reason as data: JSON of the caller's own, from which other languages are made.
+    /// The reason as data, from which texts in other languages are made: JSON that the caller defines.
     pub findings: Option<String>,
-    /// Line of the script it comes from.
+    /// Line of the script that defines the step.
     pub script_line: Option<u32>,
-    /// Where the numbers of what it expected come from, in the caller's words.
+    /// Source of the limits in the step's expectations, in the caller's words.
     pub limit_source: Option<String>,
     /// Measurements of the step.
     pub measurements: Vec<MeasurementRecord>,
@@ -190,7 +188,7 @@ pub struct MeasurementRecord {
     pub low: Option<f64>,
     /// Highest allowed value.
     pub high: Option<f64>,
-    /// Where its limits come from, in the caller's words.
+    /// Source of the limits, in the caller's words.
     pub limit_source: Option<String>,
     /// Verdict of the measurement.
     pub verdict: Verdict,
@@ -203,19 +201,19 @@ pub struct FaultRecord {
     pub code: i64,
     /// Name of the fault, as `eb_relay_open`.
     pub code_name: String,
-    /// Replaceable part it points at, or the caller's word for none. Identifies the fault, with unit and code.
+    /// Part that the fault points at, or the caller's word for no part. Unit, code and this part identify a fault.
     pub lru: String,
-    /// Severity, in the caller's words: a database may hold those of another program.
+    /// Severity, a word of the caller: a database may hold words of another program.
     pub severity: String,
     /// Time of the occurrence.
     pub at_us: i64,
     /// Time of the occurrence on the bench's clock.
     pub bench_us: i64,
-    /// Step under way, if any; it need not be recorded yet.
+    /// Index of the step under way, if any; the step need not be recorded yet.
     pub step_index: Option<u32>,
     /// Description, in English.
     pub message: String,
-    /// The description as data: JSON of the caller's own.
+    /// The description as data: JSON that the caller defines.
     pub findings: Option<String>,
     /// All signals at that moment.
     pub freeze: Vec<FreezeSample>,
@@ -243,17 +241,17 @@ pub(crate) fn part_name(part: &str) -> String {
 /// The kind of an event whose body is a [`RepairRecord`].
 pub(crate) const REPAIR: &str = "repair";
 
-/// The kinds of events whose body is a [`CauseRecord`]: by a person, and by the diagnosis of a run. A person's stands
-/// before any run's. In the SQL of `event_graph`, the first in alphabetical order stands before the other.
+/// The kinds of events whose body is a [`CauseRecord`]: `cause` of a person, `diagnosed` of a run's diagnosis. The SQL
+/// of `graph_sql` prefers a person's `cause`, as the first of both in alphabetical order.
 pub(crate) const CAUSE: &str = "cause";
 pub(crate) const DIAGNOSED: &str = "diagnosed";
 
 /// The part that a fault comes from, as a person or the diagnosis of a run says.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CauseRecord {
-    /// The part; empty: the fault is no consequence of another part, and stands alone.
+    /// The part that is the cause; empty if the fault is no consequence of another part and stands alone.
     pub part: String,
-    /// The run whose diagnosis found it, by its id; `None` of a person's.
+    /// Id of the run whose diagnosis found the cause; `None` if a person named it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub run: Option<String>,
     /// Probability of the cause in that diagnosis.

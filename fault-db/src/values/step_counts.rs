@@ -1,4 +1,4 @@
-//! One count of a run for all who tell it.
+//! Counts the steps of a run, by one rule for everything that shows such counts.
 
 use std::collections::BTreeMap;
 
@@ -6,19 +6,19 @@ use serde::Serialize;
 
 use super::record::{StepKind, StepRecord, Verdict};
 
-/// Different steps: each counts once, however often it was repeated or begun again. What failed outside the steps of
-/// procedures is none.
+/// Numbers of different steps: each counts once, however often it was repeated or begun again. A failure outside the
+/// steps of procedures is no step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct StepCounts {
-    /// Due; of a stored run those that it has a result of, unless it says how many were due.
+    /// Steps that were due; of a stored run, those with a result, unless the run tells how many were due.
     pub planned: u32,
-    /// Passed whenever they were run.
+    /// Steps that passed each time they were run.
     pub passed: u32,
-    /// Failed at least once.
+    /// Steps that failed at least once.
     pub failed: u32,
-    /// Did not fail, and could not be tested to their end at least once.
+    /// Steps that never failed, but at least once could not be tested to their end.
     pub error: u32,
-    /// Results of steps that were run, each repetition by itself.
+    /// Results of steps that were run; each repetition counts.
     pub attempts: u32,
     /// Number of failures outside steps.
     pub outside: u32,
@@ -53,10 +53,10 @@ impl StepCounts {
     }
 }
 
-/// Counts results as they come; `K` tells steps apart.
+/// Counts results one by one; `K` identifies a step.
 #[derive(Clone, Debug)]
 pub struct StepCounter<K> {
-    /// Outcome of each step: 0 not run, 1 passed, 2 an error, 3 failed, as in [`SELECT_COUNTS`].
+    /// Worst result of each step, as [`rank`] has it: 0 not run, 1 passed, 2 an error, 3 failed.
     steps: BTreeMap<K, u8>,
     attempts: u32,
     outside: u32,
@@ -73,7 +73,7 @@ impl<K> Default for StepCounter<K> {
 }
 
 impl<K: Ord> StepCounter<K> {
-    /// One more result of a step.
+    /// Counts a result of a step.
     pub fn note(&mut self, step: K, verdict: Verdict) {
         let rank = rank(verdict);
         self.attempts += u32::from(rank > 0);
@@ -81,12 +81,12 @@ impl<K: Ord> StepCounter<K> {
         *worst = rank.max(*worst);
     }
 
-    /// One more entry outside steps.
+    /// Counts a result outside steps.
     pub fn note_outside(&mut self, verdict: Verdict) {
         self.outside += u32::from(rank(verdict) > 1);
     }
 
-    /// Counts so far, of `planned` steps that are due, or more if more ran.
+    /// The counts so far; `planned` is the number of steps that are due (more if more ran).
     pub fn counts(&self, planned: usize) -> StepCounts {
         let of = |rank| self.steps.values().filter(|worst| **worst == rank).count() as u32;
         StepCounts {
@@ -100,7 +100,7 @@ impl<K: Ord> StepCounter<K> {
     }
 }
 
-/// Rank of a result for its step: of several results the greatest stands.
+/// Rank of a result; of several results of a step the greatest rank counts.
 pub fn rank(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Skipped => 0,
@@ -110,8 +110,8 @@ pub fn rank(verdict: Verdict) -> u8 {
     }
 }
 
-/// [`StepCounts`] of the stored run `r.seq` by the same rule, so that a list of runs reads no steps: a text of numbers in
-/// the order of the fields.
+/// SQL: [`StepCounts`] of the stored run `r.seq` by the same rule, so that a list of runs reads no steps; the text has
+/// the numbers in the order of the fields.
 pub(crate) const COUNTS_OF_RUN: &str = "
     SELECT count(*) || ' ' || count(CASE WHEN worst = 1 THEN 1 END) || ' ' || count(CASE WHEN worst = 3 THEN 1 END)
         || ' ' || count(CASE WHEN worst = 2 THEN 1 END) || ' ' || coalesce(sum(attempts), 0)

@@ -1,4 +1,4 @@
-//! Enums that are stored and shown as one fixed word for each variant.
+//! Enums whose variants are stored and shown as one fixed word each.
 
 /// Declares an enum whose variants are words in the database, in JSON and on the command line.
 macro_rules! text_enum {
@@ -59,12 +59,12 @@ macro_rules! text_enum {
 
 pub(crate) use text_enum;
 
-/// A text that is none of an enum's values.
+/// A text is none of the words of an enum.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown word {asked:?}; one of {} is expected", .known.join(", "))]
 pub struct UnknownWord {
     /// The text.
     pub asked: String,
-    /// The values there are.
+    /// The words of the enum.
     pub known: Vec<&'static str>,
 }

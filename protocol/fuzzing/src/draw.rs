@@ -1,4 +1,4 @@
-//! Draws the part that the check runs, another part with each commit; the long suite runs all.
+//! Draws the part of all cases that a check runs, another part after each commit; the long suite runs all cases.
 
 use std::path::Path;
 use std::process::Command;
@@ -6,15 +6,15 @@ use std::sync::LazyLock;
 
 use crate::mutate::Dice;
 
-/// Names the seed of a draw, or [`ALL`].
+/// Environment variable with the seed of a draw, or [`ALL`].
 const SEED: &str = "CHECK_SEED";
-/// Seed made of the last commit, read once.
+/// Seed made from the last commit.
 static OF_THE_LAST_COMMIT: LazyLock<String> = LazyLock::new(of_the_last_commit);
-/// Seed with which everything is drawn.
+/// Value of the variable with which all cases are drawn.
 const ALL: &str = "all";
 
-/// Draws one in `one_in` of all, at least one. Prints the seed by which the same are drawn again: a test that fails
-/// shows what was printed.
+/// Draws one in `one_in` of all cases, at least one. Prints the seed that draws the same cases again; a test that fails
+/// shows it.
 pub fn drawn<T>(all: impl IntoIterator<Item = T>, one_in: usize) -> Vec<T> {
     let mut waiting: Vec<T> = all.into_iter().collect();
     let seed = seed();
@@ -28,7 +28,7 @@ pub fn drawn<T>(all: impl IntoIterator<Item = T>, one_in: usize) -> Vec<T> {
         .collect()
 }
 
-/// The check is asked to test all of it.
+/// Whether the check is to run all cases.
 pub fn draws_all() -> bool {
     asked().is_some_and(|seed| seed == ALL)
 }
@@ -44,7 +44,7 @@ fn asked() -> Option<String> {
     Some(asked)
 }
 
-/// Seed that was asked for, or a number that follows from the last commit; without Git 0.
+/// Seed in `CHECK_SEED`, or else a number made from the last commit; 0 without Git.
 fn seed() -> String {
     asked().unwrap_or_else(|| OF_THE_LAST_COMMIT.clone())
 }

@@ -1,11 +1,11 @@
-//! Feeds a reader of bytes from outside with damaged ones: no panic, no hang, bounded memory. Draws what a check tests
-//! a part of ([`draw`]).
+//! Fuzzing for tests: feeds a reader of external bytes with damaged inputs and checks for no panic, no hang and bounded
+//! memory. Also draws the part that a check tests ([`draw`]).
 //!
-//! What is damaged is a corpus: sound examples, and what once broke a reader, kept in
-//! `tests/corpus/NAME/` of the crate. Everything follows from a seed, so that what was found is found again.
+//! The inputs are damaged copies of a corpus: sound examples, and inputs that once broke a reader, kept in
+//! `tests/corpus/NAME/` of the reader's crate. Everything follows from a seed, so that a failure can be repeated.
 //!
-//! A check does a part of the usual amount, and all of it with `CHECK_SEED=all`. `CAMPAIGN=N` does N times the usual
-//! amount ([`amount`]), `CAMPAIGN_SEED` is another seed ([`seed`]).
+//! A check feeds a part of the usual number of inputs, and all of them with `CHECK_SEED=all`. `CAMPAIGN=N` feeds N
+//! times the usual number ([`amount`]); `CAMPAIGN_SEED` sets another seed ([`seed`]).
 
 #![allow(
     clippy::print_stdout,
@@ -24,23 +24,23 @@ use std::time::{Duration, Instant};
 
 use mutate::Dice;
 
-/// Longer than this no reader may take for one input.
+/// Longest time that a reader may take for one input.
 const HANG: Duration = Duration::from_secs(10);
-/// From one look at the clock to the next.
+/// Interval at which the watch thread looks at the clock.
 const LOOK: Duration = Duration::from_millis(500);
 /// Memory that a reader may hold at a time, bytes.
 const MOST_MEMORY: u64 = 512 << 20;
-/// A check feeds one damaged input of this many.
+/// A check feeds one in this many of the damaged inputs.
 const PART_OF_A_CHECK: u64 = 4;
-/// Bytes of an input that are printed.
+/// Bytes of a failing input that are printed.
 const SHOWN: usize = 200;
 
-/// Size of a campaign: the amount of the check, times the number in `CAMPAIGN`.
+/// Number of inputs or runs of a test: the usual number, times the number in `CAMPAIGN`.
 pub fn amount(of_the_check: u64) -> u64 {
     of_the_check * set("CAMPAIGN").unwrap_or(1)
 }
 
-/// Seed of a campaign.
+/// Seed of what is drawn: `CAMPAIGN_SEED`, else 1.
 pub fn seed() -> u64 {
     set("CAMPAIGN_SEED").unwrap_or(1)
 }
@@ -56,11 +56,11 @@ pub struct Fuzz {
 }
 
 impl Fuzz {
-    /// A reader called `name`, with sound examples of what it reads; `manifest` is the folder of the crate that
-    /// keeps what broke it, `env!("CARGO_MANIFEST_DIR")`.
+    /// Test of the reader called `name`, with sound examples of what it reads. `manifest` is the folder of the crate
+    /// whose `tests/corpus/NAME/` keeps the inputs that once broke the reader: `env!("CARGO_MANIFEST_DIR")`.
     ///
     /// # Panics
-    /// There is no example, or a kept one cannot be read.
+    /// There is no example, or a kept input cannot be read.
     pub fn new(
         name: &str,
         manifest: &str,
@@ -82,10 +82,10 @@ impl Fuzz {
         }
     }
 
-    /// Feeds the reader: first the corpus as it is, then `runs` damaged ones, or a part of them in a check.
+    /// Feeds the reader: first the corpus as it is, then `runs` damaged inputs, or in a check a part of them.
     ///
     /// # Panics
-    /// The reader did, or took too much memory. Ends the process if it takes too long.
+    /// The reader panicked, or took too much memory. Ends the process if the reader takes too long.
     pub fn run(self, runs: u64, mut read: impl FnMut(&[u8])) {
         let runs = match set("CAMPAIGN") {
             Some(times) => runs * times,
@@ -106,7 +106,7 @@ impl Fuzz {
             }
             watch.begins(&input);
             let mut fed = Ok(());
-            // Memory taken by this thread alone: other tests of the program take memory, too.
+            // Measures the memory of this thread alone: other tests of the program take memory, too.
             let taken = allocation_counter::measure(|| {
                 fed = catch_unwind(AssertUnwindSafe(|| read(&input)));
             });
@@ -137,7 +137,7 @@ impl Fuzz {
     }
 }
 
-/// Keeps an input that broke a reader, and says where and what it is.
+/// Writes an input that broke a reader to a file; returns the file's path and the input as text.
 fn keep(name: &str, input: &[u8]) -> String {
     let file = std::env::temp_dir().join(format!("fuzz-{name}-{}.bin", std::process::id()));
     let kept = match std::fs::write(&file, input) {
@@ -155,7 +155,7 @@ fn keep(name: &str, input: &[u8]) -> String {
     )
 }
 
-/// Memory of a process by the system, kB, as `VmRSS` of `self` or of a number; 0 where the system does not tell.
+/// Memory of a process, kB: the value of `key`, as `VmRSS`, of process `self` or a number; 0 where it is not told.
 pub fn memory_kb(process: &str, key: &str) -> u64 {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let line = status
@@ -165,10 +165,10 @@ pub fn memory_kb(process: &str, key: &str) -> u64 {
     number.and_then(|number| number.parse().ok()).unwrap_or(0)
 }
 
-/// Ends the process when an input takes too long, with the input: nothing else ends a loop that does not end.
+/// Aborts the process, and keeps the input, when a reader takes too long: nothing else ends an endless loop.
 struct Watch {
     current: Arc<Mutex<(Vec<u8>, Option<Instant>)>>,
-    /// Dropped with the watch, which ends its thread.
+    /// Ends the watch thread when the watch is dropped.
     _ends: Sender<()>,
 }
 

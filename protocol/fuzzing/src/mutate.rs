@@ -1,9 +1,10 @@
-//! Damage: bits, bytes, pieces, numbers and joints of other examples.
+//! Damages inputs: flips bits, changes bytes, drops, repeats and inserts pieces, and splices in pieces of other
+//! examples.
 
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash as _, Hasher as _};
 
-/// Bytes that mean something in the formats read here.
+/// Bytes with a meaning in the formats that are read in this workspace.
 const WORDS: [&[u8]; 30] = [
     b"\0",
     b"\xFF",
@@ -36,10 +37,10 @@ const WORDS: [&[u8]; 30] = [
     b"\xC3\x28",
     "€".as_bytes(),
 ];
-/// Most kinds of damage in one input.
+/// Most times that one input is damaged.
 const MOST: usize = 6;
 
-/// Chance, the same for the same seed.
+/// Random numbers; one seed always gives the same numbers.
 pub struct Dice {
     state: u64,
 }
@@ -53,7 +54,7 @@ impl Dice {
         }
     }
 
-    /// SplitMix64.
+    /// The next 64 random bits (SplitMix64).
     fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut bits = self.state;
@@ -62,7 +63,7 @@ impl Dice {
         bits ^ (bits >> 31)
     }
 
-    /// Below `end`; 0 of nothing.
+    /// A random number below `end`; 0 if `end` is 0.
     pub fn below(&mut self, end: usize) -> usize {
         match end {
             0 => 0,
@@ -70,7 +71,7 @@ impl Dice {
         }
     }
 
-    /// The next input: one of the corpus, damaged, of at most `longest` bytes.
+    /// Makes the next input: a damaged copy of an example of the corpus, at most `longest` bytes.
     pub fn damaged(&mut self, corpus: &[Vec<u8>], longest: usize, input: &mut Vec<u8>) {
         input.clone_from(&corpus[self.below(corpus.len())]);
         for _ in 0..1 + self.below(MOST) {
@@ -81,7 +82,7 @@ impl Dice {
 
     fn damage(&mut self, corpus: &[Vec<u8>], input: &mut Vec<u8>) {
         let at = self.below(input.len() + 1);
-        // Mostly short pieces: long ones leave nothing of the example.
+        // Mostly short pieces: after long ones little is left of the example.
         let length = match self.below(4) {
             0 => self.below(input.len() + 1 - at),
             _ => self.below((input.len() + 1 - at).min(16)),

@@ -19,7 +19,7 @@ impl UnitConfig {
         }
         let margins = &self.overspeed;
         let [alarm, fsb] = [margins.alarm_margin_kmh, margins.fsb_margin_kmh];
-        // At once is right, too, where the emergency brake has no margin of its own.
+        // Where the emergency brake has no margin, alarm and service brake may have the same one.
         let rise = match margins.eb_margin_kmh {
             Some(eb) => alarm < fsb && fsb < eb,
             None => alarm <= fsb,

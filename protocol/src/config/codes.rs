@@ -37,13 +37,13 @@ pub struct SpeedCode {
     /// Use of the code.
     #[serde(default)]
     pub meaning: CodeMeaning,
-    /// Codes of other tables, by name, for which this one is sent: lines and scripts name them.
+    /// Names of codes of other tables for which this code is sent where a line or script uses them.
     #[serde(default)]
     pub stands_for: Vec<String>,
 }
 
 impl SpeedCode {
-    /// Limit under cab signal, km/h: what is for the yard permits nothing there.
+    /// Limit under cab signal, km/h; a yard code permits nothing there.
     pub fn line_kmh(&self) -> f64 {
         match self.meaning {
             CodeMeaning::Line => self.limit_kmh,
@@ -52,10 +52,10 @@ impl SpeedCode {
     }
 }
 
-/// What stands before a limit in km/h in place of a code's name.
+/// Mark before a limit in km/h that stands in place of a code's name, as in `≤60`.
 pub const AT_MOST: char = '≤';
 
-/// Place of the code that is called `name`, or is sent for one that is; of `≤60` the fastest within 60 km/h.
+/// Index of the code that is called `name` or stands for that name; for `≤60` of the fastest code within 60 km/h.
 pub fn find_code(codes: &[SpeedCode], name: &str) -> Option<usize> {
     if let Some(most_kmh) = name.strip_prefix(AT_MOST) {
         let most_kmh = most_kmh.parse().ok()?;

@@ -62,13 +62,13 @@ pub struct ReceiverConfig {
     pub level_max_mv: f64,
     /// Nominal level, mV.
     pub level_nominal_mv: f64,
-    /// A code is taken while no other in the antenna comes nearer to its level than this, dB.
+    /// Least level of the code that is taken over any other code in the antenna, dB.
     #[serde(default = "way::thousandths::<4000>")]
     pub apart_db: f64,
     /// By how much the code shifts the carrier up and down, Hz; 0 = it keys the carrier on and off.
     #[serde(default)]
     pub shift_hz: f64,
-    /// Carriers besides those of the code table on which each of its codes may come, Hz.
+    /// Further carriers, Hz, beside those of the code table, on which any code of the table may come.
     #[serde(default)]
     pub other_carriers_hz: Vec<f64>,
     /// Time a code must be steady before it counts, ms.
@@ -97,8 +97,8 @@ pub struct OverspeedConfig {
     pub alarm_margin_kmh: f64,
     /// Full service brake above limit plus this, km/h.
     pub fsb_margin_kmh: f64,
-    /// Emergency brake above limit plus this, km/h; without it no excess alone applies it, and only a service brake that
-    /// does not slow the train does.
+    /// Emergency brake above limit plus this, km/h; without this margin no overspeed alone applies the emergency brake,
+    /// only a service brake that does not slow the train.
     #[serde(default)]
     pub eb_margin_kmh: Option<f64>,
     /// How long the speed must stay above the alarm margin, ms.
@@ -109,10 +109,10 @@ pub struct OverspeedConfig {
     pub eb_delay_ms: u32,
     /// Time the service brake has to show its effect, ms.
     pub brake_proof_ms: u32,
-    /// Deceleration that proves it, m/s².
+    /// Deceleration that proves the effect of the service brake, m/s².
     pub brake_proof_mps2: f64,
-    /// After a step down of the limit: no emergency brake for this time, ms, nor after it while the
-    /// service brake is proved (S2 runs 55 → 45 at 50 km/h, the grace is not printed).
+    /// Time after a step down of the limit without an emergency brake for overspeed, ms; later there is none, either,
+    /// while the service brake is proved (S2 runs 55 → 45 at 50 km/h, the grace is not printed).
     pub step_down_grace_ms: u32,
     /// Time the brake line has to follow the EB relay, ms.
     pub eb_feedback_ms: u32,
@@ -154,7 +154,7 @@ pub struct OrdersConfig {
     pub length_tolerance_m: f64,
     /// Time within which the cabs must be changed at a turn-back, ms.
     pub cab_change_ms: u32,
-    /// Frames in a row with the same train number that make it keyed in.
+    /// Frames in a row with one train number after which this number counts as keyed in.
     pub entry_frames: u8,
 }
 
@@ -185,7 +185,7 @@ pub struct LinkConfig {
     pub rejected_per_10s: u32,
 }
 
-/// How far what the TEST board makes may be from what it is asked for.
+/// Tolerances of the signals of the TEST board, against the values it is asked for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TestBoardConfig {
@@ -193,9 +193,9 @@ pub struct TestBoardConfig {
     pub carrier_tolerance_hz: f64,
     /// Code rate, Hz.
     pub rate_tolerance_hz: f64,
-    /// Level, share of it.
+    /// Level, share of the level asked for.
     pub level_tolerance: f64,
-    /// Speed, share of it.
+    /// Speed, share of the speed asked for.
     pub speed_tolerance: f64,
 }
 
@@ -217,7 +217,7 @@ impl Default for TestBoardConfig {
 pub struct TwcConfig {
     /// Middle of the two tones, Hz.
     pub middle_hz: f64,
-    /// Distance of each tone from it, Hz; the upper one is bit 1.
+    /// Distance of each tone from the middle, Hz; the upper tone is bit 1.
     pub apart_hz: f64,
     /// Bits per second.
     pub bits_per_s: f64,
@@ -313,7 +313,7 @@ impl UnitConfig {
         carriers
     }
 
-    /// Whether a code may come on a carrier that is heard, Hz, within the tolerance.
+    /// Whether a code may come on the carrier heard, Hz, within the tolerance.
     pub fn is_on_carrier(&self, code: &SpeedCode, heard_hz: f64) -> bool {
         let others = self.receiver.other_carriers_hz.iter().copied();
         let mut carriers = core::iter::once(code.carrier_hz).chain(others);
@@ -337,8 +337,8 @@ pub(crate) fn conflict(text: &str) -> ConfigError {
     ConfigError::Conflict(text.to_string())
 }
 
-/// Checks the ranges of a configuration's numbers, each in a line: the path to its field, which behind the prefix is
-/// its key, and the least and the greatest value permitted.
+/// Checks ranges of numbers of a configuration. Each line gives the path to a field (prefix and path are the key in the
+/// file), the least and the greatest value permitted.
 #[macro_export]
 macro_rules! check_ranges {
     ($of:expr, $prefix:literal; $($first:ident $(. $rest:ident)*: $low:expr, $high:expr;)*) => {
@@ -351,7 +351,7 @@ macro_rules! check_ranges {
     };
 }
 
-/// Whether a value lies in its range; not a number lies in none.
+/// Checks that a value lies in its range; not-a-number lies in none.
 ///
 /// # Errors
 /// [`ConfigError::Range`], with the key.

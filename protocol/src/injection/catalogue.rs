@@ -246,7 +246,7 @@ car = 5
         assert_eq!(dead.kind(), FaultKind::Permanent);
     }
 
-    /// Levels are next to each other by their size on one side of what a good part has: a good part lies between the sides.
+    /// Neighbouring levels lie on one side of the value of a good part: a good part lies between the sides.
     #[test]
     fn next_levels_are_on_one_side_of_a_good_part() {
         let next = |effect: &str, levels: &str| {

@@ -16,7 +16,7 @@ pub const MAX_CARS: u8 = 12;
 const LONGEST_DELAY_MS: f64 = 5_000.0;
 /// Latest onset, s: a day.
 const LATEST_ONSET_S: f64 = 86_400.0;
-/// Spells and pauses of what comes and goes, s: from a few scans to an hour.
+/// Spells and pauses of an intermittent fault, s: from a few scans to an hour.
 const SHORTEST_SPELL_S: f64 = 0.05;
 const LONGEST_SPELL_S: f64 = 3_600.0;
 /// Speeds at which something may shake loose, km/h.
@@ -153,7 +153,7 @@ fn allowed(place: Place) -> &'static [Allowed] {
     }
 }
 
-/// Kind of an effect, and its number with the name it has.
+/// Kind of an effect; its number, with the name of the number.
 fn parts(effect: Effect) -> (&'static str, Option<(&'static str, f64)>) {
     match effect {
         Effect::Dead => ("dead", None),

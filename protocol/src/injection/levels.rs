@@ -7,9 +7,9 @@ use alloc::vec::Vec;
 
 use super::{Effect, FaultMode};
 
-/// Greatest effort, from which a limit comes down as it grows [S0: 1024 steps].
+/// Greatest effort; a limit begins here and falls as the fault grows [S0: 1024 steps].
 const FULL_EFFORT: f64 = 1024.0;
-/// Strength from which on a thing is there that is only there or not.
+/// Strength from which on an effect without a number acts.
 const HALF: f64 = 0.5;
 
 crate::labelled! {
@@ -38,7 +38,7 @@ impl FaultMode {
         }
     }
 
-    /// The mode at one of its levels: 0 as it is written, from 1 on those of `levels`; `None` beyond.
+    /// The mode at a level: 0 = as it is written, from 1 on the numbers of `levels`; `None` beyond.
     pub fn at_level(&self, level: usize) -> Option<Self> {
         let Some(listed) = level.checked_sub(1) else {
             return Some(self.clone());
@@ -50,7 +50,7 @@ impl FaultMode {
         })
     }
 
-    /// Each two neighbouring levels on the same side of a good part: the mode may have any size between them.
+    /// Pairs of neighbouring levels on the same side of a good part: the mode may have any size between the two.
     pub fn next_levels(&self) -> Vec<[usize; 2]> {
         let sizes = (0..=self.levels.len()).filter_map(|level| {
             let size = self.at_level(level)?.effect.size()?;
@@ -65,7 +65,7 @@ impl FaultMode {
 }
 
 impl Effect {
-    /// How far its number is from that of a good part; none of an effect without a number.
+    /// Difference between the effect's number and that of a good part; `None` for an effect without a number.
     fn size(self) -> Option<f64> {
         match self {
             Self::Dead | Self::StuckOn | Self::StuckOff | Self::Deaf { .. } => None,
@@ -78,7 +78,7 @@ impl Effect {
         }
     }
 
-    /// The effect at a strength of 0 to 1; `None` when there is nothing of it.
+    /// The effect at a strength of 0 to 1; `None` when it does not act.
     pub fn at_strength(self, strength: f64) -> Option<Self> {
         if strength <= 0.0 {
             return None;

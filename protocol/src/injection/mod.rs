@@ -2,7 +2,7 @@
 //! it acts ([`Occurrence`]) and how strongly (`levels`). The [`FaultCatalogue`] lists them with their
 //! parts.
 //!
-//! The unit applies fault modes at its own places, the rig those of the train and its wiring. Nothing that
+//! The unit applies fault modes at its own places, the rig those of the train, its wiring and the bench. Nothing that
 //! judges a result can read them.
 
 mod catalogue;
@@ -36,32 +36,32 @@ pub enum Effect {
     StuckOff,
     /// The value is multiplied.
     Gain {
-        /// 1 = no effect.
+        /// Factor; 1 = no effect.
         factor: f64,
     },
     /// The value is moved.
     Offset {
-        /// By this, in the place's own unit (Hz, km/h, m, effort …).
+        /// Amount by which the value is moved, in the place's own unit (Hz, km/h, m, effort …).
         by: f64,
     },
-    /// Kept within bounds.
+    /// The value is kept within bounds.
     Limit {
         /// Greatest size that comes through.
         to: f64,
     },
     /// The value, contact or frame comes late.
     Delay {
-        /// By this, ms.
+        /// Delay, ms.
         ms: u32,
     },
     /// What comes through comes a second time.
     Bounce {
-        /// Later by this, ms.
+        /// Time from the first to the second, ms.
         ms: u32,
     },
     /// One marker does not come through.
     Deaf {
-        /// To this one, 1 to 4.
+        /// Number of this marker, 1 to 4.
         to_marker: u8,
     },
     /// Spurious or missing pulses.
@@ -77,8 +77,8 @@ pub enum Effect {
 }
 
 crate::labelled! {
-    /// What a laptop alone lacks to find a fault: it has the maintenance port of a unit on a train at rest in a depot, and
-    /// with it the TEST board, the antennas' test coils, the unit's read-backs, its self-test and its log.
+    /// What a laptop alone lacks to find a fault. The laptop has the maintenance port of a unit on a train at rest in a
+    /// depot, and with it the TEST board, the antennas' test coils, the unit's read-backs, its self-test and its log.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
     #[serde(rename_all = "snake_case")]
     pub enum OutOfReach: word {
@@ -108,20 +108,20 @@ pub struct FaultMode {
     /// The fault can leave the train less protected.
     #[serde(rename = "unsafe")]
     pub unsafe_: bool,
-    /// Where it sits.
+    /// Where the fault sits in the signal path.
     pub place: Place,
     /// Effect of the fault.
     pub effect: Effect,
-    /// What is lacking to find it with a laptop alone; `None` = such a laptop should find it.
+    /// What a laptop alone lacks to find the fault; `None` = the laptop should find it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub out_of_reach: Option<OutOfReach>,
-    /// When it begins, s after power-up.
+    /// When the fault begins, s after power-up.
     #[serde(default)]
     pub onset_s: f64,
-    /// Car it is on, counted from the head of the train; only at places that are on cars.
+    /// Car with the fault, counted from the head of the train; only at places that are on cars.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub car: Option<u8>,
-    /// When it acts, once it has set in.
+    /// When the fault acts, once it has begun.
     #[serde(default, skip_serializing_if = "Occurrence::is_always")]
     pub occurs: Occurrence,
     /// Other values that the effect's number may have in a part with this fault.

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Duration, Instant, Speed};
 
-/// A mode that acts above a speed goes on until the wheels are slower than that by this share of it.
+/// A mode that acts above a speed ends when the wheels are slower than this speed by this share of it.
 const HYSTERESIS: f64 = 0.1;
 
-/// When a fault mode acts, once it has set in.
+/// When a fault mode acts, once it has begun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case", tag = "when", deny_unknown_fields)]
 pub enum Occurrence {
@@ -25,17 +25,16 @@ pub enum Occurrence {
         /// Mean length of a pause, s.
         off_s: f64,
     },
-    /// While the wheels turn faster than this: what shakes loose.
+    /// While the wheels turn faster than this speed: a contact that shakes loose.
     AboveSpeed {
         /// Speed at the rims, km/h.
         kmh: f64,
     },
-    /// The more the warmer it gets after power-up. What is only there or not is there from half the
-    /// rise on.
+    /// More and more as the unit warms up after power-up. An effect without a number acts from half of the rise on.
     WhenWarm {
-        /// Time after power-up at which it begins, s.
+        /// Time after power-up at which the rise begins, s.
         after_s: f64,
-        /// Time it takes from there to the whole of it, s.
+        /// Time from the begin of the rise to the full effect, s.
         full_s: f64,
     },
 }
@@ -47,7 +46,7 @@ impl Occurrence {
     }
 }
 
-/// An occurrence as it goes on.
+/// State of an occurrence, stepped in each scan.
 #[derive(Clone, Debug)]
 pub struct OccurrenceState {
     occurs: Occurrence,
@@ -78,7 +77,7 @@ impl OccurrenceState {
             Occurrence::AtTimes { on_s, off_s } => {
                 let pause = || self.from + lasts(off_s, draw());
                 let changes_at = self.changes_at.get_or_insert_with(pause);
-                // At most one change a scan: what is shorter lasts a scan.
+                // At most one change a scan: a shorter spell or pause lasts a scan.
                 if now >= *changes_at {
                     self.acts = !self.acts;
                     *changes_at = now + lasts(if self.acts { on_s } else { off_s }, draw());

@@ -112,11 +112,11 @@ pub enum Place {
     LineGuard,
     /// Supervision of motion with the reverser in neutral.
     NeutralGuard,
-    /// Comparison of a speed that falls with what a train can do, and with TCMS's.
+    /// Comparison of a falling speed with the greatest deceleration of a train, and with the speed that TCMS reports.
     SpeedGuard,
-    /// Standstill as a condition of release of the emergency brake: no pulse.
+    /// Standstill (no pulse) as a condition of release of the emergency brake.
     ReleaseStandstill,
-    /// Comparison of a marker with the way from the one before.
+    /// Comparison of a marker with the distance run since the marker before.
     MarkerGuard,
     /// Door enables that last until the doors are proved closed.
     EnableLatch,
@@ -154,7 +154,7 @@ pub enum Place {
     PowerSupply,
     /// The unit's clock, which also times its pulse inputs.
     Clock,
-    /// ATO processor's effort.
+    /// Effort that the ATO processor orders.
     AtoCpu,
     /// Working memory of the ATP CPU.
     Memory,
@@ -257,7 +257,7 @@ impl Place {
         !self.on_train() && !self.on_bench()
     }
 
-    /// Data the unit has stored: wrong from power-up on, or not at all.
+    /// Whether the place is data stored in the unit: wrong from power-up on, or not at all.
     pub const fn is_stored(self) -> bool {
         matches!(self, Self::TrackDatabase | Self::WheelParameter)
     }

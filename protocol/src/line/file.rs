@@ -19,7 +19,7 @@ pub enum LineError {
     /// The text does not parse, or an entry is missing; the message has line and column.
     #[error("{0}")]
     Syntax(String),
-    /// The data of a line cannot be.
+    /// The data of the line are impossible.
     #[error("line {line}: {reason}")]
     Data {
         /// Line of the file, from 1.
@@ -56,7 +56,7 @@ pub(super) fn read(text: &str) -> Result<Line, LineError> {
     }
 }
 
-/// What a line file looks like.
+/// JSON schema of a line file.
 pub fn file_schema() -> schemars::Schema {
     schemars::SchemaGenerator::default().into_root_schema_for::<File>()
 }
@@ -97,7 +97,7 @@ fn located(text: &str, broken: Broken) -> LineError {
     }
 }
 
-/// Where a place begins in the text; an entry that is left out is at its section.
+/// Where an entry begins in the text; for an entry that is missing, where its section begins.
 fn start_of(text: &str, place: LineEntry) -> Option<usize> {
     let file = DeTable::parse(text).ok()?;
     let section = file

@@ -32,12 +32,12 @@ pub struct Curve {
     pub at_m: f64,
     /// Radius, m; 0 = straight from here on.
     pub radius_m: f64,
-    /// Limit in it, km/h, beside `limits` of the section.
+    /// Limit in the curve, km/h, in addition to `limits` of the section.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit_kmh: Option<f64>,
 }
 
-/// A limit from a position on, of a line of which no speed codes are known.
+/// A limit from a position on, for a line whose speed codes are not known.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LimitFrom {
@@ -53,11 +53,11 @@ pub struct LimitFrom {
 pub struct Stretch {
     /// Where it begins, m from the section's start.
     pub from_m: f64,
-    /// Where it ends.
+    /// Where the part ends, m from the section's start.
     pub to_m: f64,
 }
 
-/// A speed code that the wayside sends from a position on. A unit's ATO slows for a lower one before its place;
+/// A speed code that the wayside sends from a position on. The unit's ATO slows down ahead of a lower code;
 /// the limit that its ATP supervises is read from the antenna alone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -103,7 +103,7 @@ pub struct Section {
     /// Speed codes along the section, in order.
     #[serde(default)]
     pub speed_codes: Vec<CodeFrom>,
-    /// In place of them, limits in order: the unit's fastest code within each is sent.
+    /// Limits in order, in place of `speed_codes`: for each limit the unit's fastest code within it is sent.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub limits: Vec<LimitFrom>,
     /// Tunnels in order; `None` = a tunnel all along.
@@ -115,7 +115,7 @@ pub struct Section {
 }
 
 impl Section {
-    /// Makes speed codes of the limits by position and in curves; they go.
+    /// Turns the limits by position and in curves into speed codes, and removes them.
     fn send_limits(&mut self) {
         let limits = core::mem::take(&mut self.limits);
         let Some(first) = limits.first() else {
@@ -156,7 +156,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// Calls the codes that are sent for limits as the unit's table does.
+    /// Gives the codes that were made from limits the names of the unit's code table.
     pub fn name_codes(&mut self, codes: &[SpeedCode]) {
         let all = self.sections.iter_mut().flat_map(|s| &mut s.speed_codes);
         for from in all.filter(|from| from.code.starts_with(AT_MOST)) {
@@ -200,7 +200,7 @@ impl Line {
         sections.find(|after| after.from_station == section.to_station)
     }
 
-    /// The station after the arrival station of `section`; that one itself at the line's end.
+    /// The station after the arrival station of `section`; at the line's end the arrival station itself.
     pub fn station_after(&self, section: &Section) -> u16 {
         let after = self.after(section);
         after.map_or(section.to_station, |after| after.to_station)

@@ -8,11 +8,11 @@ use thiserror::Error;
 
 use super::{Line, Section, Stretch};
 
-/// Steepest gradient that can be, ‰: beyond any adhesion railway's platform track [default].
+/// Steepest gradient permitted, ‰: steeper than the track at any platform of an adhesion railway [default].
 const STEEPEST_PERMILLE: f64 = 60.0;
-/// Limits that can be, km/h [default].
+/// Limits permitted, km/h [default].
 const LIMITS_KMH: RangeInclusive<f64> = 5.0..=200.0;
-/// Tightest curve that can be, m [default].
+/// Least radius of a curve permitted, m [default].
 const TIGHTEST_M: f64 = 80.0;
 
 /// A rule is broken.
@@ -29,7 +29,7 @@ pub struct Broken {
 pub(super) struct LineEntry {
     /// Place of the section, from 0.
     pub section: usize,
-    /// Entry of it.
+    /// Key of the entry in the section.
     pub key: &'static str,
     /// Item of a list.
     pub item: Option<usize>,

@@ -9,7 +9,7 @@ pub struct Counters {
     pub(super) accepted: [u64; CHANNELS],
     pub(super) gaps: [u64; CHANNELS],
     pub(super) out_of_place: [u64; CHANNELS],
-    /// Counts by reason, then by channel; the last place is for frames of no channel of this end.
+    /// Counts by reason, then by channel; the last place counts frames of no channel that this end hears.
     pub(super) rejected: [[u64; CHANNELS + 1]; Reject::ALL.len()],
     pub(super) garbage: u64,
 }
@@ -53,7 +53,7 @@ impl Counters {
             .sum()
     }
 
-    /// Frames rejected on a channel (`None` = no known one, or none of this end) for a reason.
+    /// Frames rejected on a channel (`None` = no known channel, or none that this end hears) for a reason.
     pub fn rejected_for(&self, reason: Reject, channel: Option<Channel>) -> u64 {
         self.rejected[reason as usize][channel.map_or(CHANNELS, |c| c as usize)]
     }

@@ -1,7 +1,7 @@
 //! One end of the wire: addresses, sequence numbers, time stamps and time-outs of each channel.
 //!
-//! The defences are those EN 50159 names for a closed transmission system. A frame that fails one
-//! is counted by reason and changes nothing else.
+//! The checks are the defences that EN 50159 names for a closed transmission system. A frame that fails one is counted
+//! by reason and changes nothing else.
 
 mod counters;
 mod receiver;
@@ -104,7 +104,7 @@ impl Link {
         seq
     }
 
-    /// Takes bytes as they arrived. [`Self::poll`] checks them against its own time, so call it in the same
+    /// Takes bytes as they arrived. [`Self::poll`] judges stamps by the time of its own call, so call it in the same
     /// step.
     pub fn push(&mut self, bytes: &[u8]) {
         self.decoder.push(bytes);
@@ -194,8 +194,8 @@ mod tests {
     use crate::Duration;
     use crate::message::{Identify, IoInput, KeepAlive, Status, TcmsToAtc, TwcWayside};
 
-    /// A tester whose numbers and clock begin again is heard at once on a connection of its own, and half a
-    /// frame of the one before it spoils none of its frames.
+    /// A tester whose numbers and clock begin again is heard at once on a new connection, and half a frame left by the
+    /// tester before spoils none of its frames.
     #[test]
     fn after_a_reset_connection_every_channel_starts_fresh() {
         let keep_alive = Message::from(KeepAlive { session: 0 });
@@ -220,8 +220,8 @@ mod tests {
         assert_eq!(counters.garbage(), frame.len() as u64 - 6);
     }
 
-    /// Time from the last frame of a tester until one is accepted of its successor, which begins `after_ms` later
-    /// with `seq` and speaks every 10 ms by a clock that is `behind_ms` behind.
+    /// Time from a tester's last frame to the first accepted frame of its successor, ms. The successor begins
+    /// `after_ms` later with number `seq` and speaks every 10 ms by a clock that is `behind_ms` behind.
     fn refused_ms(after_ms: u64, seq: u16, behind_ms: u64) -> u64 {
         const LAST_MS: u64 = 10_000;
         let (mut unit, mut before) = (Link::new(End::Unit), Link::new(End::Bench));
@@ -242,8 +242,8 @@ mod tests {
         heard.expect("it is heard in the end") - LAST_MS
     }
 
-    /// Goal: as long as `WIRE.md` says a successor is refused on the same line, and no longer. Method: such that
-    /// begin at any time, by any clock, with numbers that continue the predecessor's or do not.
+    /// Goal: a successor on the same line is refused for as long as `WIRE.md` says, and no longer. Method: successors
+    /// that begin at any time, by any clock, with numbers that continue the predecessor's or do not.
     #[test]
     fn a_successor_is_refused_for_two_seconds_at_most() {
         let last_seq = 1000;
@@ -287,8 +287,9 @@ mod tests {
         assert_eq!(unit.counters.rejected_total(), 0);
     }
 
-    /// Goal: what is not of an end's channels neither acts nor answers, and no channel is blamed for it. Method: a
-    /// unit's end for the tester alone gets a frame of each channel, and one of the I/O channel that is damaged.
+    /// Goal: a frame of a channel that an end does not hear has no effect and no answer, and is counted under no
+    /// channel. Method: a unit's end for the tester alone gets a frame of each channel, and a damaged one of the I/O
+    /// channel.
     #[test]
     fn an_end_with_one_channel_rejects_frames_of_the_others() {
         let mut unit = Link::with_channels(End::Unit, &[Channel::Ptu]);

@@ -8,7 +8,7 @@ pub const MAX_AHEAD: u16 = 1000;
 /// Time by which a frame may take longer than the fastest one so far.
 pub const MAX_DELAY: Duration = Duration::from_ms(500);
 /// A sender's clock that has fallen behind by this much since its last accepted frame stood still: the sender was
-/// started again, and the frames refused since then began with it.
+/// started again, and the frames refused since then are of the new start.
 pub const STOOD: Duration = Duration::from_ms(100);
 /// Silence after which a channel accepts any sequence number, as after a restart of its sender.
 pub const RESYNC: Duration = Duration::from_ms(1000);
@@ -24,7 +24,7 @@ pub(super) struct Receiver {
     stamp_ms: u32,
     /// Smallest difference between this clock and the sender's so far, ms, wrapping: the shortest transit.
     quickest_ms: u32,
-    /// Up to when `quickest_ms` is relaxed.
+    /// Time up to which `quickest_ms` is relaxed.
     relaxed_at: Instant,
     /// When the first frame since the last accepted one came too late.
     late_since: Option<Instant>,

@@ -49,11 +49,11 @@ wire_enum! {
         Tra = 4 "tra",
         /// The tachometers disagree.
         Tachometers = 5 "tachometers",
-        /// Inputs that no train can make, `AbsurdInputs`.
+        /// Inputs that no train can produce (`AbsurdInputs`).
         Inputs = 6 "inputs",
         /// The train does not do what the effort asks for.
         NotFollowing = 7 "not_following",
-        /// The train brakes less than it was sent, as TCMS itself says.
+        /// The train brakes less than ATO ordered, as TCMS itself reports.
         TrainWithholds = 8 "train_withholds",
     }
 }
@@ -73,7 +73,7 @@ wire_bits! {
         LOAD = 4,
         /// Speed limit or ordered speed that is no speed.
         LIMIT = 5,
-        /// No section of the track database, or one whose numbers cannot be.
+        /// No section of the track database, or one with impossible numbers.
         SECTION = 6,
     }
 }
@@ -136,7 +136,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// Orders of the wayside to a train beside running [S0, S4].
+    /// Orders of the wayside to a train, other than to run [S0, S4].
     TrainOrder {
         /// No order.
         None = 0 "none",
@@ -190,7 +190,7 @@ wire_bits! {
         STANDSTILL = 0,
         /// Doors are not proved closed and locked.
         DOORS_CLOSED = 1,
-        /// The train is not aligned at its destination, with station data of it.
+        /// The train is not aligned at its destination, or has no station data of its destination.
         AT_DESTINATION = 2,
         /// The mode switch is not at driverless.
         DRIVERLESS = 3,
@@ -248,7 +248,7 @@ wire_enum! {
         TestMode = 10 "test_mode",
         /// Moving forward while ATO jogs backward.
         Jog = 11 "jog",
-        /// Others opened the brake line of a train that moves.
+        /// The EB train line of a moving train was opened by something other than the unit.
         LineOpened = 12 "line_opened",
     }
 }
@@ -258,7 +258,7 @@ wire_enum! {
     FsbCause {
         /// The unit does not ask for the full service brake.
         None = 0 "none",
-        /// Speed above the limit and its margin.
+        /// Speed above the limit by more than the margin.
         Overspeed = 1 "overspeed",
         /// No valid speed code where one is needed.
         NoCode = 2 "no_code",
@@ -276,7 +276,7 @@ wire_enum! {
         StopCode = 8 "stop_code",
         /// A door is open on a side that is not enabled.
         DoorOpen = 9 "door_open",
-        /// Faster than a jog may be.
+        /// Jogging faster than permitted.
         Jog = 10 "jog",
         /// The emergency brake is asked for and does not act.
         EbFailed = 11 "eb_failed",
@@ -292,7 +292,7 @@ wire_enum! {
         NotArmed = 1 "not_armed",
         /// A value is outside what the TEST board can make.
         OutOfRange = 2 "out_of_range",
-        /// The TEST board did not take it.
+        /// The TEST board did not take the request.
         BoardFailed = 3 "board_failed",
     }
 }
@@ -322,7 +322,7 @@ wire_enum! {
         Busy = 4 "busy",
         /// The tester fell silent.
         TesterSilent = 5 "tester_silent",
-        /// The tester asked for it.
+        /// The tester disarmed the unit.
         Disarmed = 6 "disarmed",
         /// Start-up self-test is still running.
         StartingUp = 7 "starting_up",
@@ -386,7 +386,7 @@ wire_bits! {
         SELF_TEST = 12,
         /// The wayside has not given departure, or the start button was not pressed.
         NO_DEPARTURE = 13,
-        /// Driverless, the doors at this station have still to open, stand open or do not close.
+        /// In driverless operation the doors at this station have still to open, stand open or do not close.
         DOOR_SEQUENCE = 14,
         /// An order of the wayside holds the train: turn-back, put-away or wake-up.
         ORDERED = 15,

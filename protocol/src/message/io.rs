@@ -28,7 +28,7 @@ wire_bits! {
         /// The emergency brake train line is fed as far as the unit's own relay contact: nothing else
         /// on the train opens it.
         EB_LOOP_FED = 8,
-        /// The four lines below tell the doors of each side; without it the line of all doors tells of both.
+        /// The four lines below show the doors of each side; without this bit `DOORS_CLOSED` shows both sides.
         DOORS_BY_SIDE = 9,
         /// Doors on the left closed.
         LEFT_CLOSED = 10,
@@ -184,8 +184,8 @@ impl Field for Samples {
 }
 
 layout! {
-    /// Samples of one coil; sent before the `IoInput` of the same scan, whose code, tachometers and marker
-    /// count no more then. A coil without samples is silent.
+    /// Samples of one coil; sent before the `IoInput` of the same scan, whose code, tachometers and marker are then
+    /// ignored. A coil without samples is silent.
     CoilSamples, Io, 0x05 {
         /// Coil.
         coil: Coil,

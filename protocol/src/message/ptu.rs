@@ -60,7 +60,7 @@ layout! {
     }
 }
 layout! {
-    /// Keeps the status flowing, and an armed unit armed; at least every 500 ms.
+    /// Asks for further `Status` and keeps an armed unit armed; to be sent at least every 500 ms.
     KeepAlive, Ptu, 0x05 {
         /// Session number; 0 = listening only.
         session: u32,
@@ -117,7 +117,7 @@ layout! {
 layout! {
     /// Another client has the unit: said once to a TCP client that is turned away.
     Taken, Ptu, 0x85 {
-        /// IPv6 address of the client that has it; one of IPv4 is mapped, `::ffff:192.0.2.1`.
+        /// IPv6 address of the client that has the unit; an IPv4 address is mapped, `::ffff:192.0.2.1`.
         address: [u8; 16],
         /// Port of the client that has the unit.
         port: u16,
@@ -172,7 +172,7 @@ layout! {
         test_speed_cms: u16,
         /// Operating state of ATO.
         ato_state: AtoState,
-        /// Correction that ATO adds to the way its wheels tell, found between markers, 10 ppm.
+        /// Correction of the distance that ATO measures by its wheels, found between markers, 10 ppm.
         wheel_correction_10ppm: i16,
     }
 }

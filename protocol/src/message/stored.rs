@@ -12,12 +12,12 @@ layout! {
         store: StoreKind,
         /// First entry wanted; 4294967295 asks for the end alone.
         from_sequence: u32,
-        /// Entries wanted in each 50 ms, 1 to 4.
+        /// Entries that the unit sends in each 50 ms, 1 to 4.
         per_cycle: u8,
     }
 }
 layout! {
-    /// Tells the unit the time, which it stores with its own; answered.
+    /// Tells the unit the time, which the unit stores with its own time; answered.
     SetClock, Ptu, 0x24 {
         /// Time since 1970 without leap seconds, UTC, ms; from the year 2000 to the year 2100.
         utc_ms: u64,
@@ -101,7 +101,7 @@ layout! {
         store: StoreKind,
         /// Sequence number that the next entry will get.
         next_sequence: u32,
-        /// Oldest one still kept.
+        /// Sequence number of the oldest entry still kept.
         oldest_sequence: u32,
         /// Present power-up, from 1.
         power_up: u32,

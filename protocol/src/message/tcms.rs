@@ -11,9 +11,9 @@ wire_bits! {
         ATO_ENABLE = 0,
         /// A brake is not released: the train cannot run.
         BRAKE_NOT_RELEASED = 1,
-        /// The service brake is applied.
+        /// The train brakes, by the service brake or any other.
         SERVICE_BRAKE_APPLIED = 2,
-        /// The emergency brake train line is de-energised.
+        /// The emergency brake is applied: its train line is open and not cut out.
         EMERGENCY_BRAKE_APPLIED = 3,
         /// The holding brake is ordered.
         HOLDING_BRAKE_APPLIED = 4,
@@ -21,13 +21,13 @@ wire_bits! {
         POWERING_CUT = 5,
         /// TCMS orders the full service brake, for whatever cause.
         FULL_SERVICE_BRAKE = 6,
-        /// TCMS tells what it reads of the train lines in the bits below; else they say nothing.
+        /// The bits below show the train lines as TCMS reads them; without this bit they say nothing.
         TELLS_LINES = 7,
         /// TCMS reads the door line as proved closed.
         DOORS_CLOSED = 8,
         /// TCMS reads the head control relay of the unit's cab as picked up.
         CAB_MANNED = 9,
-        /// TCMS tells the speed of the axles that it measures itself in `speed_cms`; else that says nothing.
+        /// `speed_cms` shows the speed of the axles that TCMS measures; without this bit the field says nothing.
         TELLS_SPEED = 10,
     }
 }

@@ -10,7 +10,7 @@ use super::layout::layout;
 use super::tcms::TcmsToAtcBits;
 
 layout! {
-    /// Asks for `TrainState` beside each `Status`, for 1 s; at least every 500 ms.
+    /// Asks for `TrainState` beside each `Status` for the next 1 s; to be sent at least every 500 ms.
     Subscribe, Ptu, 0x06 {
         /// 1 = also at once in the scan of a change, 0 = with each `Status` only.
         changes: u8,
@@ -18,14 +18,14 @@ layout! {
 }
 
 layout! {
-    /// Outputs of the unit to the train, and its inputs from it, in the scan of the frame's stamp.
+    /// Outputs of the unit to the train, and inputs from the train, in the scan of the frame's stamp.
     TrainState, Ptu, 0x91 {
         /// Scans of 10 ms since a change that was not sent at once, at most 255; 0 = all that is new here
         /// changed in this scan.
         held: u8,
         /// Output contacts.
         outputs: Outputs,
-        /// Contacts that the functions under test ask for; what relays and test mode make of it is `outputs`.
+        /// Contacts that the functions under test ask for; `outputs` is what relays and test mode make of them.
         asked: Outputs,
         /// Operating mode told to TCMS.
         mode: Mode,
@@ -59,7 +59,7 @@ layout! {
         marker: u8,
         /// Markers the unit detected so far, wrapping.
         marker_count: u8,
-        /// Time since power-up of the last one, ms; 0 = none.
+        /// Time since power-up at which the last marker was detected, ms; 0 = none.
         marker_at_ms: u32,
         /// States that TCMS said last.
         tcms_bits: TcmsToAtcBits,
@@ -69,19 +69,19 @@ layout! {
         load_100kg: u16,
         /// Station number in the station data in force; 0 = none.
         twc_station: u16,
-        /// Section number in them; 0 = none.
+        /// Section number in the station data in force; 0 = none.
         twc_section: u16,
-        /// Loop number in them; 0 = none.
+        /// Loop number in the station data in force; 0 = none.
         twc_loop: u16,
-        /// Train number in them; 0 = none.
+        /// Train number in the station data in force; 0 = none.
         twc_train_number: u16,
         /// TWC answers sent into the loop since power-up, wrapping.
         twc_answers: u16,
         /// TWC answers that the TEST modem heard since power-up, wrapping.
         test_answers: u16,
-        /// Station number in the last of those.
+        /// Station number in the last answer that the TEST modem heard.
         test_answer_station: u16,
-        /// Train number in the last of those.
+        /// Train number in the last answer that the TEST modem heard.
         test_answer_train: u16,
         /// Speed pulses that left the TEST board since power-up, wrapping.
         test_pulses: u16,

@@ -66,13 +66,13 @@ layout! {
     TwcOrders, Twc, 0x02 {
         /// Train number.
         train_number: u16,
-        /// Section that the length below is of, by its number in the track database; 0 = none is told.
+        /// Number, in the track database, of the section whose length follows; 0 = no length is told.
         section: u16,
         /// Length of that section, 0.1 m.
         section_length_dm: u32,
         /// Station at which the train's run ends; 0 = none.
         destination: u16,
-        /// Order to the train beside running.
+        /// Order to the train, other than to run.
         order: TrainOrder,
     }
 }
@@ -90,7 +90,7 @@ layout! {
         destination: u16,
         /// State of the last order.
         order_state: OrderState,
-        /// TWC frames for this train since power-up, refused ones among them, wrapping.
+        /// TWC frames for this train since power-up, with the refused ones, wrapping.
         received: u16,
         /// TWC frames for this train that contradict the track database, wrapping.
         refused: u16,

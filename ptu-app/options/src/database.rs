@@ -10,28 +10,28 @@ use ptu_runs::clock;
 use ptu_runs::failure::{Asked, Failure, FileTrouble};
 use ptu_runs::{owner_only, stdio};
 
-/// Variable with the history of commands that are given none.
+/// Environment variable that names the history of commands without `--db`.
 const VARIABLE: &str = "PTU_DB";
-/// Place among the options: after all but `--help`.
+/// Place of `--db` among the options: after all but the terminal's and `--help`.
 const LAST: usize = 998;
 
-/// Which history.
+/// Option that names the history.
 #[derive(Debug, Args)]
 pub struct Database {
     /// Database file, or postgres://USER@HOST/DATABASE [default: history.db in the user's data directory]
     /// [env: PTU_DB]
-    // Read by us: clap would show a variable that is set as an option that has to be given.
+    // Read by this module, not by clap, which would show the option as required wherever the variable is set.
     #[arg(long, value_name = "FILE", global = true, display_order = LAST)]
     db: Option<PathBuf>,
 }
 
-/// The server that was named where a file could have been, if it was one.
+/// The server's address, if the path is an address; `None` for the path of a file.
 fn as_address(path: &Path) -> Option<Result<Address, StoreError>> {
     let text = path.to_string_lossy();
     Address::is_meant(&text).then(|| text.parse())
 }
 
-/// A file that is named beside `--db`; not a server, whose address would be taken for a file's name.
+/// The path of a second file beside `--db`; refuses a server's address, which would be taken for a file's name.
 pub fn only_file(path: &Path) -> Result<&Path, Failure> {
     match as_address(path) {
         None => Ok(path),
@@ -40,7 +40,7 @@ pub fn only_file(path: &Path) -> Result<&Path, Failure> {
 }
 
 impl Database {
-    /// What the user named, or the user's own file.
+    /// What the user named, or else `history.db` in the user's data directory.
     fn path(&self) -> Result<PathBuf, Failure> {
         let Some(path) = self.named() else {
             let file = directories::ProjectDirs::from("", "", "ptu")
@@ -53,25 +53,25 @@ impl Database {
         }
     }
 
-    /// What the user named, if anything.
+    /// What the user named by the option or the variable.
     fn named(&self) -> Option<PathBuf> {
         let variable = || std::env::var_os(VARIABLE).map(PathBuf::from);
         self.db.clone().or_else(variable)
     }
 
-    /// Path of a database in a file; for what a server does not do.
+    /// Path of the database file; refuses a server, for what a server cannot do.
     pub fn file(&self) -> Result<PathBuf, Failure> {
         let path = self.path()?;
         only_file(&path)?;
         Ok(path)
     }
 
-    /// The server, if it is one; for what tells a server from a file by itself.
+    /// The server's address if the database is on a server, else `None`.
     pub fn server(&self) -> Result<Option<Address>, Failure> {
         Ok(as_address(&self.path()?).transpose()?)
     }
 
-    /// The server, if it is one; a file has to be there.
+    /// The server's address if the database is on a server; refuses a file that does not exist.
     fn server_or_there(&self) -> Result<Option<Address>, Failure> {
         let (server, path) = (self.server()?, self.path()?);
         match server.is_none() && !path.exists() {
@@ -80,13 +80,13 @@ impl Database {
         }
     }
 
-    /// Opens one that is there for writing: a name that is mistyped makes none.
+    /// Opens an existing database for writing; a mistyped name makes no new file.
     pub fn open(&self) -> Result<Store, Failure> {
         self.server_or_there()?;
         self.open_or_make()
     }
 
-    /// A file that was named has to be there, as the name may be mistyped; the user's own may be made.
+    /// Refuses a named file that does not exist, as its name may be mistyped; the user's own file may still be made.
     pub fn check_named(&self) -> Result<(), Failure> {
         match self.named() {
             Some(_) => self.server_or_there().map(drop),
@@ -94,7 +94,7 @@ impl Database {
         }
     }
 
-    /// Opens it for writing, and makes a file if need be: for what brings runs in.
+    /// Opens the database for writing, and makes the file if it is not there: for commands that add runs.
     pub fn open_or_make(&self) -> Result<Store, Failure> {
         match self.server()? {
             None => self.open_file(),
@@ -102,7 +102,7 @@ impl Database {
         }
     }
 
-    /// Opens a database in a file for runs, and makes the user's own data directory if need be.
+    /// Opens the database file for writing, and makes it and the user's own data directory if they are not there.
     pub fn open_file(&self) -> Result<Store, Failure> {
         let path = self.file()?;
         if self.named().is_none() {
@@ -114,7 +114,7 @@ impl Database {
         Ok(Store::open(&path, clock::open_options())?)
     }
 
-    /// Opens it for reading.
+    /// Opens the database for reading; a note names what was added to a file by hand.
     pub fn open_read_only(&self) -> Result<Store, Failure> {
         if let Some(address) = self.server()? {
             return Ok(Store::connect_read_only(&address)?);

@@ -20,7 +20,7 @@ use ptu_runs::failure::{Asked, Failure, FileTrouble};
 pub use scripts::ScriptsOption;
 pub use window::WindowOptions;
 
-/// A file of what this user has set.
+/// Path of a file of this user's settings.
 ///
 /// # Errors
 /// The user has no folder for it.
@@ -30,7 +30,7 @@ pub fn settings_file(name: &str) -> Result<PathBuf, Failure> {
         .ok_or_else(|| Failure::usage(FileTrouble::NoSettingsFolder))
 }
 
-/// The file of this user's calibrations of sound devices.
+/// Path of the file with this user's calibrations of sound devices.
 ///
 /// # Errors
 /// The user has no folder for it.
@@ -41,7 +41,7 @@ pub fn sound_file() -> Result<PathBuf, Failure> {
 /// Refuses a command line that holds a server's password.
 ///
 /// # Errors
-/// An argument holds one. Looked at first: whatever else is wrong would be shown as it stands.
+/// An argument holds a password. Call this first: any other error would show the argument with the password.
 pub fn refuse_password() -> Result<(), Failure> {
     let mut arguments = std::env::args_os().skip(1);
     if arguments.any(|argument| Address::holds_password(&argument.to_string_lossy())) {

@@ -24,12 +24,12 @@ pub enum Page {
     Report,
     /// Waveforms: read, recorded, made and played.
     Signals,
-    /// Page of causes, their frequency, and whether repairs hold.
+    /// Causes of faults, how often they occur, and whether repairs hold.
     Statistics,
 }
 
 impl Page {
-    /// All, in the order they are shown.
+    /// All pages, in the order in which the window shows them.
     pub const ALL: [Self; 10] = [
         Self::Case,
         Self::Bench,
@@ -43,7 +43,7 @@ impl Page {
         Self::Signals,
     ];
 
-    /// Name of the page on the command line, and of the key that shows it.
+    /// Word for the page on the command line, and the key that shows the page.
     fn word_and_key(self) -> (&'static str, &'static str) {
         match self {
             Self::Case => ("case", "F7"),
@@ -63,7 +63,7 @@ impl Page {
         self.word_and_key().0
     }
 
-    /// The names of all on the command line, for who chooses one.
+    /// List of the pages' words on the command line, for help and refusals.
     pub fn one_of() -> String {
         let [pages @ .., last] = Self::ALL.map(Self::word);
         format!("{} or {last}", pages.join(", "))

@@ -1,5 +1,5 @@
-//! Defaults of options that a depot or a user chose, in files: the depot's, then the user's. In each file the table
-//! of this computer comes last, and the last value counts. A command line counts before all of them.
+//! Defaults of options that a depot or a user chose, in files: the depot's file is read first, then the user's. In each
+//! file the table of this computer is read last; the last value counts. The command line counts before all files.
 //!
 //! ```toml
 //! who = "Kim"
@@ -19,7 +19,7 @@ use ptu_report::words::Language;
 use ptu_runs::failure::{Failure, FileTrouble, did_you_mean};
 use ptu_runs::platform::computer_name;
 
-/// Options that have presets.
+/// Options for which a default can be chosen.
 pub const OPTIONS: [&str; 8] = [
     "who",
     "unit",
@@ -30,21 +30,21 @@ pub const OPTIONS: [&str; 8] = [
     "lang",
     "color",
 ];
-/// The table of tables of computers.
+/// Table of a file that holds a table for each computer.
 const HOST: &str = "host";
 
-/// A default that was chosen.
+/// A default that a depot or user chose for an option.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Preset {
     /// The option, without its hyphens.
     pub option: String,
-    /// The value that the option has by default.
+    /// The default value of the option.
     pub value: String,
-    /// The file, and the table of this computer if it stands there.
+    /// The file, and the table of this computer if the value stands there.
     pub from: String,
 }
 
-/// The files, whether they are there or not; the last counts most.
+/// Files of defaults, whether they exist or not; a later file counts more.
 pub fn files() -> Vec<PathBuf> {
     let depot = PathBuf::from("/etc/ptu/config.toml");
     [depot]
@@ -53,10 +53,10 @@ pub fn files() -> Vec<PathBuf> {
         .collect()
 }
 
-/// All that were chosen for this computer; of one option the last counts.
+/// All defaults chosen for this computer; of several for one option the last counts.
 ///
 /// # Errors
-/// A file cannot be read, or has what is no preset.
+/// A file cannot be read, or holds a key or value that cannot be a default.
 pub fn presets() -> Result<Vec<Preset>, Failure> {
     let mut presets = Vec::new();
     for file in files().iter().filter(|file| file.exists()) {
@@ -106,8 +106,8 @@ fn of_table(table: &Table, file: &Path, computer: &str) -> Result<Vec<Preset>, F
     Ok(presets)
 }
 
-/// The command, which is asked with these words, with these presets as the defaults of its options. A run that goes on with
-/// another takes what that one had.
+/// Sets the presets as defaults of the command's options. `words` is the command line: a run that continues an earlier
+/// run (`--resume`, `--retry-errors`) takes no preset for unit, line, unit configuration and train.
 pub fn applied(command: Command, presets: &[Preset], words: &[OsString]) -> Command {
     let goes_on = words.iter().any(|word| {
         let word = word.to_string_lossy();
@@ -116,7 +116,7 @@ pub fn applied(command: Command, presets: &[Preset], words: &[OsString]) -> Comm
     let of_run = |option: &str| matches!(option, "unit" | "line" | "unit-config" | "train");
     let kept = presets.iter().filter(|preset| {
         let option = preset.option.as_str();
-        // A variable counts more than a file, and is read where the option is.
+        // A variable counts more than a file; `Database` reads the variable itself.
         let by_variable = option == "db" && std::env::var_os("PTU_DB").is_some();
         !(by_variable || goes_on && of_run(option))
     });
@@ -135,7 +135,7 @@ fn set(command: Command, presets: &[&Preset], verbs: &mut Vec<String>) -> Comman
             return command;
         }
         command.mut_args(|option| match option.get_long() == Some(&preset.option) {
-            // As long as the program runs, which reads its command line once.
+            // Leaked on purpose: the value lives as long as the program, which reads its command line once.
             true => option.default_value(&*preset.value.clone().leak()),
             false => option,
         })
@@ -145,8 +145,8 @@ fn set(command: Command, presets: &[&Preset], verbs: &mut Vec<String>) -> Comman
     command
 }
 
-/// Whether a preset is meant for a verb: a line or a unit that only narrows what is shown is asked for each time, and the window
-/// connects when it is told to.
+/// Whether a preset counts for a verb. Where line or unit only narrow what is shown, they have to be given each time;
+/// the window connects only when it is told to.
 fn suits(option: &str, verbs: &[&str]) -> bool {
     match (option, verbs) {
         ("who" | "db" | "lang" | "color", _) => true,

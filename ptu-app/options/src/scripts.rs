@@ -6,17 +6,18 @@ use clap::Args;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;
 
-/// Where procedures and data files are.
+/// Option that names the folder of procedures and data files.
 #[derive(Debug, Args)]
 pub struct ScriptsOption {
-    /// Directory with procedures, units/ and lines/, alone [default: ./scripts, or above the program; else the user's and
-    /// the system's own files over those in the program]
+    /// Directory with procedures, units/ and lines/, used alone [default: ./scripts, or scripts above the program; else
+    /// the user's and the system's own files over those in the program]
     #[arg(long, value_name = "DIR", env = "PTU_SCRIPTS")]
     scripts: Option<PathBuf>,
 }
 
 impl ScriptsOption {
-    /// The folder that was named, or the one that counts where none was. Its Korean texts are taken for all that is said from now on.
+    /// The places of the scripts: the named folder, or else the default places. From now on their Korean texts are used
+    /// for everything that is said.
     ///
     /// # Errors
     /// The named folder or its Korean texts cannot be read.

@@ -19,10 +19,10 @@ use ptu_runs::link::Endpoint;
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct WindowOptions {
-    /// Language, en or ko [default: as it was left, at first that of the locale]
+    /// Language, en or ko [default: as the window was left, at first the language of the locale]
     #[arg(long, value_name = "LANGUAGE")]
     pub lang: Option<Language>,
-    // A comment would be the help, which names the pages.
+    // No doc comment: clap would take it as the help in place of `help`, which names the pages.
     #[arg(long, value_name = "PAGE", help = format!("Page to show first: {}", Page::one_of()))]
     pub page: Option<Page>,
     #[allow(
@@ -32,7 +32,7 @@ pub struct WindowOptions {
     /// Connect at once: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<Endpoint>,
-    /// Whether the bench harness is connected: auto, none or bench [default: as it was left]
+    /// Whether the bench harness is connected: auto, none or bench [default: as the window was left]
     #[arg(long, value_name = "WHICH")]
     pub harness: Option<Harness>,
     /// Faults to inject into the simulated unit, see `ptu catalog faults`

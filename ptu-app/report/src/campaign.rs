@@ -14,7 +14,7 @@ use ptu_runs::campaign::{AdaptiveFigures, Effort, Figures, Outcome, Redundancy, 
 /// The connection of a laptop alone, as a dictionary names it.
 const ALONE: &str = "ptu";
 
-/// The contract's keys first; shares and names beside them.
+/// The result of a campaign as JSON; the keys on which other programs rely come first, shares and names beside them.
 pub fn campaign_json(outcome: &Outcome, figures: &Figures, steps: &Redundancy) -> Value {
     let names = |shortfalls: &[Shortfall]| -> Vec<_> {
         shortfalls.iter().map(|s| s.fault.clone()).collect()

@@ -201,7 +201,7 @@ fn refused(refused: &Refusals, words: &Words) -> Vec<String> {
     all
 }
 
-/// Two people who did not know of each other's decision.
+/// Sentence on two people who decided without knowing of each other's decision.
 fn conflict(conflict: &StateConflict, words: &Words) -> String {
     let rivals: Vec<_> = (conflict.rivals.iter())
         .map(|rival| {

@@ -13,23 +13,23 @@ const BEGIN: &str = "<script type=\"application/json\" id=\"ptu-certificate\">";
 const END: &str = "</script>";
 /// End of a page, behind its certificate.
 const PAGE_END: &str = "</body></html>";
-/// Version of what is signed of a sheet; the first did not cover the certificate.
+/// Version of a sheet's statement; in version 1 the statement did not cover the certificate.
 const VERSION: u32 = 2;
 
 /// The statement about a sheet that is signed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SheetStatement {
-    /// Version of this list.
+    /// Version of this set of fields.
     pub version: u32,
-    /// `sheet`.
+    /// Kind of statement: `sheet`.
     pub what: String,
     pub id: String,
     /// SHA-256 of the page with its certificate, but without this document.
     pub sheet: String,
-    /// SHA-256 of the run's content, as its seal has it; empty before its end.
+    /// SHA-256 of the run's content, as the run's seal has it; empty before the end of the run.
     pub digest: String,
-    /// When the sheet was written.
+    /// Time at which the sheet was written, µs UTC.
     pub at_us: i64,
     /// Name of the person who signed.
     #[serde(default)]
@@ -55,7 +55,7 @@ struct Block {
 }
 
 impl Block {
-    /// The page that begins so with this certificate, in its one form.
+    /// The page: the text `begins`, then this certificate, which always has the same form.
     fn page(&self, begins: &str) -> String {
         let json = canonical_json(&serde_json::to_value(self).unwrap_or_default());
         // JSON needs no `<` of its own: nothing in the text ends the element.
@@ -125,7 +125,7 @@ pub fn has_certificate(page: &str) -> bool {
 /// Reads the certificate of a sheet, which stands once, in one form, at the end of the page.
 ///
 /// # Errors
-/// There is none, or the page is not as the program writes it.
+/// The page has no certificate, or is not as the program writes it.
 pub fn read_certificate(page: &str) -> Result<SheetCertificate, String> {
     let (begins, rest) = page.split_once(BEGIN).ok_or("it has no certificate")?;
     let json = rest.strip_suffix(PAGE_END);

@@ -29,7 +29,7 @@ pub fn count_text(counts: &StepCounts, words: &Words) -> String {
         text += &fill(report.attempts, &[("n", &counts.attempts)]);
     }
     if counts.outside > 0 {
-        // A sentence that goes on.
+        // The sentence goes on.
         text.truncate(text.trim_end_matches('.').len());
         text += &fill(report.outside_steps, &[("n", &counts.outside)]);
     }

@@ -39,7 +39,7 @@ const COLUMNS: [&str; 21] = [
 /// page of the system.
 pub const MARK: &str = "\u{feff}";
 
-/// A cell of a table: text must not act, a number must stay one.
+/// A cell of a table: a text must not act as a formula, a number must stay a number.
 pub enum Cell {
     /// Text that people and scripts wrote.
     Text(String),
@@ -115,10 +115,10 @@ impl Cell {
     }
 }
 
-/// A spreadsheet takes a text that begins like a formula for one; an apostrophe before it says that it is
-/// none.
+/// The text, with an apostrophe before it if it begins like a formula: a spreadsheet then takes the text for no
+/// formula.
 pub fn no_formula(text: &str) -> Cow<'_, str> {
-    // Some pass over what has no width.
+    // Some spreadsheets pass over letters without width.
     let begins = text.trim_start_matches(|letter| letter == ' ' || display_text::is_unseen(letter));
     match text.starts_with(['\t', '\r', '\n'])
         || begins.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠'])
@@ -128,7 +128,7 @@ pub fn no_formula(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// A cell in quotes where its content asks for them: where a comma marks decimals, spreadsheets separate cells at semicolons.
+/// A cell, quoted if its content needs quotes: where a comma marks decimals, spreadsheets separate cells at semicolons.
 pub(crate) fn quoted(cell: &str) -> Cow<'_, str> {
     match cell.contains([',', ';', '\t', '"', '\n', '\r']) {
         true => Cow::Owned(format!("\"{}\"", cell.replace('"', "\"\""))),

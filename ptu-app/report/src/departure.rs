@@ -16,7 +16,7 @@ use ptu_runs::stored::{DEPARTURE, standing};
 /// How long a unit that passed is good for service, µs: 24 hours, as the operating rules of a railway have it (CSS 551).
 const VALID_US: i64 = 86_400_000_000;
 
-/// Most steps that were not run of which each is named.
+/// Most steps that were not run for which each is named; more of them are counted.
 const MOST_NAMED: usize = 3;
 
 /// A run as a departure test: until when it is valid, or why it is not.
@@ -32,8 +32,8 @@ pub struct Departure {
 }
 
 impl Departure {
-    /// What a run is worth in which departure tests were due; `None` of any other run. The run holds if it made departure
-    /// tests alone, all of them, on a real unit without injected faults, and if it passed and is signed.
+    /// The run as a departure test; `None` if no departure test was due in the run. The test is valid if the run made
+    /// departure tests alone, all of them, on a real unit without injected faults, and if it passed and is signed.
     pub fn of(run: &RunDetail) -> Option<Self> {
         let is_departure = |path: &str| path.starts_with(DEPARTURE);
         if !run.scripts.iter().any(|script| is_departure(&script.path)) {
@@ -51,7 +51,7 @@ impl Departure {
         }
         let counts = counts_of(run_of);
         let skipped = standing(&run.steps).filter(|step| step.verdict == Verdict::Skipped);
-        // Of many that were not run the number tells more than their names.
+        // The number of many steps that were not run tells more than their names.
         let named = counts.not_run() as usize == skipped.take(MOST_NAMED).count();
         for step in standing(&run.steps) {
             let said: fn(&Words) -> &'static str = match step.verdict {
@@ -116,7 +116,7 @@ impl Departure {
         Ok(())
     }
 
-    /// The test as it stands now: with a reason if its time is over.
+    /// The test at the present time: if its time is over, it has this as a reason.
     pub fn now(mut self) -> Self {
         if self.why_not.is_empty() && now_us() > self.until_us {
             let at = local_zoned(self.until_us);
@@ -143,7 +143,7 @@ impl Departure {
         }
     }
 
-    /// For other programs.
+    /// The test as JSON, for other programs.
     pub fn json(&self) -> Value {
         json!({
             "unit_serial": self.unit, "valid": self.why_not.is_empty(),

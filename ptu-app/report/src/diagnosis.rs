@@ -15,10 +15,10 @@ use ptu_runs::run_diagnosis::Answer;
 
 /// Parts that are shown at once.
 pub const MOST_PARTS: usize = 3;
-/// Reasons that are shown of each.
+/// Reasons that are shown for each part.
 pub const MOST_REASONS: usize = 3;
 
-/// The contract's keys first.
+/// A diagnosis as JSON; the keys on which other programs rely come first.
 pub fn diagnosis_json(answer: &Answer) -> Value {
     let d = &answer.diagnosis;
     let words = Language::English.words();
@@ -57,14 +57,14 @@ pub fn diagnosis_json(answer: &Answer) -> Value {
     })
 }
 
-/// The first reasons, which differ.
+/// The first reasons as text, [`MOST_REASONS`] at most.
 pub fn shown_reasons(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<String> {
     let said = reasons.iter().take(MOST_REASONS);
     said.map(|reason| words.reason(reason, &answer.run))
         .collect()
 }
 
-/// All reasons, held against the dictionary.
+/// All reasons, compared with the fault dictionary.
 fn details(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<String> {
     let detail = |reason: &Reason| {
         let said = || words.reason(reason, &answer.run);
@@ -73,8 +73,8 @@ fn details(answer: &Answer, reasons: &[Reason], words: &Words) -> Vec<String> {
     reasons.iter().map(detail).collect()
 }
 
-/// Text for people: three parts at most, each by its likeliest fault and the reasons that convince most; with `all` all parts
-/// and all reasons, held against the dictionary; of the part that was asked about alone, if one was.
+/// Text for people: the three likeliest parts, each with its likeliest fault and its strongest reasons; with `all` all
+/// parts and all reasons, compared with the fault dictionary. If one part was asked about, that part alone.
 pub fn diagnosis_text(answer: &Answer, all: bool, words: &Words) -> String {
     let d = &answer.diagnosis;
     let run = &answer.run.run;
@@ -140,7 +140,7 @@ pub enum Possible<'a> {
     NoFault,
 }
 
-/// Less likely than this reads 0.0 %, and is not told.
+/// Least probability that is shown: a lower one would read 0.0 %.
 const LEAST_TOLD: f64 = 0.0005;
 
 /// What may be the cause, `most` parts, each with its probability, the likeliest first. The
@@ -151,7 +151,7 @@ pub fn ranked(of: &Diagnosis, most: usize) -> Vec<(f64, Possible<'_>)> {
         Conclusion::NothingSeen { made: 0, .. } | Conclusion::BenchFailed { .. }
     );
     if nothing {
-        // What is known beforehand of each part is no finding.
+        // The probability that a part has before any check is no finding.
         return Vec::new();
     }
     let mut parts = BTreeSet::new();
@@ -172,14 +172,14 @@ pub fn probability_of(of: &Diagnosis, c: &Candidate) -> f64 {
     part.map_or(c.probability, |part| part.probability)
 }
 
-/// A part by its likeliest fault.
+/// Writes a part with its probability and its likeliest fault.
 fn part_text(text: &mut String, d: &Diagnosis, c: &Candidate, words: &Words) {
     let percent = 100.0 * probability_of(d, c);
     let what = words.fault_text(&c.text);
     let _ = writeln!(text, "\n{percent:5.1} %  {}  ({}: {what})", c.lru, c.fault);
 }
 
-/// All faults of a part, which add up to its probability.
+/// Writes all faults of a part, whose probabilities add up to that of the part.
 fn faults_text(
     text: &mut String,
     (answer, part): (&Answer, &Candidate),

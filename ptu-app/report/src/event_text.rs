@@ -7,7 +7,7 @@ use ptu_runs::clock;
 
 use crate::words::{Words, fill};
 
-/// The part that a fault was attributed to, as it is called, `-` if it stands alone, and what that rests on.
+/// The part to which a fault was attributed, as `called` names it, `-` if the fault stands alone, and the grounds.
 pub fn cause_text(cause: &CauseRecord, called: impl Fn(&str) -> String) -> String {
     let part = match called(&cause.part) {
         none if none.is_empty() => "-".to_owned(),

@@ -8,7 +8,7 @@ use ptu_runs::failure::Failure;
 
 use crate::distances::Distances;
 
-/// A local month of the span, or its part in it.
+/// A month in local time, or the part of the month that lies in the span.
 pub struct Month {
     /// Name of the month, as 2026-03.
     pub name: String,
@@ -18,14 +18,14 @@ pub struct Month {
     pub stat: FaultStat,
 }
 
-/// Each local month of the span for itself, the oldest first. None if there is nothing to count in any of
-/// them.
+/// Counts for each month, in local time, of the span, the oldest first; empty if there is nothing to count in any
+/// month.
 pub fn by_month(store: &Store, query: &StatQuery) -> Result<Vec<Month>, Failure> {
     let Some((first_us, last_us)) = store.history_span()? else {
         return Ok(Vec::new());
     };
-    // Before the history there is nothing, and after now only what a computer with a fast clock recorded:
-    // a span that reaches farther has no months there, and the same counts.
+    // The span is cut to the history. Later than now are only entries of a computer with a fast clock: months beyond
+    // them, or before the history, have no counts.
     let end_us = query.now_us.max(last_us.saturating_add(1));
     let since_us = query
         .filter
@@ -67,7 +67,7 @@ pub struct OnTheWay {
 }
 
 impl OnTheWay {
-    /// Faults for each 10 000 km; `None` of trains that did not move.
+    /// Faults for each 10 000 km; `None` if the trains did not move.
     pub fn per_10000_km(&self) -> Option<f64> {
         (self.km > 0.0).then(|| 1e4 * f64::from(self.faults) / self.km)
     }

@@ -213,7 +213,7 @@ pub fn json_text(value: &impl Serialize) -> Result<String, Failure> {
 /// A JSON document in which every letter that acts on a terminal, or hides, is spelled `\u202e`: whoever
 /// reads it has each letter as it was.
 pub fn json_safe(text: &str) -> Cow<'_, str> {
-    // What is below is spelled so already, or stands between values.
+    // JSON spells control characters below U+007F already, or they stand between values.
     let is_spelled = |letter: char| letter >= '\u{7f}' && display_text::is_unseen(letter);
     if !text.contains(is_spelled) {
         return Cow::Borrowed(text);

@@ -18,8 +18,8 @@ use ptu_runs::stored::{WHOLE_RUN, by_procedure, kind_of};
 
 /// One suite a procedure, one case a step or what failed outside the steps; measurements go to the case's output.
 ///
-/// A run that did not pass has a case that did not: also one without a verdict, and one of a program that did not
-/// store what failed outside steps.
+/// A run that did not pass has at least one case that did not pass: also a run without a verdict, and a run of a
+/// program that did not store failures outside steps.
 pub fn junit(run: &RunDetail) -> Result<String, Failure> {
     let (coverage, words) = (Coverage::of_run(run), Language::English.words());
     let counted = coverage_text(&coverage, words);
@@ -87,7 +87,7 @@ fn of_whole(run: &RunDetail) -> Option<TestCase> {
     Some(case)
 }
 
-/// The case of a step, by the result that stands, with the others that did not pass.
+/// The case of a step: the result with the highest rank counts, and the other results that did not pass are added.
 fn case(results: &[&StepRecord], began_us: i64) -> TestCase {
     let stands = results.iter().rev().max_by_key(|step| rank(step.verdict));
     let step = stands.unwrap_or(&results[0]);
@@ -148,7 +148,7 @@ fn case(results: &[&StepRecord], began_us: i64) -> TestCase {
     case
 }
 
-/// A verdict with where it was given and why; so has a step that was skipped.
+/// Status for a verdict, with the place and the reason of the result, also for a skipped step.
 fn status(verdict: Verdict, kind: &str, message: &str) -> TestCaseStatus {
     let mut status = match verdict {
         Verdict::Passed => return TestCaseStatus::success(),
@@ -165,7 +165,7 @@ fn status(verdict: Verdict, kind: &str, message: &str) -> TestCaseStatus {
     status
 }
 
-/// A moment in UTC; bench time of a unit in virtual time runs ahead of the day, so that this orders what happened.
+/// A moment in UTC. It orders events, but is no time of day: bench time in virtual time runs ahead of the clock.
 fn utc(at_us: i64) -> DateTime<FixedOffset> {
     DateTime::from_timestamp_micros(at_us)
         .unwrap_or_default()

@@ -8,7 +8,7 @@ use ptu_runs::campaign::{Baseline, LeftOut, OtherFaults, PairFigures, Share, Uns
 
 use crate::shares::{percent, share_json};
 
-/// Pairs of parts, and answers, that are listed.
+/// Most pairs of parts, and most answers, that are listed.
 const MOST_LISTED: usize = 20;
 
 /// Figures with fault modes left out of the dictionary, and with parts left out.
@@ -73,14 +73,14 @@ pub fn left_out_text(left_out: &LeftOut) -> String {
     text
 }
 
-/// Faults that act otherwise than counted.
+/// JSON of the figures for faults that act otherwise than the dictionary counted.
 pub fn other_faults_json(faults: &OtherFaults) -> Value {
     let mut json = figures_json(&faults.figures);
     json["detected"] = share_json(faults.detected);
     json
 }
 
-/// Text of these figures; `what` names the faults.
+/// Text of the figures for faults that act otherwise than the dictionary counted; `what` names these faults.
 pub fn other_faults_text(what: &str, faults: &OtherFaults) -> String {
     let Share { of, all } = faults.detected;
     let mut text = format!("\n{what}: {of} of {all} runs detected\n");
@@ -88,7 +88,7 @@ pub fn other_faults_text(what: &str, faults: &OtherFaults) -> String {
     text
 }
 
-/// Two faults at once.
+/// JSON of the figures for two faults at once.
 pub fn pairs_json(pairs: &PairFigures) -> Value {
     json!({
         "both": share_json(pairs.both),

@@ -3,7 +3,7 @@
 //!
 //! * [`Target`]: a report of a run as `.html` or `.pdf` (a test sheet), `.csv`, `.json` or `.junit.xml`;
 //!   [`run`]: the test sheet;
-//! * [`drive`], [`campaign`], [`diagnosis`]: reports of those;
+//! * [`drive`], [`campaign`], [`diagnosis`]: reports of drives, campaigns and diagnoses;
 //! * [`trace_view`]: prepares traces for drawing, independent of the window; [`trace_io`]: trace files;
 //! * [`event_lines`]: the stream of a run for other programs; [`history_files`]: the history as Parquet partitions;
 //! * [`fault_months`], [`distances`], [`trend`]: the history as counts by month, faults by distance, values over time;

@@ -34,7 +34,7 @@ impl PartNames {
         known.map_or(id, |part| language.choose([&part.name, &part.name_ko]))
     }
 
-    /// A fault that points at this part, in one line: the part, and what was seen as it is stored.
+    /// A fault of this part in one line: the name of the part, and what was seen, from the stored data and message.
     pub fn fault(&self, part: &str, stored: (&Option<String>, &str), words: &Words) -> String {
         let part = self.name(part, words.language);
         let what = seen_in_short(stored, words);
@@ -106,7 +106,7 @@ fn beyond_limit(missed: &LimitMissed, words: &Words) -> String {
     format!("{name} {}, {limit}", value.trim_end())
 }
 
-/// A measurement's name without what only scripts write.
+/// A measurement's name for people; without a wording, the name in the script as plain words.
 pub fn measurement(name: &str, words: &Words) -> String {
     let known = words.measurement(name);
     if known != name {

@@ -11,7 +11,7 @@ use crate::run::block::{self, Align, Block, Column, Row, Tone};
 use crate::run::{Paper, Printed};
 use crate::words::{Words, fill};
 
-/// Level below the strongest that is shown at most and at least, dB.
+/// Greatest and least range of the levels shown, dB below the strongest.
 const MOST_DB: f32 = 70.0;
 const LEAST_DB: f32 = 20.0;
 /// Level above the middle of all levels up to which a signal is noise, dB: noise has the darkest
@@ -38,7 +38,7 @@ pub struct Recording {
     pub made: String,
 }
 
-/// Names of the columns of what was heard.
+/// Headings of the table of detected signals.
 pub fn heads(words: &Words) -> [&'static str; 9] {
     let said = &words.signals;
     [
@@ -268,7 +268,7 @@ pub fn plots(picture: &Picture, of: (&Reading, usize), words: &Words) -> Vec<Plo
     plots
 }
 
-/// A waveform that is not recorded: what the generator makes.
+/// Plot of a waveform that the generator makes and nobody recorded.
 pub fn sketch(samples: &[f32], sample_hz: f64, words: &Words) -> Plot {
     let said = &words.signals;
     let together = samples.len().div_ceil(SKETCHED).max(1);
@@ -285,7 +285,7 @@ pub fn sketch(samples: &[f32], sample_hz: f64, words: &Words) -> Plot {
     )
 }
 
-/// One curve; the names of both axes, and how far the horizontal one reaches from 0 on.
+/// Plot of one curve: its title, the names of both axes, and the end of the horizontal axis, which begins at 0.
 fn curve(title: &str, (x_label, y_label, to): (&str, &str, f64), points: Vec<(f64, f64)>) -> Plot {
     Plot {
         title: title.into(),

@@ -75,7 +75,7 @@ impl Target {
         NewFile::begin(&self.path, self.kind())
     }
 
-    /// Begins the file, or one beside what stands there.
+    /// Begins the file, or a file of another name in its folder if the file exists.
     ///
     /// # Errors
     /// No file can be made in that folder.
@@ -87,7 +87,7 @@ impl Target {
         whole_file::write(&self.path, self.kind(), content?)
     }
 
-    /// A sheet of paper. A note on stderr names the letters that stand on it as codes.
+    /// The sheet as a PDF. A note on stderr names the letters that the font lacks, which are printed as codes.
     fn on_paper(&self, sheet: &impl Printed, words: &Words) -> Result<Vec<u8>, Failure> {
         let (document, coded) = run::pdf(sheet, words)?;
         if !coded.is_empty() {
@@ -179,7 +179,7 @@ pub fn write_case(targets: &[Target], case: &CaseSheet, language: Language) -> R
     Failure::of_all(targets.iter().map(write))
 }
 
-/// A report of a case. Tables are those of the run that tells how the unit is now.
+/// A report of a case. Its tables (CSV, JUnit) are those of the run that tells the present state of the unit.
 ///
 /// # Errors
 /// The report cannot be made.
@@ -192,7 +192,7 @@ pub fn case_content(
     content(target, run, Some(case), json, language)
 }
 
-/// A report of two runs. Tables are those of the second one.
+/// A report that compares two runs. Its tables (CSV, JUnit) are those of the second run.
 ///
 /// # Errors
 /// The report cannot be made.
@@ -210,7 +210,7 @@ pub fn comparison_content(
     )
 }
 
-/// Writes reports of two runs.
+/// Writes reports that compare two runs.
 ///
 /// # Errors
 /// A file cannot be written; the other files are written all the same.
@@ -226,7 +226,7 @@ pub fn write_comparison(
 /// A report of a run.
 ///
 /// # Errors
-/// The database cannot be read, or it cannot be made.
+/// The database cannot be read, or the report cannot be made.
 pub fn run_content(
     target: &Target,
     store: &Store,
@@ -253,7 +253,7 @@ pub fn write_beside(
     file.finish_beside()
 }
 
-/// A page as it stands in its file: nothing in it acts on a terminal or turns the order of what is read.
+/// Text of a page for its file: no letter in the text controls a terminal or changes the order of reading.
 pub(crate) fn page_text(page: Markup) -> String {
     display_text::lines(&page.into_string()).into_owned()
 }
@@ -270,7 +270,7 @@ fn content(
     let text = match (target.format, sheet) {
         (Format::Html, Some(sheet)) => run::html(sheet, words),
         (Format::Pdf, Some(sheet)) => return target.on_paper(sheet, words),
-        // Whoever asks for a sheet has gathered it.
+        // Callers that ask for a sheet have gathered its content.
         (Format::Html | Format::Pdf, None) => String::new(),
         (Format::Csv, _) => csv::csv(run),
         (Format::Json, _) => json_text(&json())?,

@@ -35,7 +35,7 @@ impl Ticks {
     }
 }
 
-/// An axis' range for an extent: room above and below, and no range of nothing.
+/// Range of an axis for an extent: with room above and below, and never of length 0.
 pub fn range((low, high): (f64, f64)) -> (f64, f64) {
     const FREE: f64 = 0.06;
     if high - low <= 1e-9 * high.abs().max(1.0) {

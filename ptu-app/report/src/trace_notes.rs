@@ -12,7 +12,7 @@ use ptu_runs::clock::rfc3339;
 pub struct TraceNote {
     /// Time from the trigger, or from the first row where there is none; microseconds.
     pub time_us: i64,
-    /// When it was written, UTC.
+    /// Time at which the note was written, UTC.
     pub at: String,
     /// Author of the note; on a signed run with whether the note is signed.
     pub who: String,
@@ -20,7 +20,7 @@ pub struct TraceNote {
 }
 
 impl TraceNote {
-    /// All on a trace, by their places.
+    /// All notes on a trace, by their times in the trace.
     ///
     /// # Errors
     /// There is no such trace, or the database fails.

@@ -10,7 +10,7 @@ use ptu_runs::clock::{local_day, utc_day};
 /// Values of a measurement over time.
 pub struct Trend {
     pub query: TrendQuery,
-    /// Limits and their unit, as they were last.
+    /// The latest limits, with their unit; no limits if the steps have several.
     pub limits: TrendLimits,
     /// Value by value, or day by day.
     pub course: TimeSeries,
@@ -39,7 +39,7 @@ impl Trend {
         };
         let steps = store.trend_steps(&query)?;
         if limits_differ(&steps) {
-            // None holds for all values.
+            // No limit holds for all values.
             (limits.low, limits.high) = (None, None);
         }
         let course = match query.unit {
@@ -56,7 +56,7 @@ impl Trend {
         }))
     }
 
-    /// The values are of steps with several limits.
+    /// Whether the values are of steps with different limits.
     pub fn limits_differ(&self) -> bool {
         limits_differ(&self.steps)
     }

@@ -1,8 +1,8 @@
 //! The procedures and data files of the program: where they are looked for, and which file counts.
 //!
-//! A folder that is given, or stands beside the program, is taken alone. Without one the places are laid over each
-//! other, file by file: the user's own, the system's, and what the program carries with it. Files on the disk are found
-//! here and read by the caller.
+//! A folder that is given, or one beside the program, is used alone. Else several places are laid over each other, file
+//! by file: the user's own folder, the system's folders, and the files embedded in the program. This crate finds files
+//! on the disk; the caller reads them.
 
 mod place;
 
@@ -13,7 +13,7 @@ pub use place::{Found, Layer, embed, own_folder};
 
 /// Most files and folders in the places together.
 const MOST_ENTRIES: usize = 100_000;
-/// Folders within folders that are looked into.
+/// Deepest level of folders within folders that is searched.
 const DEEPEST_FOLDER: usize = 16;
 
 /// A place or a file that cannot be read.
@@ -22,12 +22,12 @@ pub enum ScriptsError {
     /// The path that was given is no folder.
     #[error("{} is not a directory", .0.display())]
     NotADirectory(PathBuf),
-    /// A file or folder, by its path or name, and why.
+    /// A file or folder that cannot be read, and why.
     #[error("cannot read {what}: {why}")]
     Unreadable {
-        /// Path of the file, or its name and "(embedded)".
+        /// Path of the file, or the name of an embedded file and "(embedded)".
         what: String,
-        /// The system's word, or ours.
+        /// The operating system's reason, or one of this crate.
         why: String,
     },
 }
@@ -46,8 +46,8 @@ impl ScriptsError {
 pub struct ScriptFiles(Vec<Layer>);
 
 impl ScriptFiles {
-    /// The folder given, alone; else `./scripts` or `scripts` above the program, alone; else the user's own files over
-    /// the system's over the embedded ones.
+    /// Places to look in: the folder `given`, alone; else `./scripts` or `scripts` beside or above the program, alone;
+    /// else the user's own folder over the system's folders over the embedded files.
     ///
     /// # Errors
     /// `given` is no folder.
@@ -69,7 +69,7 @@ impl ScriptFiles {
         })
     }
 
-    /// Script files of these folders, as far as they are there, over the embedded files.
+    /// Places in this order: those of `folders` that exist, and last the embedded files.
     pub fn layered(folders: impl IntoIterator<Item = PathBuf>) -> Self {
         let folders = folders.into_iter().filter(|folder| folder.is_dir());
         Self(
@@ -80,28 +80,28 @@ impl ScriptFiles {
         )
     }
 
-    /// The places, the first of which wins.
+    /// The places; the first place that has a file wins.
     pub fn places(&self) -> &[Layer] {
         &self.0
     }
 
-    /// The file of this name, `units/sg100.toml`, of the first place that has it.
+    /// The file of this name, as `units/sg100.toml`, from the first place that has it.
     pub fn file(&self, name: &str) -> Option<Found> {
         self.files(name).next()
     }
 
-    /// Path of the file of this name, for people: its place, or the place in the first folder.
+    /// Path of the file of this name, to show; if no place has the file, its path in the first place.
     pub fn shown(&self, name: &str) -> String {
         let missing = || self.0[0].shown(name);
         self.file(name).map_or_else(missing, |found| found.shown())
     }
 
-    /// Every file of this name, of the first place first.
+    /// Every file of this name; the file of the first place comes first.
     pub fn files(&self, name: &str) -> impl Iterator<Item = Found> {
         self.0.iter().filter_map(move |place| place.file(name))
     }
 
-    /// Names of the files that make up the fault catalogue: parts and modes, and further modes.
+    /// Names of the files that make up the fault catalogue: `units/faults.toml` and each `faults/NAME.toml`.
     pub fn catalogue(&self) -> Vec<String> {
         let further = self.names("faults", "toml").into_iter();
         let further = further.map(|name| format!("faults/{name}.toml"));
@@ -110,7 +110,7 @@ impl ScriptFiles {
             .collect()
     }
 
-    /// Names without their ending of the files `FOLDER/NAME.ENDING`.
+    /// Names, without folder and ending, of the files `FOLDER/NAME.ENDING` of all places.
     pub fn names(&self, folder: &str, ending: &str) -> BTreeSet<String> {
         let files = self.0.iter().flat_map(|place| place.names(folder));
         let names = files.filter_map(|name| {
@@ -120,7 +120,7 @@ impl ScriptFiles {
         names.collect()
     }
 
-    /// Every procedure and data file by its name.
+    /// Every procedure and data file by its name, each from the first place that has it.
     ///
     /// # Errors
     /// A folder cannot be read, or holds too many files.

@@ -6,19 +6,19 @@ use std::sync::OnceLock;
 
 use crate::{DEEPEST_FOLDER, MOST_ENTRIES, ScriptsError};
 
-/// Names with `/` between folders, and contents.
+/// Files of the program: name, with `/` between folders, and content.
 type Embedded = &'static [(&'static str, &'static [u8])];
 
 static EMBEDDED: OnceLock<Embedded> = OnceLock::new();
 
-/// Takes what the program carries with it, `FILES` of `scripts/embedded.rs`: every `main` begins with this. That the
-/// files are in no library keeps these from being compiled again after an edit of a script.
+/// Takes the files embedded in the program, `FILES` of `scripts/embedded.rs`; every `main` begins with this call. No
+/// library holds the files, so that no library is compiled again after an edit of a script.
 pub fn embed(files: Embedded) {
     EMBEDDED.get_or_init(|| files);
 }
 
-/// Embedded files; nothing stands in for them: a program without procedures and data would say that each is
-/// missing, and not why.
+/// The embedded files. Panics before [`embed`]: without files the program would say that each procedure is missing, and
+/// not why.
 fn embedded() -> Embedded {
     let files = EMBEDDED.get();
     files.expect("main calls script_files::embed before files are looked for")
@@ -28,11 +28,11 @@ fn embedded() -> Embedded {
 pub enum Layer {
     /// A folder on the disk.
     Folder(PathBuf),
-    /// The files in the program.
+    /// The files embedded in the program.
     Embedded,
 }
 
-/// A file that a place has.
+/// A procedure or data file, on the disk or embedded.
 #[derive(Clone, Debug)]
 pub enum Found {
     /// A file on the disk.
@@ -40,13 +40,13 @@ pub enum Found {
     Embedded(&'static str, &'static [u8]),
 }
 
-/// The user's own procedures and data files; it may not be there yet. None without a home.
+/// Folder of the user's own procedures and data files; it may not exist. `None` for a user without a home.
 pub fn own_folder() -> Option<PathBuf> {
     directories::ProjectDirs::from("", "", "ptu")
         .map(|directories| directories.data_dir().join("scripts"))
 }
 
-/// Folders for all users of this computer: the depot's own, and those that a package installed.
+/// Folders for all users of this computer: first the depot's own, then those that a package installed.
 pub(crate) fn system_folders() -> Vec<PathBuf> {
     if cfg!(windows) {
         let programs = std::env::var_os("ProgramData").map(PathBuf::from);
@@ -75,7 +75,7 @@ impl Layer {
         }
     }
 
-    /// Path that the file of this name would have, for people.
+    /// Path that a file of this name has or would have in this place, to show.
     pub(crate) fn shown(&self, name: &str) -> String {
         match self {
             Self::Folder(folder) => folder.join(name).display().to_string(),
@@ -83,7 +83,7 @@ impl Layer {
         }
     }
 
-    /// Names of the files in a folder of it, not of those in folders within.
+    /// Names of the entries of a folder of this place, without those in its subfolders.
     pub(crate) fn names(&self, folder: &str) -> Vec<String> {
         match self {
             Self::Folder(root) => {
@@ -103,7 +103,7 @@ impl Layer {
         }
     }
 
-    /// Every procedure and data file of it, by its name.
+    /// Every procedure and data file of this place, with its name.
     pub(crate) fn all(&self) -> Result<Vec<(String, Found)>, ScriptsError> {
         match self {
             Self::Folder(root) => {
@@ -134,7 +134,7 @@ impl fmt::Display for Layer {
 }
 
 impl Found {
-    /// Path or name, for people.
+    /// Path of the file, or name of the embedded file, to show.
     pub fn shown(&self) -> String {
         match self {
             Self::File(path) => path.display().to_string(),
@@ -150,7 +150,7 @@ pub(crate) fn too_many(place: &str) -> ScriptsError {
     )
 }
 
-/// The files under a folder.
+/// Search for the procedure and data files under a folder.
 struct Collecting<'a> {
     root: &'a Path,
     found: Vec<(String, Found)>,

@@ -26,18 +26,18 @@ use ptu_runs::stop::Stop;
 
 /// Make a fault dictionary: run the suite against every fault mode, and say what the dictionary is worth
 ///
-/// Every mode is run at all its levels, setting in at different times, on units that differ as good ones
-/// do (bench_scatter.toml). Other seeds then assess it: detection, isolation, false alarms.
+/// Every fault mode is run at all its levels, with different times of onset, on units that differ as good units do
+/// (bench_scatter.toml). Runs with other seeds then assess the dictionary: detection, isolation, false alarms.
 ///
 /// Examples:
 ///   ptu campaign                             all fault modes, 5 seeds each
 ///   ptu campaign --faults 'eb_relay.*' --seeds 2
 ///   ptu campaign --held-out 2 --good 1000    the figures of docs/figures.md
 ///   ptu campaign --harness none              what a laptop alone on a train can find
-///   ptu campaign --leave-out-modes 5         what it is worth for faults it does not know
-///   ptu campaign --pairs 100                 what it is worth for two faults at once
-///   ptu campaign --common-causes 100         what it is worth for one cause at several parts
-///   ptu campaign --runs runs.zst             goes on where it was stopped
+///   ptu campaign --leave-out-modes 5         what the dictionary is worth for faults that it does not know
+///   ptu campaign --pairs 100                 what the dictionary is worth for two faults at once
+///   ptu campaign --common-causes 100         what the dictionary is worth for one cause at several parts
+///   ptu campaign --runs runs.zst             goes on where a stopped campaign ended
 ///   ptu campaign --shard 3/64 --runs shard-3.zst
 ///   ptu campaign merge shard-*.zst --out runs.zst
 #[derive(Debug, Args)]
@@ -48,28 +48,28 @@ pub struct CampaignArguments {
     /// With `none`, as a laptop alone on a train: only procedures that need no bench harness
     #[arg(long, value_name = "WHICH", default_value = "bench")]
     harness: Harness,
-    /// Only fault modes whose name matches; such a dictionary knows no others
+    /// Only fault modes whose name matches; the dictionary then knows no other modes
     #[arg(long, value_name = "GLOB")]
     faults: Option<Pattern>,
     /// Seeds of each level of a mode, for the dictionary
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     seeds: u32,
-    /// Seeds of each level of a mode, kept out of the dictionary, to assess it
+    /// Seeds of each level of a mode for runs that assess the dictionary and are not part of it
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=1000))]
     held_out: u32,
-    /// Good units, to assess it
+    /// Good units to assess the dictionary with, for false alarms
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(0..=100_000))]
     good: u32,
-    /// Diagnose each mode also by a dictionary without every K-th mode of each part, and by one without the part
+    /// Diagnose each mode also by a dictionary without every K-th mode of each part, and by one without the mode's part
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=20))]
     leave_out_modes: Option<u32>,
-    /// Units with two random faults of different parts, to assess it
+    /// Units with two random faults of different parts, to assess the dictionary with
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
     pairs: u32,
-    /// Units with one cause at several parts that share it, such as their supply, to assess it
+    /// Units with one cause at several parts that share it, such as their supply, to assess the dictionary with
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
     common_causes: u32,
-    /// Lot of units: each number stands for other units, with other seeds for all of them
+    /// Lot of units: each number gives other simulated units, all with other seeds
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     lot: u32,
     #[command(flatten)]
@@ -95,7 +95,7 @@ enum Verb {
 }
 
 impl CampaignArguments {
-    /// Runs, keeps the dictionary and says what it is worth; or puts shards together.
+    /// Makes and assesses a dictionary, merges shards, or lists the shards that lack runs.
     pub fn run(mut self) -> Result<Exit, Failure> {
         match self.verb.take() {
             None => self.run_suite(),

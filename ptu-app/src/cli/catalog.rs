@@ -1,4 +1,4 @@
-//! `ptu catalog`: what there is to name in commands and scripts.
+//! `ptu catalog`: the names that commands and scripts can use.
 
 use btu_rig::procedure::describe::bit_names;
 use btu_rig::procedure::plan::Connection;
@@ -26,7 +26,7 @@ pub struct CatalogArguments {
     /// What to show
     #[arg(value_enum)]
     what: CatalogTopic,
-    /// Only what has this text in it, as `eb`
+    /// Only entries with this text in them, as `eb`
     text: Option<String>,
     /// Unit configuration whose speed codes to show
     #[arg(long, value_name = "NAME", default_value = "sg100")]
@@ -54,11 +54,11 @@ enum CatalogTopic {
     Parts,
     /// Parts that each signal comes through, from the sensors on
     Structure,
-    /// What may be wrong with a unit, and the parts it may come from
+    /// Symptoms of a unit, and the parts that they may come from
     Symptoms,
-    /// What the steps prove: clauses, their steps, and the injected faults that make these fail
+    /// Clauses of standards and papers, the steps that prove them, and the injected faults that make these steps fail
     Clauses,
-    /// Masses and brake forces of a train's cars, its MT pairs and the whole of it
+    /// Masses and brake forces of a train: of each car, each MT pair and the whole train
     Train,
 }
 
@@ -80,7 +80,7 @@ impl CatalogArguments {
         self.form.print(&entries, || as_table(&entries))
     }
 
-    /// The entry has the text that was asked for.
+    /// Whether a value of the entry contains the text that was asked for.
     fn is_about(&self, entry: &Value) -> bool {
         let wanted = self.text.as_deref().unwrap_or_default().to_lowercase();
         let values = entry
@@ -128,7 +128,7 @@ impl CatalogArguments {
         Ok(symptoms.into_iter().map(entry).collect())
     }
 
-    /// The matrix of clauses. A clause without a step, and a step without a clause, are findings: exit code 1.
+    /// Prints the matrix of clauses. A clause without a step or a step without a clause gives exit code 1.
     fn clauses(&self) -> Result<Exit, Failure> {
         let directory = self.scripts.find()?;
         let chosen = choose(None, &directory, Connection::Btu)?;
@@ -179,7 +179,7 @@ impl CatalogArguments {
 }
 
 impl CatalogArguments {
-    /// S3's table, derived from the train's file.
+    /// The table of cars of S3, computed from the train's file: each car, each MT pair, the whole train.
     fn train(&self) -> Result<Vec<Value>, Failure> {
         let TrainData::Cars(data) = self.scripts.find()?.train(&self.train)? else {
             return Err(Failure::usage(DriveTrouble::PointMass(self.train.clone())));
@@ -253,7 +253,7 @@ fn signals() -> Vec<Value> {
     Signal::ALL.iter().map(entry).collect()
 }
 
-/// Names of a signal's bits from bit 0; `None` for one that is no set of named bits.
+/// Names of a signal's bits from bit 0; `None` for a signal that is not a set of named bits.
 fn bits(signal: Signal) -> Option<Vec<String>> {
     let cars = (signal == Signal::NotReleased).then_some(MAX_CARS);
     let count = cars.unwrap_or(u16::BITS as usize);
@@ -261,7 +261,7 @@ fn bits(signal: Signal) -> Option<Vec<String>> {
     Some(names.collect()).filter(|names: &Vec<_>| !names.is_empty())
 }
 
-/// One row an entry, one column a key in the order of the first entry.
+/// Table with a row for each entry; its columns are the keys of the first entry, in their order.
 fn as_table(entries: &[Value]) -> String {
     let Some(keys) = entries.first().and_then(Value::as_object).map(|o| o.keys()) else {
         return Words::shown().terminal.nothing_there.into();
@@ -319,7 +319,7 @@ fn clauses_text(matrix: &clauses::Matrix) -> String {
     text
 }
 
-/// Where a fault mode sits.
+/// Where a fault mode acts: `train`, `bench` or `unit`.
 fn on(place: protocol::injection::Place) -> &'static str {
     match () {
         () if place.on_train() => "train",

@@ -1,4 +1,4 @@
-//! `ptu completions`, and what a shell then asks the program: names from its scripts and its history.
+//! `ptu completions`, and the answers to a shell that completes a command line: names from scripts and history.
 
 use btu_rig::procedure::loader::is_library;
 use clap::builder::PossibleValuesParser;
@@ -14,14 +14,15 @@ use ptu_runs::clock;
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Exit, Failure};
 
-/// Variable by which a shell asks the program.
+/// Environment variable by which a shell asks the program for completions.
 const VARIABLE: &str = "PTU_COMPLETE";
-/// Newest entries of a history that are offered.
+/// Most runs or faults that are offered, the newest.
 const NEWEST: u32 = 100;
-/// As a file among the functions of zsh, the script is the function itself when it is called first.
+/// Last line for zsh, which runs the script as the function `_ptu` at the first completion: the line then calls the
+/// completer.
 const ZSH_FILE: &str = "[[ $funcstack[1] == _ptu ]] && _clap_dynamic_completer_ptu \"$@\"\n";
 
-/// Write what makes a shell complete commands, and names of procedures, faults, parts, runs and more
+/// Write a script by which a shell completes commands, and names of procedures, faults, parts, runs and more
 ///
 /// Examples:
 ///   ptu completions bash  >> ~/.bashrc
@@ -37,7 +38,7 @@ pub struct CompletionsArguments {
 }
 
 impl CompletionsArguments {
-    /// Prints it.
+    /// Prints the script.
     pub fn run(self) -> Result<Exit, Failure> {
         print_out(script(&self.shell).trim_end())
     }
@@ -47,7 +48,7 @@ impl CompletionsArguments {
 pub(super) fn script(shell: &str) -> String {
     let mut script = Vec::new();
     if let Some(shell) = Shells::builtins().completer(shell) {
-        // Memory takes all that is written to it.
+        // Writing to memory cannot fail.
         let _ = shell.write_registration(VARIABLE, "ptu", "ptu", "ptu", &mut script);
     }
     let script = String::from_utf8_lossy(&script).trim_start().to_owned();
@@ -58,13 +59,13 @@ pub(super) fn script(shell: &str) -> String {
     }
 }
 
-/// Answers a shell, and ends the program, if one asks.
+/// If a shell asks for completions, answers and ends the program.
 pub(super) fn answer() {
     let command = || named(super::help::flowing(Cli::command()));
     CompleteEnv::with_factory(command).var(VARIABLE).complete();
 }
 
-/// The commands, with the names that their arguments take.
+/// The command with the names that can be offered for each argument.
 fn named(command: Command) -> Command {
     let verb = command.get_name().to_owned();
     named_below(command, &verb)
@@ -80,7 +81,7 @@ fn named_below(command: Command, verb: &str) -> Command {
         None => argument,
     });
     command.mut_subcommands(|below| {
-        // The first of two words says what an id stands for.
+        // The verb after `ptu` says what an `id` stands for.
         let verb = if verb == "ptu" {
             below.get_name().to_owned()
         } else {
@@ -92,7 +93,7 @@ fn named_below(command: Command, verb: &str) -> Command {
 
 type Names = fn(&Typed) -> Option<Vec<Candidate>>;
 
-/// The names that an argument takes.
+/// Source of the names that an argument takes; `None` for an argument whose values have no names.
 fn names_of(verb: &str, argument: &Arg) -> Option<Names> {
     let value = argument.get_value_names().and_then(|names| names.first());
     Some(match (argument.get_id().as_str(), value?.as_str()) {
@@ -116,7 +117,7 @@ fn names_of(verb: &str, argument: &Arg) -> Option<Names> {
     })
 }
 
-/// What the command line that is being written says of scripts and history.
+/// Options `--db` and `--scripts` of the command line that is being typed.
 #[derive(Parser)]
 #[command(no_binary_name = true)]
 struct Typed {
@@ -128,7 +129,7 @@ struct Typed {
 
 impl Typed {
     fn read() -> Option<Self> {
-        // A shell that splits words at `=` gives it as a word.
+        // A shell that splits words at `=`, as bash does, passes `=` as a word of its own.
         let mut words = std::env::args().filter(|word| word != "=");
         let mut said = Vec::new();
         while let Some(word) = words.next() {

@@ -33,7 +33,7 @@ pub struct ConfigArguments {
 }
 
 impl ConfigArguments {
-    /// Shows them.
+    /// Prints the files and the defaults.
     pub fn run(self) -> Result<Exit, Failure> {
         let presets = presets::presets()?;
         let words = Words::shown();

@@ -10,9 +10,9 @@ use ptu_runs::failure::{Asked, Exit, Failure};
 use ptu_runs::run_diagnosis::{Question, diagnose};
 use ptu_runs::stdio;
 
-/// Find the part that failed, why it is that one, and the next best check
+/// Find the part that failed, the reasons for this part, and the next best check
 ///
-/// A run is compared with the fault dictionary.
+/// The results of the run are compared with the fault dictionary.
 ///
 /// Examples:
 ///   ptu diagnose latest                      the last run
@@ -27,10 +27,10 @@ pub struct DiagnoseArguments {
     /// The run: an id, its beginning or end (at least 4 digits), or `latest`; more runs of the unit are evidence, too
     #[arg(value_name = "RUN", required = true)]
     runs: Vec<String>,
-    /// A part of which to say what speaks for it and against it, however unlikely it is
+    /// Say what speaks for and against this part, however unlikely the part is
     #[arg(long, value_name = "PART")]
     why_not: Option<LruId>,
-    /// All candidates and reasons, with what the dictionary has of each
+    /// Show all candidates and reasons, with what the dictionary knows of each candidate
     #[arg(long)]
     all: bool,
     #[command(flatten)]
@@ -42,7 +42,6 @@ pub struct DiagnoseArguments {
 }
 
 impl DiagnoseArguments {
-    /// Diagnoses.
     pub fn run(self) -> Result<Exit, Failure> {
         let store = self.database.open_read_only()?;
         let runs = self.runs.iter().map(|run| store.resolve_run(run));

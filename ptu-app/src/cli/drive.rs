@@ -45,13 +45,13 @@ pub struct DriveArguments {
     /// Speed controller: servo, fuzzy, pi or pss [default: the configuration's]
     #[arg(long, value_name = "NAME", value_parser = controller)]
     controller: Option<ControllerKind>,
-    /// Speed controllers, side by side
+    /// Speed controllers to compare, side by side
     #[arg(long, value_name = "NAME,NAME", value_delimiter = ',', value_parser = controller, conflicts_with = "controller")]
     compare: Vec<ControllerKind>,
     /// Train: line6, ideal or another trains/NAME.toml, or a file ending in .toml
     #[arg(long, value_name = "NAME|FILE", default_value = "line6")]
     train: String,
-    /// Total mass: of the ideal train, for which the unit is configured, or of a train of cars, as load
+    /// Total mass: of the ideal train, for which the unit is configured; or of a train of cars, loaded up to this mass
     #[arg(
         long,
         value_name = "KG",
@@ -65,16 +65,16 @@ pub struct DriveArguments {
     /// Force against the train: none, s1 or AMP@HZ in N·s/m and Hz
     #[arg(long, value_name = "NAME", value_parser = disturbance)]
     disturbance: Option<Disturbance>,
-    /// Added to every gradient, ‰, uphill positive
+    /// Gradient added to the whole line, ‰, uphill positive
     #[arg(long, value_name = "PERMILLE", allow_negative_numbers = true)]
     gradient: Option<f64>,
     /// Wheel–rail adhesion coefficient at standstill
     #[arg(long, value_name = "MU", allow_negative_numbers = true)]
     adhesion: Option<f64>,
-    /// True wheel diameter over the configured one
+    /// True wheel diameter divided by the configured diameter
     #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
     wheel: Option<f64>,
-    /// Speed code from start to end, in place of the line's
+    /// Speed code on the whole way, in place of the line's codes
     #[arg(long, value_name = "NAME")]
     speed_code: Option<String>,
     /// Unit configuration key to change, as ato.servo.s_curve_s=12; repeatable
@@ -86,13 +86,13 @@ pub struct DriveArguments {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Draw train and day by the seed, as one run of --monte-carlo does; from scatter.toml or FILE
+    /// Draw train and day by the seed, as for one run of --monte-carlo; from scatter.toml or FILE
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with = "monte_carlo")]
     scattered: Option<Option<PathBuf>>,
-    /// N runs with train and day drawn from scatter.toml, seeds from --seed on
+    /// Make N runs with train and day drawn from scatter.toml, with seeds from --seed on
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     monte_carlo: Option<u32>,
-    /// Runs side by side [default: the cores of this machine]
+    /// Number of runs side by side [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     jobs: Option<u32>,
     #[command(flatten)]
@@ -107,7 +107,7 @@ pub struct DriveArguments {
 }
 
 impl DriveArguments {
-    /// Drives, prints, writes reports.
+    /// Drives, prints the results, and writes reports.
     pub fn run(self) -> Result<Exit, Failure> {
         let directory = self.scripts.find()?;
         for target in &self.report {

@@ -54,7 +54,6 @@ enum Verb {
 }
 
 impl FaultsArguments {
-    /// Lists, shows, counts or records.
     pub fn run(self) -> Result<Exit, Failure> {
         let reads = matches!(
             self.verb,
@@ -62,7 +61,7 @@ impl FaultsArguments {
         );
         let store = match reads {
             true => self.database.open_read_only()?,
-            // A unit's log is a run, and runs are recorded in a file.
+            // A unit's log is stored as a run, and runs are recorded in a file, not on a server.
             false if matches!(self.verb, Verb::Import(_)) => self.database.open_file()?,
             false => self.database.open()?,
         };

@@ -7,8 +7,8 @@ use std::process::Command;
 use ptu_runs::failure::{Asked, Failure, RunTrouble};
 use ptu_runs::platform::become_program;
 
-/// Turns this process into the window's, with the arguments after `gui`. Returns only if the window is not installed or
-/// cannot be started.
+/// Replaces this process by the window's program, with the arguments after `gui`. Returns only if the window is not
+/// installed or cannot be started.
 pub fn start(arguments: impl Iterator<Item = OsString>) -> Failure {
     let window = window();
     if !window.is_file() {
@@ -21,7 +21,7 @@ pub fn start(arguments: impl Iterator<Item = OsString>) -> Failure {
     ))
 }
 
-/// Where the program of the window is, if it is installed: beside this one.
+/// Path of the window's program, beside this program; the file is there only if the window is installed.
 pub fn window() -> PathBuf {
     let here = std::env::current_exe().unwrap_or_default();
     here.with_file_name("ptu-window")

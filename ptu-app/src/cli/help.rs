@@ -3,7 +3,7 @@
 use clap::Command;
 use clap::builder::StyledStr;
 
-/// Verbs that a technician never needs, in few words: they have a section of their own, after the options.
+/// Verbs that a technician never needs, each with a short text: the help shows them in a section after the options.
 const MAKERS: [(&str, &str); 5] = [
     (
         "campaign",
@@ -21,7 +21,7 @@ const MAKERS: [(&str, &str); 5] = [
     ("train", "Serve a unit aboard a simulated train on a port"),
 ];
 
-/// The commands with the makers' verbs in a section of their own; each is called and explained as before.
+/// The commands, with the verbs of `MAKERS` in a section of their own; only their place in the help differs.
 pub fn sectioned(mut command: Command) -> Command {
     let mut section = "For makers of procedures, dictionaries and controllers:".to_owned();
     for (name, about) in MAKERS {
@@ -31,7 +31,7 @@ pub fn sectioned(mut command: Command) -> Command {
     command.after_help(section)
 }
 
-/// The commands, their texts without line ends of the source within a paragraph. A line that begins with
+/// The commands with help texts whose paragraphs flow, without the line ends of the source. A line that begins with
 /// spaces, as an example does, stays a line.
 pub fn flowing(command: Command) -> Command {
     let about = command.get_about().map(joined);

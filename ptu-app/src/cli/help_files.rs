@@ -1,4 +1,4 @@
-//! `ptu help-files`: what a package installs that the program knows best.
+//! `ptu help-files`: writes the files that a package installs and that the program itself can make best.
 
 mod documents;
 mod manual_page;
@@ -12,7 +12,7 @@ use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::new_file::cannot_write;
 use ptu_runs::whole_file::write_text;
 
-/// The type of a history among files, with a gap for the number that marks one.
+/// File type of a history for the desktop, with `@ID@` for the number that marks a history.
 const FILE_TYPES: &str = include_str!("../../../packaging/ptu.xml");
 
 /// Write manual pages (man1/), shell completions (bash/, zsh/, fish/) and file types (ptu.xml) into a folder
@@ -20,13 +20,13 @@ const FILE_TYPES: &str = include_str!("../../../packaging/ptu.xml");
 pub struct HelpFilesArguments {
     /// Folder to write into
     folder: PathBuf,
-    /// Also the manuals with all that they link to, as pages for a browser (html/), from this folder of the sources
+    /// Also write the manuals and all that they link to, as pages for a browser (html/), from this folder of the
+    /// sources
     #[arg(long, value_name = "FOLDER")]
     documents: Option<PathBuf>,
 }
 
 impl HelpFilesArguments {
-    /// Writes them.
     pub fn run(self) -> Result<Exit, Failure> {
         let folder = &self.folder;
         manuals(&folder.join("man1"))?;
@@ -47,7 +47,7 @@ fn manuals(folder: &Path) -> Result<(), Failure> {
     pages(folder, &WindowOptions::augment_args(window))
 }
 
-/// The page of a command, and those of its verbs.
+/// Writes the manual page of a command, and the pages of its verbs.
 fn pages(folder: &Path, command: &Command) -> Result<(), Failure> {
     let name = command.get_display_name().unwrap_or(command.get_name());
     let file = folder.join(format!("{name}.1"));

@@ -16,8 +16,8 @@ use ptu_runs::table::Table;
 
 /// Register what measures and generates on this bench, with its calibration
 ///
-/// Once an instrument is registered, a run on a port does not begin while the calibration of one of them is over; `ptu run
-/// --uncalibrated` goes on, and the sheet says so. Runs on the simulated unit use none.
+/// Once an instrument is registered, a run on a port does not begin while an instrument's calibration has expired; `ptu
+/// run --uncalibrated` runs all the same, and the sheet says so. Runs on the simulated unit need no instrument.
 ///
 /// Examples:
 ///   ptu instrument add B-0031 --kind bench
@@ -37,7 +37,7 @@ pub struct InstrumentArguments {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// Register an instrument; it counts as not calibrated until `calibrate` says when it was
+    /// Register an instrument; until `calibrate` states a calibration it counts as not calibrated
     Add {
         /// Its serial number
         #[arg(value_name = "SERIAL")]
@@ -45,7 +45,7 @@ enum Verb {
         /// What it is: bench, sound card, coil, adapter …
         #[arg(long, value_name = "KIND")]
         kind: String,
-        /// Who registers it
+        /// Who registers the instrument
         #[arg(long, value_name = "TEXT", default_value = "")]
         who: String,
         #[command(flatten)]
@@ -62,24 +62,24 @@ enum Verb {
         /// Who calibrated it, and the number of the certificate
         #[arg(long = "calibrated-by", value_name = "TEXT")]
         by: String,
-        /// First day on which the calibration holds no more
+        /// First day on which the calibration is no longer valid
         #[arg(long, value_name = "DAY", value_parser = day_argument)]
         due: String,
-        /// Expanded uncertainty (k = 2) of values of a unit, as ms=2; repeatable
+        /// Expanded uncertainty (k = 2) of measured values in a unit of measure, as ms=2; repeatable
         #[arg(long, value_name = "UNIT=NUMBER", value_parser = uncertainty)]
         uncertainty: Vec<(String, f64)>,
-        /// Who states it
+        /// Who states the calibration
         #[arg(long, value_name = "TEXT", default_value = "")]
         who: String,
         #[command(flatten)]
         signing: SigningOption,
     },
-    /// Take an instrument off the bench; what runs said of it stays
+    /// Take an instrument off the bench; what runs recorded of the instrument stays
     Retire {
         /// Its serial number
         #[arg(value_name = "SERIAL")]
         serial_no: String,
-        /// Who does it
+        /// Who takes the instrument off
         #[arg(long, value_name = "TEXT", default_value = "")]
         who: String,
         #[command(flatten)]
@@ -103,7 +103,6 @@ fn uncertainty(text: &str) -> Result<(String, f64), String> {
 }
 
 impl InstrumentArguments {
-    /// Registers or lists.
     pub fn run(self) -> Result<Exit, Failure> {
         if let Verb::List { json } = self.verb {
             return list(&self.database.open_read_only()?, json);

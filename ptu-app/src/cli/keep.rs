@@ -1,4 +1,4 @@
-//! Options of commands that make many runs: where they are kept, and which are made here.
+//! Options of commands that make many runs: the file that keeps the runs, and the shard of runs to make.
 
 use std::path::PathBuf;
 
@@ -10,10 +10,10 @@ use ptu_runs::failure::{Exit, Failure, KeepTrouble};
 use ptu_runs::new_file::kind;
 use ptu_runs::whole_file::check_writable;
 
-/// Where runs are kept, and which are made here.
+/// Options for the file that keeps the runs, and for the shard to make.
 #[derive(Debug, Args)]
 pub struct KeepOptions {
-    /// Keep the runs in a file; those that it holds are not made again
+    /// Keep the runs in a file; runs that the file already holds are not made again
     #[arg(long, value_name = "FILE")]
     runs: Option<PathBuf>,
     /// Make only the k-th of n parts of the runs and keep them with --runs; auto or auto/n takes the number of the task
@@ -23,7 +23,7 @@ pub struct KeepOptions {
 }
 
 impl KeepOptions {
-    /// Refuses what does not go together: only `many` runs are kept.
+    /// Refuses --runs for a command that makes only one run, a wrong shard, and a file that cannot be written.
     pub fn check(&self, many: bool) -> Result<(), Failure> {
         if !many && self.runs.is_some() {
             return Err(Failure::usage(KeepTrouble::RunsOfMany));
@@ -33,7 +33,7 @@ impl KeepOptions {
         self.runs.as_deref().map_or(Ok(()), check)
     }
 
-    /// Runs that are kept, as the options say.
+    /// The file that keeps the runs, and the shard to make, as the options say.
     pub fn keep(&self) -> Result<Keep, Failure> {
         let shard = self.shard.as_deref().map(str::parse::<Shard>).transpose();
         Ok(Keep {
@@ -42,15 +42,15 @@ impl KeepOptions {
         })
     }
 
-    /// Whether only a part of the runs is made, and no result of all.
+    /// Whether only one shard of the runs is made, which gives no result of all runs.
     pub fn is_part(&self) -> bool {
         self.shard.is_some()
     }
 
-    /// Says that the runs of a shard are kept.
+    /// Prints that the runs of a shard are kept, and in which file.
     pub fn told(&self, runs: usize) -> Result<Exit, Failure> {
         let keep = self.keep()?;
-        // A shard is made into a file only.
+        // `--shard` requires `--runs`, so there is a file.
         let (shard, file) = (keep.shard, keep.file);
         let shard = shard.map(|shard| shard.to_string()).unwrap_or_default();
         print_out(&format!(

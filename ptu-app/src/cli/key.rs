@@ -28,8 +28,8 @@ const YEARS: u32 = 2;
 ///   ptu key new --who Kim                       a technician's key, protected by a PIN
 ///   ptu key new --who "bench 3" --for-bench --pin-file pin.txt
 ///   ptu key trust kim.pub                       puts a public key into this computer's list
-///   ptu key revoke Kim --note "laptop lost"     from today on it signs nothing more
-///   ptu key list                                their files, too
+///   ptu key revoke Kim --note "laptop lost"     from today on the key signs nothing more
+///   ptu key list                                lists the trusted keys and their files
 ///
 /// A file that is named without a folder is looked up in the current folder, then in the folder `keys` of the user's data
 /// directory, where `ptu key new` writes.
@@ -46,22 +46,22 @@ pub struct KeyArguments {
 enum Verb {
     /// Make a key: a private key file, protected by a PIN, and beside it a `.pub` file to hand to others
     New {
-        /// The name it signs by
+        /// Name under which the key signs
         #[arg(long, value_name = "TEXT", value_parser = name_argument)]
         who: String,
-        /// It is the key of a bench, not of a technician
+        /// The key belongs to a bench, not to a technician
         #[arg(long)]
         for_bench: bool,
         /// The private key's file [default: in the folder `keys` of the user's data directory]
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
-        /// First day on which it holds no more, as 2028-11-26 [default: in two years]
+        /// First day on which the key is no longer valid, as 2028-11-26 [default: in two years]
         #[arg(long, value_name = "DAY", value_parser = day_argument)]
         until: Option<String>,
         #[command(flatten)]
         pin: PinOption,
     },
-    /// List the keys that are trusted, how each stands today, and in which files it is
+    /// List the trusted keys, how each stands today, and the files that hold it
     List {
         #[command(flatten)]
         keys: KeysOption,
@@ -76,12 +76,12 @@ enum Verb {
         #[command(flatten)]
         keys: KeysOption,
     },
-    /// Revoke a key from today on; what it signed before stays valid
+    /// Revoke a key from today on; what the key signed before stays valid
     Revoke {
         /// Whose key, or the beginning of the key (at least 4 digits)
         #[arg(value_name = "NAME|KEY")]
         key: String,
-        /// Why
+        /// Why the key is revoked
         #[arg(long, value_name = "TEXT", default_value = "")]
         note: String,
         #[command(flatten)]
@@ -89,7 +89,7 @@ enum Verb {
     },
 }
 
-/// Which list of public keys.
+/// Option that names the list of trusted public keys.
 #[derive(Debug, Default, Args)]
 pub struct KeysOption {
     /// List of trusted public keys: a file, or a folder with `.pub` and `.keys` files [default: the folder `keys` of the
@@ -105,7 +105,7 @@ impl KeysOption {
             .map_or_else(own_folder, |named| Ok(located(named)))
     }
 
-    /// The list; empty where nobody has made one.
+    /// The list of trusted keys; empty where nobody has made one.
     ///
     /// # Errors
     /// The list that was named does not exist, or a list cannot be read.
@@ -118,7 +118,7 @@ impl KeysOption {
         }
     }
 
-    /// Adds a key to the list in its file; that of a folder is `trusted.keys` in it. How it stands there then.
+    /// Adds or changes a key in the list's file (in a folder `trusted.keys`). Returns the key's entry, and the file.
     fn change(&self, entry: KeyEntry) -> Result<(KeyEntry, PathBuf), Failure> {
         let place = self.place()?;
         let is_folder = place.is_dir() || self.keys.is_none();
@@ -138,7 +138,6 @@ impl KeysOption {
 }
 
 impl KeyArguments {
-    /// Makes, lists, trusts or revokes.
     pub fn run(self) -> Result<Exit, Failure> {
         match self.verb {
             Verb::New {
@@ -192,7 +191,7 @@ fn new(
     ))
 }
 
-/// A name for a file: letters and digits, all else a hyphen.
+/// Name of a key's file: lower-case letters and digits of the person's name, all else a hyphen.
 fn file_name(who: &str) -> String {
     let letter = |c: char| if c.is_alphanumeric() { c } else { '-' };
     who.to_lowercase().chars().map(letter).collect()
@@ -226,7 +225,7 @@ fn list(keys: &KeysOption, json: Json) -> Result<Exit, Failure> {
     json.answer(document, || table(&list, &files, now))
 }
 
-/// Files in which a key is, the file of its private key first.
+/// Files that hold each key, by the key; the file of the private key comes first.
 struct FilesOfKeys(BTreeMap<String, Vec<String>>);
 
 impl FilesOfKeys {

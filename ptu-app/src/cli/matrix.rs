@@ -1,4 +1,4 @@
-//! `ptu matrix`: the order of tests of any dependency matrix.
+//! `ptu matrix`: the cheapest order of tests of any dependency matrix.
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use ptu_runs::stdio;
 use ptu_runs::table::Table;
 use ptu_runs::whole_file::read_within;
 
-/// States a table shows; JSON has all.
+/// Most states that a table shows; JSON has all.
 const SHOWN_STATES: usize = 20;
 /// Longest file of a matrix or of outcomes, bytes.
 const LONGEST_FILE: u64 = 64 << 20;
@@ -25,9 +25,9 @@ const LONGEST_FILE: u64 = 64 << 20;
 ///
 /// Examples:
 ///   ptu matrix pump.json                            cheapest order of tests
-///   ptu matrix pump.csv --outcomes flow=low         of a table with a column for each test
-///   ptu matrix six_by_six                           of an example that comes with the program
-///   ptu matrix pump.json --outcomes flow=1,noise=0  what these outcomes leave
+///   ptu matrix pump.csv --outcomes flow=low         a table with a column for each test
+///   ptu matrix six_by_six                           an example that comes with the program
+///   ptu matrix pump.json --outcomes flow=1,noise=0  the states that these outcomes leave possible
 ///   ptu matrix pump.json --outcomes found.json --json
 ///
 /// Exit codes: 0 answered, 2 wrong matrix or outcomes.
@@ -57,12 +57,12 @@ pub struct MatrixArguments {
 enum TreeMethod {
     /// The cheapest there is: 20 states × 20 tests always, larger ones up to 64 × 64 only if the search ends in time
     Optimal,
-    /// Most information for its cost, each choice checked by what follows
+    /// At each step the test with most information for its cost, each choice checked by the tests that follow it
     Greedy,
 }
 
 impl MatrixArguments {
-    /// Answers for one matrix.
+    /// Reads the matrix, plans the tests and prints the answer.
     pub fn run(self) -> Result<Exit, Failure> {
         let place = self.file.display();
         let content = self.text()?;
@@ -97,7 +97,7 @@ impl MatrixArguments {
         print_out(&text(&matrix, &known, &plan, self.outcomes.is_some()))
     }
 
-    /// The file that was named, or the matrix of the scripts that is called so.
+    /// Text of the named file, or else of matrices/NAME.json of the scripts.
     fn text(&self) -> Result<String, Failure> {
         let named = format!("matrices/{}.json", self.file.display());
         let directory = match self.file.exists() {
@@ -116,7 +116,7 @@ fn wrong(place: &impl Display, error: &MatrixError) -> Failure {
     Failure::usage(FileTrouble::wrong(place, error))
 }
 
-/// Weighs the outcomes given, in a file or on the command line.
+/// Probabilities of the states after the outcomes given, in a file or on the command line.
 fn known(matrix: &Matrix, given: &str) -> Result<Posterior, Failure> {
     let file = Path::new(given);
     let (place, outcomes) = if given.contains('=') && !file.exists() {
@@ -149,8 +149,8 @@ fn inline(given: &str) -> Result<Vec<(String, Outcome)>, Failure> {
         .collect()
 }
 
-/// The answer for a person: a table of steps with where each outcome leads, as maintenance manuals
-/// have it, so that no depth of the tree spoils it.
+/// Answer for a person: a numbered table of tests that says where each outcome leads, as in maintenance manuals; it
+/// stays readable however deep the tree is.
 fn text(matrix: &Matrix, known: &Posterior, plan: &Plan, with_posterior: bool) -> String {
     let mut parts = Vec::new();
     if with_posterior {

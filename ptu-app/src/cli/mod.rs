@@ -64,7 +64,7 @@ use ptu_runs::stdio;
 #[derive(Debug, Parser)]
 #[command(name = "ptu", version, verbatim_doc_comment)]
 pub struct Cli {
-    /// None = the window, as it was left.
+    /// Verb; `None` for `ptu` alone, which opens the window as it was left.
     #[command(subcommand)]
     verb: Option<Verb>,
     #[command(flatten)]
@@ -73,7 +73,8 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    // What an argument's own comment says stands in the help; one here would hide its exit codes and examples.
+    // Variants without a comment take the help of their argument type; a comment here would hide exit codes and
+    // examples.
     Gui(Box<WindowOptions>),
     Run(Box<run::RunArguments>),
     Diagnose(diagnose::DiagnoseArguments),
@@ -113,8 +114,8 @@ enum Verb {
 }
 
 impl Verb {
-    /// Whether the verb only answers; what works for long with nobody watching must not wait in a
-    /// pager.
+    /// Whether the verb only answers a question: such an answer may be shown in a pager. A verb that works for long
+    /// with nobody watching must not wait in a pager.
     fn is_question(&self) -> bool {
         match self {
             Self::Run(arguments) => arguments.list,
@@ -126,11 +127,11 @@ impl Verb {
 }
 
 impl Cli {
-    /// Reads the command line; ends the program after help, or where the line is wrong.
+    /// Reads the command line; ends the program after printing help, or where the command line is wrong.
     ///
     /// # Errors
-    /// The command line holds a server's password, which is looked at first: whatever else is wrong would be shown as it stands;
-    /// or a file of defaults is wrong.
+    /// The command line holds a server's password (checked first: every other error would print the password); or a
+    /// file of defaults is wrong.
     pub fn asked() -> Result<Self, Failure> {
         refuse_password()?;
         completions::answer();
@@ -147,7 +148,7 @@ impl Cli {
             .unwrap_or_else(|error| std::process::exit(told(&error).code().into())))
     }
 
-    /// The saved question that is asked for, or all as it was.
+    /// The arguments of `ptu saved`, or the whole command line of any other verb.
     fn saved(self) -> Result<saved::SavedArguments, Box<Self>> {
         match self.verb {
             Some(Verb::Saved(arguments)) => Ok(arguments),
@@ -155,7 +156,7 @@ impl Cli {
         }
     }
 
-    /// Does what was asked.
+    /// Runs the verb.
     ///
     /// # Errors
     /// With a message for a person and an exit code.
@@ -169,7 +170,7 @@ impl Cli {
             return Err(gui::start(std::iter::empty()));
         };
         match verb {
-            // The window reads the options itself; here they are only checked and told in the help.
+            // `ptu-window` reads these options itself; `ptu` only checks them and shows their help.
             Verb::Gui(_) => Err(gui::start(terminal::words_for_window())),
             Verb::Run(arguments) => arguments.run(),
             Verb::Drive(arguments) => arguments.run(),
@@ -200,7 +201,7 @@ impl Cli {
     }
 }
 
-/// The words of a command line, `--json` and `--csv` before what is asked for behind it, where each verb looks for them.
+/// Moves `--json` and `--csv` from before the verb to the end of the command line, where each verb looks for them.
 fn form_last(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let mut words: Vec<_> = words.collect();
     for form in ["--json", "--csv"] {
@@ -213,7 +214,7 @@ fn form_last(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
     words
 }
 
-/// Tells help, or why a command line cannot be read.
+/// Prints the help that was asked for, or why the command line cannot be read.
 fn told(error: &clap::Error) -> Exit {
     if error.use_stderr() {
         let korean = match Language::shown() {
@@ -233,7 +234,7 @@ fn told(error: &clap::Error) -> Exit {
     }
 }
 
-/// Refuses a unit that is not known here, with the serial number near to it, if there is one.
+/// Refuses a unit that the history does not know, and names the nearest serial number if there is one.
 fn check_unit(store: &Store, serial: &str) -> Result<(), Failure> {
     let known = store.known_units()?;
     if known.iter().any(|known| known == serial) {
@@ -243,14 +244,14 @@ fn check_unit(store: &Store, serial: &str) -> Result<(), Failure> {
     Err(Failure::usage(Unknown::Unit(serial.to_owned(), hint)))
 }
 
-/// When a report was made, and by which command.
+/// Line for a report: when it was made, and by which command.
 fn made_by() -> String {
     let words: Vec<_> = std::env::args().skip(1).map(|word| quoted(&word)).collect();
     let at = clock::local(clock::now_us());
     format!("Made {at} by: ptu {}", words.join(" "))
 }
 
-/// An argument as a shell takes it back.
+/// An argument quoted for a POSIX shell.
 fn quoted(argument: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:@+%".contains(c);
     if !argument.is_empty() && argument.chars().all(plain) {
@@ -259,12 +260,12 @@ fn quoted(argument: &str) -> String {
     format!("'{}'", argument.replace('\'', "'\\''"))
 }
 
-/// Range of a number of entries: none is no answer.
+/// Parser of a number of entries to show, 1 or more.
 fn at_least_one() -> RangedI64ValueParser<u32> {
     clap::value_parser!(u32).range(1..)
 }
 
-/// The beginning of a time such as `30d`, `12h`, `2026-03` or `2026-03-21`.
+/// Parses the beginning of a span of time, as `30d`, `12h`, `2026-03` or `2026-03-21`; the result is in µs.
 fn since_argument(text: &str) -> Result<i64, String> {
     if text.contains("..") {
         return Err(format!(

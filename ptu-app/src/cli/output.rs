@@ -11,7 +11,7 @@ use ptu_report::words::{Language, Words, tell};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::stdio;
 
-/// `--json`, and the answer in the form asked for.
+/// Option `--json`: prints an answer as JSON or as text.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Json {
     /// Print JSON, with all there is
@@ -20,12 +20,12 @@ pub struct Json {
 }
 
 impl Json {
-    /// JSON is asked for.
+    /// Whether the answer is to be JSON.
     pub fn is_asked(self) -> bool {
         self.json
     }
 
-    /// The words of an answer: other programs read English.
+    /// Words for the answer: English for JSON, which other programs read, else the user's language.
     pub fn words(self) -> &'static Words {
         match self.json {
             true => Language::English.words(),
@@ -33,7 +33,7 @@ impl Json {
         }
     }
 
-    /// Prints one JSON document, or text for people.
+    /// Prints the document as JSON, or the text.
     pub fn answer<T: Serialize>(
         self,
         document: impl FnOnce() -> T,
@@ -46,7 +46,7 @@ impl Json {
     }
 }
 
-/// `--json` and `--csv`, and a list in the form asked for.
+/// Options `--json` and `--csv`: print a list as JSON, as CSV or as a table.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Form {
     /// Print JSON
@@ -58,23 +58,23 @@ pub struct Form {
 }
 
 impl Form {
-    /// Neither JSON nor CSV.
+    /// Whether the list is to be a table, neither JSON nor CSV.
     pub fn is_table(self) -> bool {
         !self.json && !self.csv
     }
 
-    /// JSON.
+    /// Whether the list is to be JSON.
     pub fn is_json(self) -> bool {
         self.json
     }
 
-    /// Prints rows whose columns are the keys of the first, or the table of them.
+    /// Prints the rows as JSON or CSV, or else the table; the columns are the keys of the first row.
     pub fn print(self, rows: &[Value], table: impl FnOnce() -> String) -> Result<Exit, Failure> {
         let columns = rows.first().map(keys).unwrap_or_default();
         self.print_columns(&columns, rows, table)
     }
 
-    /// Prints rows, or the table of them. The columns are the keys of each row, in their order.
+    /// Prints the rows as JSON or CSV, or else the table. Each row has the columns as its keys, in their order.
     pub fn print_columns(
         self,
         columns: &[&str],
@@ -102,7 +102,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// Saves the question, if it was given a name.
+    /// Saves the question if `--save` gives a name.
     pub fn save(&self) -> Result<(), Failure> {
         match &self.save {
             Some(name) => questions::save(name, std::env::args_os()),
@@ -125,8 +125,8 @@ pub fn print_out(text: &str) -> Result<Exit, Failure> {
     Ok(Exit::Passed)
 }
 
-/// The exit code of what was done when its answer went out, or did not: an answer that is missing spoils what
-/// passed, and hides nothing that did not.
+/// Exit code of finished work whose answer was printed, or failed to print. A missing answer turns success into a
+/// failure; a failure keeps its own exit code.
 pub fn answered(told: Result<Exit, Failure>, exit: Exit) -> Result<Exit, Failure> {
     match told {
         Ok(_) => Ok(exit),
@@ -138,15 +138,15 @@ pub fn answered(told: Result<Exit, Failure>, exit: Exit) -> Result<Exit, Failure
     }
 }
 
-/// Prints rows as CSV. The columns are the keys of each row, in their order.
+/// Prints rows as CSV. Each row has the columns as its keys, in their order.
 pub fn print_csv(columns: &[&str], rows: &[Value]) -> Result<Exit, Failure> {
     let mark = if stdio::begins_file() { MARK } else { "" };
     stdio::document(&format!("{mark}{}", csv(columns, rows)))?;
     Ok(Exit::Passed)
 }
 
-/// Rows under their columns as CSV (RFC 4180), without the end of the last line; what is no single value
-/// stands as JSON.
+/// Rows under their headings as CSV (RFC 4180), without a line end after the last row; lists and objects are written
+/// as JSON.
 fn csv(columns: &[&str], rows: &[Value]) -> String {
     debug_assert!(rows.iter().all(|row| keys(row) == columns));
     let heading = columns.iter().map(|column| Cell::Text((*column).into()));
@@ -171,7 +171,7 @@ pub fn keys(row: &Value) -> Vec<&str> {
 fn line(cells: impl Iterator<Item = Cell>) -> String {
     let line = cells.map(Cell::written).collect::<Vec<_>>().join(",");
     match line.is_empty() {
-        // The line of one empty cell: many readers pass over a line without anything.
+        // A row of one empty cell is written as quotes: many readers skip an empty line.
         true => "\"\"".to_owned(),
         false => line,
     }

@@ -15,7 +15,6 @@ pub struct PortsArguments {
 }
 
 impl PortsArguments {
-    /// Lists them.
     pub fn run(self) -> Result<Exit, Failure> {
         let ports = found()?;
         let lines = ports.iter().map(|p| format!("{}  {}", p.path, p.kind));

@@ -9,10 +9,10 @@ use fault_db::{limits, read_regular_file};
 use ptu_runs::failure::{Failure, FileTrouble, KeepTrouble, Unknown, Why, did_you_mean};
 use ptu_runs::whole_file::{self, LONGEST_FILE};
 
-/// Questions by name: the words after `ptu`.
+/// Saved questions by name: the words of the command line after `ptu`.
 pub type Questions = BTreeMap<String, Vec<String>>;
 
-/// Keeps the question of this command line under a name.
+/// Saves the question of this command line under a name.
 ///
 /// # Errors
 /// The file of questions cannot be read or written.
@@ -34,13 +34,13 @@ pub fn save(name: &str, words: impl Iterator<Item = OsString>) -> Result<(), Fai
     store(&file, &questions)
 }
 
-/// The words without those that say under which name to save it, of which database it is asked, and in which language it
-/// is answered.
+/// The words of a question without the options `--save`, `--db` and `--lang`, whose values may differ each time it is
+/// asked.
 fn asked(words: impl Iterator<Item = String>) -> Vec<String> {
     without(words.skip(1), &["--save", "--db", "--lang"], &[])
 }
 
-/// The words without these options, those with a value, which goes with them, and those without.
+/// The words without some options: those of `with_value` go with their value, those of `plain` alone.
 pub fn without(
     mut words: impl Iterator<Item = String>,
     with_value: &[&str],

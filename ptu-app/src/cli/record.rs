@@ -8,7 +8,7 @@ use clap::{Args, Subcommand};
 use super::Database;
 use ptu_runs::failure::{Exit, Failure};
 
-/// Read a unit's own record of automatic runs, and compare a run with a sound unit's
+/// Read a unit's own record of automatic runs, and compare such a run with a sound unit's run
 #[derive(Debug, Args)]
 pub struct RecordArguments {
     #[command(subcommand)]
@@ -24,10 +24,9 @@ enum Verb {
 }
 
 impl RecordArguments {
-    /// Pulls or compares.
     pub fn run(self) -> Result<Exit, Failure> {
         match self.verb {
-            // What is pulled is a run, and runs are recorded in a file.
+            // What is pulled is stored as a run, and runs are recorded in a file, not on a server.
             Verb::Pull(arguments) => {
                 self.database.check_named()?;
                 arguments.run(self.database.open_file()?)

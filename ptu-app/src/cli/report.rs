@@ -1,4 +1,4 @@
-//! `ptu report`: the sheet of a run, or of a case, written after it.
+//! `ptu report`: writes the sheet of a stored run, or of a case.
 
 use clap::Args;
 use fault_db::{Id, Store, StoreError};
@@ -12,13 +12,14 @@ use ptu_runs::failure::{Asked, Exit, Failure};
 
 /// Write the sheet of a run, or the repair sheet of a case, to files
 ///
-/// A run's sheet is the one of `ptu run --report` and of the window. A fault's id names its case: what failed, what
-/// was replaced, the failing values before and after with their limits, and what runs prove of the repair.
+/// A run's sheet is the same as from `ptu run --report` and from the window. A fault's id names its case: the sheet
+/// says what failed, what was replaced, the failing values before and after with their limits, and what runs prove of
+/// the repair.
 ///
 /// Examples:
 ///   ptu report latest --out sheet.pdf --out results.junit.xml
 ///   ptu report 5f8b --out case.pdf --lang ko                    the case of fault 5f8b
-///   ptu report latest --case --out case.html --annex            of the fault seen last, with both runs in full
+///   ptu report latest --case --out case.html --annex            case of the fault seen last, with both runs in full
 ///
 /// Exit codes: 0 written, 2 no such run or fault, or a file name with an unknown ending, 3 database.
 #[derive(Debug, Args)]
@@ -30,13 +31,13 @@ pub struct ReportArguments {
     /// The file: a sheet as .html or .pdf, or .csv, .json, .junit.xml; repeatable
     #[arg(long, value_name = "FILE", required = true)]
     out: Vec<Target>,
-    /// The id is that of a fault; `latest` is the fault seen last
+    /// Take the id as a fault's id; `latest` is then the fault seen last
     #[arg(long)]
     case: bool,
     /// Add the full sheets of both runs behind the sheet of a case
     #[arg(long)]
     annex: bool,
-    /// Where the unit is kept, on the sheet of a case; without it, a line to write on
+    /// Depot where the unit is kept, for the sheet of a case; without it the sheet has a line to write on
     #[arg(long, value_name = "TEXT", env = "PTU_DEPOT", default_value = "")]
     depot: String,
     #[command(flatten)]
@@ -47,14 +48,13 @@ pub struct ReportArguments {
     scripts: ScriptsOption,
 }
 
-/// Record that an id stands for.
+/// What an id on the command line names.
 enum Told {
     Run(Id),
     Case(Id),
 }
 
 impl ReportArguments {
-    /// Writes.
     pub fn run(self) -> Result<Exit, Failure> {
         self.out.iter().try_for_each(Target::check)?;
         let store = self.database.open_read_only()?;
@@ -86,7 +86,7 @@ impl ReportArguments {
         print_out(&fill(said, &[("files", &files.join(", "))]))
     }
 
-    /// A run, or else a fault; what fits both is refused.
+    /// The run that the id names, or else the fault; an id that fits both is refused.
     fn told(&self, store: &Store) -> Result<Told, Failure> {
         let id = &self.id;
         if self.case {

@@ -8,7 +8,7 @@ use ptu_report::{self, Target};
 use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;
 
-/// Which reports to write.
+/// Option that names the reports to write.
 #[derive(Debug, Args)]
 pub struct ReportOption {
     /// Write a report: a test sheet as .html or .pdf, or .csv, .json, .junit.xml; repeatable
@@ -22,12 +22,12 @@ impl ReportOption {
         self.report.is_empty()
     }
 
-    /// Finds out before the run whether all can be written after it.
+    /// Checks before the run that all reports can be written after it.
     pub fn check(&self) -> Result<(), Failure> {
         self.report.iter().try_for_each(Target::check)
     }
 
-    /// Writes all.
+    /// Writes all reports of a run.
     pub fn write(
         &self,
         store: &Store,

@@ -32,12 +32,12 @@ use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
 use ptu_runs::symptoms;
 
-/// Line, unit configuration and seed of a run that names none.
+/// Defaults of `--line`, `--unit-config` and `--seed`.
 const LINE: &str = "line8";
 const UNIT_CONFIG: &str = "sg100";
 const SEED: u64 = 1;
 
-/// Run check procedures; by default all under scripts/ but those on request only
+/// Run check procedures; by default all under scripts/, without those that run on request only
 ///
 /// Examples:
 ///   ptu run                                     everything, on the simulated unit
@@ -49,11 +49,11 @@ const SEED: u64 = 1;
 ///   ptu run --scattered --seed 7                  on a unit, train and bench as good ones differ
 ///   ptu run --repeat 10 --shuffle --seed 7      each procedure ten times, in an order drawn by the seed
 ///   ptu run --adaptive --inject tra.dead        as few steps as it takes to find the part
-///   ptu run --report sheet.pdf --lang ko         a test sheet, as .html, too
+///   ptu run --report sheet.pdf --lang ko         a test sheet; sheet.html works, too
 ///   ptu run --report out.json --report out.junit.xml
 ///   ptu run --json                               each event as a JSON line, for other programs
 ///   ptu run --exclude tcms --exclude '*/self_test'   all but these
-///   ptu run --resume latest                     what the latest run left without a verdict
+///   ptu run --resume latest                     the procedures that the latest run left without a verdict
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct RunArguments {
@@ -79,7 +79,7 @@ pub struct RunArguments {
     /// Unit configuration key to change, as ato.controller=pi; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Setting>,
-    /// Serial number: of the simulated unit, or expected of a real one
+    /// Serial number: of the simulated unit, or the number that a real unit should report
     #[arg(long, value_name = "TEXT")]
     serial_no: Option<String>,
     /// Software version the unit should have, compared by `ptu/identity` in place of the record's
@@ -95,7 +95,7 @@ pub struct RunArguments {
     /// What was wrong with the unit when it was brought, see `ptu catalog symptoms`: a weak sign of the part
     #[arg(long, value_name = "SYMPTOM")]
     symptom: Option<String>,
-    /// Faults to inject into the simulated unit or into the train around any, see `ptu catalog faults`
+    /// Faults to inject into the simulated unit, or into the train around any unit, see `ptu catalog faults`
     #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
     inject: Vec<String>,
     /// Seed of everything random [default: 1]
@@ -105,7 +105,8 @@ pub struct RunArguments {
     /// brakes, timing; from scripts/bench_scatter.toml or FILE
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     scattered: Option<Option<PathBuf>>,
-    /// Codes, TWC, markers and pulses as values, or sampled, as waveforms; a file says what disturbs these
+    /// How codes, TWC, markers and pulses reach the unit: as values, or sampled as waveforms; FILE says what disturbs
+    /// the waveforms
     #[arg(long, value_name = "values|sampled[:FILE]", default_value = "values")]
     signals: Signals,
     /// Instruments of the bench, benches/NAME.toml or a file ending in .toml: where stimuli go and readings come from
@@ -114,7 +115,7 @@ pub struct RunArguments {
     /// Run the simulated unit at the wall clock's pace
     #[arg(long)]
     realtime: bool,
-    /// Run N times slower than real time, on a computer too busy for it; a served unit must do the same,
+    /// Run N times slower than real time, on a computer too busy for real time; a served unit must be slowed, too:
     /// `ato-under-test --slower`
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
     slower: u32,
@@ -124,7 +125,7 @@ pub struct RunArguments {
     /// Report all errors of all scripts, limits that name no source and texts without Korean, and drive nothing
     #[arg(long, conflicts_with = "list")]
     check: bool,
-    /// Show what would be run and drive nothing: a line for each procedure; all steps of those that are named
+    /// Show what would be run and drive nothing: a line for each procedure; of named procedures all steps
     #[arg(long)]
     pub list: bool,
     /// With --list: all steps, also where no procedure is named
@@ -142,14 +143,14 @@ pub struct RunArguments {
     /// Run the procedures in an order drawn by the seed
     #[arg(long)]
     shuffle: bool,
-    /// End after the first step that does not pass; with --jobs, too, the record ends with the first
-    /// procedure, in their order, that did not pass
+    /// End after the first step that does not pass; with --jobs, too, the record ends with the first procedure, in the
+    /// order of the list, that did not pass
     #[arg(long)]
     stop_on_fail: bool,
-    /// Isolate a fault: after each step do what tells the most, until one part is found
+    /// Isolate a fault: run the step that tells the most, again and again, until one part is found
     #[arg(long, conflicts_with_all = ["check", "list", "step", "shuffle", "stop_on_fail"])]
     adaptive: bool,
-    /// Go on where the calibration of an instrument of this bench is over; the sheet says so (`ptu instrument`)
+    /// Run although the calibration of an instrument of this bench has expired; the sheet says so (`ptu instrument`)
     #[arg(long)]
     uncalibrated: bool,
     /// Narrow each limit by the uncertainty of the instrument for its unit (ISO/IEC 17025 7.8.6); the sheet names the rule
@@ -170,7 +171,7 @@ pub struct RunArguments {
 }
 
 impl RunArguments {
-    /// Loads, then checks, lists or runs.
+    /// Loads the scripts, then checks them, lists them or runs them.
     pub fn run(mut self) -> Result<Exit, Failure> {
         let directory = self.scripts.find()?;
         let earlier = self.take_over()?;
@@ -267,7 +268,7 @@ impl RunArguments {
         let signer = self.signing.signer()?;
         let store = self.database.open_file()?;
         store.sign_with(signer);
-        // Only once the history is there, so that no report takes its place.
+        // Checked once the database file exists, so that no report can take the database's place.
         self.reports.check()?;
         if self.adaptive && (self.repeat > 1 || self.jobs > 1) {
             return Err(Failure::usage(Asked::AdaptiveOnce));
@@ -311,14 +312,14 @@ impl RunArguments {
             Exit::Passed => prove_repairs(&store, directory, outcome.id),
             _ => Ok(Vec::new()),
         };
-        // The causes of the faults are stored before the answer is printed, and even if the terminal takes none of it.
+        // The causes of the faults are stored before the answer is printed, so that they are kept if printing fails.
         if let Some(Ok(answer)) = &answer
             && let Err(failure) = answer.attribute(&store)
         {
             tell(&failure);
         }
         let detail = store.run(outcome.id)?;
-        // Database and reports have the result: a terminal that takes no output changes no verdict.
+        // The database has the result: a terminal that takes no output changes no verdict.
         let said = match self.show.json {
             true => Ok(()),
             false => print_out(&self.show.verdict(&detail))

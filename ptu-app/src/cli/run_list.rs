@@ -25,7 +25,7 @@ pub fn show(tasks: &[Task], harness: Harness, json: bool, whole: bool) -> Result
     print_out(&lines.join("\n"))
 }
 
-/// Reason for which a procedure will be skipped, as far as it is known before the unit is reached.
+/// Reason why a procedure will be skipped, as far as the reason is known before the unit is reached.
 fn skipped(procedure: &Procedure, harness: Harness) -> Option<Finding> {
     match harness {
         Harness::None => procedure.needs.lacks(Connection::Ptu),
@@ -33,7 +33,7 @@ fn skipped(procedure: &Procedure, harness: Harness) -> Option<Finding> {
     }
 }
 
-/// A line for each procedure.
+/// Table with a line for each procedure.
 fn overview(tasks: &[Task], harness: Harness) -> String {
     let words = Words::shown();
     let terminal = &words.terminal;

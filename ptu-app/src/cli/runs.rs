@@ -20,7 +20,7 @@ use ptu_runs::failure::{Asked, Exit, Failure};
 use ptu_runs::table::Table;
 use ptu_runs::whole_file;
 
-/// Show recorded runs, and note what is to be said of them
+/// Show and compare recorded runs, and add notes to them
 #[derive(Debug, Args)]
 pub struct RunsArguments {
     #[command(subcommand)]
@@ -39,7 +39,7 @@ enum Verb {
         /// Only with this verdict
         #[arg(long)]
         verdict: Option<fault_db::Verdict>,
-        /// Only begun then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
+        /// Only runs begun in this time: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
         #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
         when: Option<Span>,
         /// At most N runs
@@ -69,10 +69,10 @@ enum Verb {
         /// The run before: an id, its beginning or end (at least 4 digits)
         #[arg(value_name = "A")]
         before: String,
-        /// The run after: the same, or `latest`
+        /// The run after: an id, its beginning or end (at least 4 digits), or `latest`
         #[arg(value_name = "B")]
         after: String,
-        /// Also the steps that passed in both
+        /// Show also the steps that passed in both runs
         #[arg(long)]
         all: bool,
         #[command(flatten)]
@@ -85,9 +85,9 @@ enum Verb {
     Note {
         /// The run: an id, its beginning or end (at least 4 digits), or `latest`
         id: String,
-        /// What is to be said
+        /// Text of the note
         text: String,
-        /// Who says it
+        /// Who writes the note
         #[arg(long, value_name = "TEXT", default_value = "")]
         who: String,
         #[command(flatten)]
@@ -97,14 +97,13 @@ enum Verb {
     Certificate {
         /// The run: an id, its beginning or end (at least 4 digits), or `latest`
         id: String,
-        /// The file, as run.ptucert
+        /// The file to write, as run.ptucert
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
 }
 
 impl RunsArguments {
-    /// Lists, shows, compares or notes.
     pub fn run(self) -> Result<Exit, Failure> {
         let store = if matches!(self.verb, Verb::Note { .. }) {
             self.database.open()?
@@ -192,7 +191,7 @@ impl RunsArguments {
     }
 }
 
-/// Signature of the run, for the line below its verdict.
+/// Line below a run's verdict that says who signed the run, or that nobody did.
 fn signed(run: &RunDetail) -> String {
     let words = Words::shown();
     let terminal = &words.terminal;
@@ -261,7 +260,7 @@ fn table(runs: &[fault_db::RunSummary]) -> String {
     table.render()
 }
 
-/// What was said about a run, below its verdict.
+/// Table of the notes on a run, below its verdict.
 fn notes(run: &RunDetail) -> String {
     if run.notes.is_empty() {
         return String::new();

@@ -1,4 +1,4 @@
-//! `ptu saved`: queries saved under a name.
+//! `ptu saved`: questions saved under a name.
 
 use clap::{Args, CommandFactory, FromArgMatches};
 
@@ -10,8 +10,8 @@ use ptu_runs::table::Table;
 
 /// Ask a saved question again, or list them all
 ///
-/// Questions of `ptu faults list|stats|trend` and `ptu db query` are saved with --save NAME. Each is asked
-/// of the database in use. Options after its name are added to it, or replace its own.
+/// Questions of `ptu faults list|stats|trend` and `ptu db query` are saved with --save NAME. A question is asked of the
+/// database in use. Options after the question's name are added to its own options, or replace them.
 ///
 /// Examples:
 ///   ptu faults stats --by part --when 90d --save worst
@@ -36,11 +36,11 @@ pub struct SavedArguments {
 }
 
 impl SavedArguments {
-    /// Asks, lists or forgets.
+    /// Asks a question, lists all questions, or removes one.
     pub fn run(mut self) -> Result<Exit, Failure> {
         let file = usual_file()?;
         let mut questions = load(&file)?;
-        // Questions on the way to the one that is asked: whoever writes the file may have one ask another.
+        // Questions asked on the way here: a file edited by hand may have one question ask another, or go in a circle.
         let mut way: Vec<String> = Vec::new();
         loop {
             if let Some(name) = self.forget.take() {
@@ -70,7 +70,7 @@ impl SavedArguments {
     }
 }
 
-/// The command line that a question stands for, with the options that were added.
+/// The command line of a question, with the options `more` added.
 fn asked_for(questions: &Questions, name: &str, more: Vec<String>) -> Result<Cli, Failure> {
     if more
         .iter()
@@ -91,7 +91,7 @@ fn asked_for(questions: &Questions, name: &str, more: Vec<String>) -> Result<Cli
         .map_err(|error| Failure::usage(KeepTrouble::NotAsked(name.to_owned(), error.to_string())))
 }
 
-/// The words without the options that cannot stand beside one of these: that one replaces them.
+/// The words of a question without the options that an option of `more` replaces or excludes.
 fn without_rivals(words: &[String], more: &[String]) -> Vec<String> {
     let is_given = |options: &[&str]| {
         let mut names = more.iter().map(|word| word.split('=').next());
@@ -102,7 +102,7 @@ fn without_rivals(words: &[String], more: &[String]) -> Vec<String> {
         false => &[],
     };
     let spans = drop_if_given(&["--when", "--since-repair"]);
-    // Several states are one question: given now, they are another.
+    // `--state` takes several states: states given now replace all saved states.
     let states = drop_if_given(&["--state"]);
     let forms = drop_if_given(&["--json", "--csv"]);
     let with_value = [spans, states].concat();

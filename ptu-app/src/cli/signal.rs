@@ -27,8 +27,8 @@ use serde_json::Value;
 ///   ptu signal read recording.wav --json
 ///   ptu signal read recording.wav --csv --report recording.html
 ///
-/// A recording is read by the receivers of the embedded unit: a code is what they decode. Codes, tones and bit
-/// rate are those of the unit configuration.
+/// A recording is read by the receivers of the simulated unit: what they decode is shown. Codes, tones and bit rate are
+/// taken from the unit configuration.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct SignalArguments {
@@ -84,13 +84,13 @@ enum WaveVerb {
         /// Length, s
         #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = positive)]
         seconds: f64,
-        /// Line B behind line A, degrees of a period
+        /// Phase of line B behind line A, degrees of a period
         #[arg(long, value_name = "DEGREES", default_value_t = 90.0, value_parser = angle)]
         phase: f64,
         /// Share of a period for which a line is high, %
         #[arg(long, value_name = "PERCENT", default_value_t = 50.0, value_parser = percent)]
         duty: f64,
-        /// One tooth of the wheel is missing
+        /// One tooth of the sensor's wheel is missing
         #[arg(long)]
         missing_tooth: bool,
         #[command(flatten)]
@@ -125,7 +125,7 @@ struct Bytes(Vec<u8>);
 
 #[derive(Debug, Args)]
 struct CommonOfMake {
-    /// WAV file to write: a channel of 16 bits, 48 000 samples a second
+    /// WAV file to write: 16 bits, 48 000 samples a second, one channel, for a speed sensor two
     #[arg(value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]
@@ -139,7 +139,7 @@ struct Noisy {
     /// Level while the carrier is on, mV rms
     #[arg(long, value_name = "MV", default_value_t = 500.0, value_parser = positive)]
     level: f64,
-    /// Noise so many dB below the level, in the receiver's band; without it there is none
+    /// Noise this many dB below the level, in the receiver's band [default: no noise]
     #[arg(long, value_name = "DB", allow_negative_numbers = true, value_parser = decibels)]
     snr: Option<f64>,
     /// Seed of the noise
@@ -159,7 +159,7 @@ impl Noisy {
 
 #[derive(Debug, Args)]
 struct Scale {
-    /// What full scale of the file stands for, mV
+    /// Voltage that full scale of the file stands for, mV
     #[arg(long, value_name = "MV", default_value_t = FULL_SCALE_MV, value_parser = positive)]
     full_scale: f64,
     #[command(flatten)]
@@ -168,7 +168,7 @@ struct Scale {
 
 #[derive(Debug, Args)]
 struct UnitChoice {
-    /// Unit configuration whose speed codes are meant
+    /// Unit configuration whose codes, tones and bit rate count
     #[arg(long, value_name = "NAME", default_value = "sg100")]
     unit_config: String,
     #[command(flatten)]
@@ -195,7 +195,7 @@ struct ReadArguments {
     /// Write a page with spectrum, envelope and eye beside what was heard, .html; repeatable
     #[arg(long, value_name = "FILE", value_parser = page)]
     report: Vec<PathBuf>,
-    /// Two channels each are the lines A and B of a speed sensor
+    /// Read each two channels as the lines A and B of a speed sensor
     #[arg(long, conflicts_with = "report")]
     tacho: bool,
     #[command(flatten)]
@@ -203,7 +203,6 @@ struct ReadArguments {
 }
 
 impl SignalArguments {
-    /// Makes or reads.
     pub fn run(self) -> Result<Exit, Failure> {
         match self.verb {
             SignalVerb::Make(arguments) => arguments.run(),
@@ -318,7 +317,7 @@ impl ReadArguments {
     }
 }
 
-/// Columns of a detected signal.
+/// Columns of the CSV: one row for each code, message, marker or speed sensor that was heard.
 const SOURCE_COLUMNS: [&str; 15] = [
     "channel",
     "from_s",
@@ -358,7 +357,7 @@ fn decibels(text: &str) -> Result<f64, String> {
     }
 }
 
-/// An angle within a period, degrees.
+/// Parses an angle within a period, 0 to below 360 degrees.
 fn angle(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if (0.0..360.0).contains(&number) => Ok(number),
@@ -366,7 +365,7 @@ fn angle(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A share that is neither nothing nor all.
+/// Parses a share of 1 to 99 %.
 fn percent(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if (1.0..=99.0).contains(&number) => Ok(number),

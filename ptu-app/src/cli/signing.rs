@@ -1,4 +1,4 @@
-//! `--key`: what is recorded is signed.
+//! `--key`: signs what a command records.
 
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
@@ -13,10 +13,10 @@ use ptu_runs::{keys, owner_only};
 
 /// Longest file with a PIN, bytes.
 const LONGEST_PIN: u64 = 4096;
-/// Holds the PIN, for benches without a terminal.
+/// Environment variable that holds the PIN, for benches without a terminal.
 const PIN: &str = "PTU_PIN";
 
-/// With which key to sign, if any.
+/// Option that names the key to sign with.
 #[derive(Debug, Default, Args)]
 pub struct SigningOption {
     /// Sign with this key file of `ptu key new`; its PIN is asked for, or read from --pin-file or PTU_PIN
@@ -26,7 +26,7 @@ pub struct SigningOption {
     pin: PinOption,
 }
 
-/// What is recorded, and with which key it is signed.
+/// Arguments of a command that records something, with the key to sign it.
 #[derive(Debug, Args)]
 pub struct Signed<T: Args> {
     #[command(flatten)]
@@ -36,7 +36,7 @@ pub struct Signed<T: Args> {
 }
 
 impl<T: Args> Signed<T> {
-    /// What is to be recorded, in a history that signs from now on.
+    /// The command's own arguments; from now on the history signs what is recorded, if a key is named.
     ///
     /// # Errors
     /// As [`SigningOption::sign`].
@@ -46,10 +46,10 @@ impl<T: Args> Signed<T> {
     }
 }
 
-/// Where the PIN of a key comes from.
+/// Option that says where the PIN of a key comes from.
 #[derive(Debug, Default, Args)]
 pub struct PinOption {
-    /// File with the PIN of the key, for what runs without a terminal
+    /// File with the PIN of the key, for commands that run without a terminal
     #[arg(long, value_name = "FILE", env = "PTU_PIN_FILE")]
     pin_file: Option<PathBuf>,
 }
@@ -70,7 +70,7 @@ impl SigningOption {
         (self.key.as_deref()).filter(|path| !path.as_os_str().is_empty())
     }
 
-    /// A key is named.
+    /// Whether a key is named.
     pub fn is_named(&self) -> bool {
         self.named().is_some()
     }

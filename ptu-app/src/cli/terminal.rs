@@ -12,14 +12,14 @@ use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
 use ptu_runs::terminal::{Terminal, wants_colour};
 
-/// Among the options: after all others but `--help`.
+/// Place of these options in the help: after all others but `--help`.
 const LAST: usize = 999;
-/// Without another in `PAGER`.
+/// Pager where `PAGER` names no other.
 const PAGER: &str = "less";
-/// `less` shows colours, ends by itself when all fits, and leaves what it showed.
+/// Options of `less`: show colours (R), end by itself when all fits (F), leave on the screen what it showed (X).
 const LESS: &str = "FRX";
 
-/// How answers are shown on a terminal.
+/// Options that say how answers are shown on a terminal.
 #[derive(Debug, Args)]
 pub struct TerminalOption {
     /// Colours of verdicts, limits and parts: auto, always or never; auto follows NO_COLOR, CLICOLOR and CLICOLOR_FORCE
@@ -28,7 +28,7 @@ pub struct TerminalOption {
     color: ColorChoice,
     /// Language of answers and reports: en or ko [default: that of the locale]
     #[arg(long, value_name = "LANGUAGE", global = true, display_order = LAST)]
-    // `Language::shown` reads the option before a wrong command line is told.
+    // `Language::shown` reads this option by itself, before clap reports a wrong command line.
     lang: Option<Language>,
     /// Never page an answer that is longer than the screen; PAGER says by which program [default: less]
     #[arg(long, global = true, display_order = LAST)]
@@ -36,7 +36,7 @@ pub struct TerminalOption {
 }
 
 impl TerminalOption {
-    /// Takes the terminal as it is now.
+    /// Finds the size and colours of the terminal, and sets them for all output.
     pub fn set(&self) {
         let screen = console::Term::stdout();
         let size = screen.size_checked();
@@ -53,13 +53,13 @@ impl TerminalOption {
         terminal.set();
     }
 
-    /// An answer to a question may be paged.
+    /// Whether an answer to a question may be shown in a pager.
     pub fn pages(&self) -> bool {
         !self.no_pager
     }
 }
 
-/// Answers may be paged.
+/// Whether answers are shown in a pager.
 static PAGES: AtomicBool = AtomicBool::new(false);
 
 /// From now on an answer that is longer than the screen is paged.
@@ -67,7 +67,7 @@ pub fn page_answers() {
     PAGES.store(true, Ordering::Relaxed);
 }
 
-/// Shows what is longer than the screen in a pager, if answers are paged; says whether one did.
+/// Shows text that is longer than the screen in a pager, if answers are paged; `true` if the pager ran.
 pub fn paged(text: &str) -> bool {
     let Some([_, rows]) = Terminal::get()
         .size
@@ -88,17 +88,17 @@ pub fn paged(text: &str) -> bool {
     let Ok(mut pager) = command.spawn() else {
         return false;
     };
-    // A Ctrl-C that stops a search in the pager is for the pager.
+    // Ctrl-C is for the pager, where it stops a search: it must not end this program.
     Stop::default().listen();
     if let Some(mut input) = pager.stdin.take() {
-        // A reader who has read enough leaves the pager.
+        // A reader may end the pager before it has read all.
         let _ = writeln!(input, "{}", stdio::shown(text));
     }
     let _ = pager.wait();
     true
 }
 
-/// The words after `gui`, without those that the window has no use for.
+/// The words after `gui`, without the options that the window does not have.
 pub fn words_for_window() -> impl Iterator<Item = OsString> {
     let mut words = std::env::args_os().skip(1).skip_while(|word| word != "gui");
     words.next();

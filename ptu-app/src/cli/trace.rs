@@ -40,15 +40,15 @@ enum Verb {
         #[command(flatten)]
         form: Form,
     },
-    /// Show a trace and where it parts from what was expected: an id, its beginning or end (at least 4
-    /// digits), or `latest`
+    /// Show a trace and where it deviates from what was expected: an id, its beginning or end (at least 4 digits), or
+    /// `latest`
     Show(show::ShowArguments),
     Diff(diff::DiffArguments),
     Replay(replay::ReplayArguments),
     Export(export::ExportArguments),
 }
 
-/// Which part of a trace.
+/// Options that choose a part of a trace.
 #[derive(Debug, Args)]
 pub struct PartArguments {
     /// Only these signals
@@ -66,7 +66,6 @@ pub struct PartArguments {
 }
 
 impl TraceArguments {
-    /// Shows, compares, replays or exports.
     pub fn run(self) -> Result<Exit, Failure> {
         match self.verb {
             Verb::List { limit, form } => {
@@ -117,7 +116,7 @@ fn table(traces: &[TraceSummary]) -> String {
     table.render()
 }
 
-/// Some signals, or all where none is named, at some times.
+/// Reads the named signals of a trace, or all signals where none is named, within a span.
 fn read(
     store: &Store,
     asked: &str,

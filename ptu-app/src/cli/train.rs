@@ -1,4 +1,4 @@
-//! `ptu train`: a train to plug a laptop into.
+//! `ptu train`: serves a simulated train with a maintenance port for a laptop.
 
 use std::path::PathBuf;
 
@@ -13,11 +13,11 @@ use ptu_runs::train_server::{self, NO_AUTHENTICATION, PortAddress, TrainRequest,
 
 use super::ScriptsOption;
 
-/// Serve a unit that is built into a simulated train: only its maintenance port leaves the program
+/// Serve a unit built into a simulated train: other programs reach only the unit's maintenance port
 ///
-/// The train does all inputs and outputs of the unit by itself. It stands in a depot with the cab on, mode manual,
-/// doors closed and the maintenance key on. The port's name is printed alone on standard output. Lines on standard
-/// input are done in the cab: key on|off, mode NAME, cab on|off, doors open|closed, ack, start, move KMH, stop,
+/// The train itself drives all inputs and outputs of the unit. The train stands in a depot with the cab on, mode
+/// manual, doors closed and the maintenance key on. Standard output has the port's name alone. Each line on standard
+/// input is an action in the cab: key on|off, mode NAME, cab on|off, doors open|closed, ack, start, move KMH, stop,
 /// code NAME|off, power on|off, quit. Ends with exit code 0 by quit, Ctrl-C or SIGTERM.
 ///
 /// Examples:
@@ -65,7 +65,7 @@ pub struct TrainArguments {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Keep the unit's event log and run record in this file from start to start; made if it is not there
+    /// Keep the unit's event log and run record in this file for the next start; the file is made if it is not there
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
     /// Run N times slower than real time; the tester must do the same, `ptu run --slower`
@@ -76,7 +76,7 @@ pub struct TrainArguments {
 }
 
 impl TrainArguments {
-    /// Serves until it is stopped.
+    /// Serves the train until it is stopped.
     pub fn run(self) -> Result<Exit, Failure> {
         let directory = self.scripts.find()?;
         let place = match (self.serial, self.tcp) {

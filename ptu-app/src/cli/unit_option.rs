@@ -1,29 +1,29 @@
-//! `--unit` and what is known of the unit, for commands that read it and drive nothing.
+//! `--unit` and the options that describe the unit, for commands that read a unit and do not drive it.
 
 use clap::Args;
 
 use ptu_runs::link::Endpoint;
 use ptu_runs::unit_log::AskedUnit;
 
-/// The unit on a port.
+/// Options that name and describe the unit on a port.
 #[derive(Debug, Args)]
 pub struct UnitOption {
     /// The unit: serial:PATH[@BAUD] or tcp:HOST:PORT
     #[arg(long, value_name = "UNIT")]
     unit: Endpoint,
-    /// Serial number expected of it
+    /// Serial number that the unit should report
     #[arg(long, value_name = "TEXT")]
     serial_no: Option<String>,
-    /// Unit configuration it has, units/NAME.toml
+    /// Unit configuration of the unit, units/NAME.toml
     #[arg(long, value_name = "NAME", default_value = "sg100")]
     unit_config: String,
-    /// Line it has, lines/NAME.toml
+    /// Line in the unit's track database, lines/NAME.toml
     #[arg(long, value_name = "NAME", default_value = "line8")]
     line: String,
     /// Train the unit is in, as the depot names it
     #[arg(long, value_name = "TEXT", default_value = "")]
     train_no: String,
-    /// Who reads
+    /// Who reads the unit
     #[arg(long, value_name = "TEXT", default_value = "")]
     who: String,
 }

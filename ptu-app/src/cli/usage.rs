@@ -1,10 +1,10 @@
-//! Why a command line cannot be read, in Korean; the library of command lines says it in English alone.
+//! Says in Korean why a command line cannot be read; clap says it in English alone.
 
 use std::error::Error as _;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-/// The sentence, what is near to what was typed, and how the command is used; none for help and what is not known here.
+/// Korean text: what is wrong, similar words, and the usage. `None` for help, and for errors that have no Korean text.
 pub fn korean(error: &clap::Error) -> Option<String> {
     let told = |kind| error.get(kind).map(|value| listed(value, ", "));
     let of = |kind| told(kind).unwrap_or_default();

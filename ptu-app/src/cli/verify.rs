@@ -20,7 +20,7 @@ use ptu_runs::keys::KeyList;
 
 /// Longest sheet or certificate that is read, bytes.
 const LONGEST: u64 = 64 << 20;
-/// What a database file begins with.
+/// First bytes of every SQLite database file.
 const DATABASE: &[u8] = b"SQLite format 3\0";
 
 /// Say who signed a run, a database, a sheet or a certificate, and whether anything was changed since; needs no network
@@ -30,10 +30,10 @@ const DATABASE: &[u8] = b"SQLite format 3\0";
 ///   ptu verify sheet.html --keys depot.keys
 ///   ptu verify run.ptucert
 ///   ptu verify ptu:01a2…/220d…             what a scanner reads of a printed sheet
-///   ptu verify history.db                  all of a file
+///   ptu verify history.db                  all runs of a database file
 ///
-/// Exit codes: 0 signed by a key that is trusted, and unchanged, 1 changed, not signed, signed by a key that is not
-/// trusted, or a departure test that is not valid, 2 no such run or file, 3 it cannot be read.
+/// Exit codes: 0 unchanged and signed by a trusted key; 1 changed, not signed, signed by a key that is not trusted, or
+/// a departure test that is not valid; 2 no such run or file; 3 the file or run cannot be read.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct VerifyArguments {
@@ -41,7 +41,7 @@ pub struct VerifyArguments {
     /// a .ptucert file
     #[arg(value_name = "RUN|FILE")]
     what: String,
-    /// Unit whose departure test it should be, by its serial number
+    /// Serial number of the unit whose departure test the run or file should be
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
     #[command(flatten)]
@@ -53,7 +53,6 @@ pub struct VerifyArguments {
 }
 
 impl VerifyArguments {
-    /// Verifies.
     pub fn run(self) -> Result<Exit, Failure> {
         let words = self.json.words();
         let keys = self.keys.read()?;
@@ -76,7 +75,7 @@ impl VerifyArguments {
         answered(told, exit)
     }
 
-    /// Whether a departure test holds now, for the unit that is asked for, by all that is known here.
+    /// Adds whether a departure test holds now, for the unit asked for, by the findings and by this computer's history.
     fn judge(&self, departure: Departure, found: &mut Findings) -> Result<(), Failure> {
         let mut departure = departure.now();
         if let Some(asked) = self.unit.as_ref().filter(|asked| **asked != departure.unit) {
@@ -104,7 +103,8 @@ impl VerifyArguments {
         if looks_like_a_file(&self.what) {
             return Err(Failure::usage(FileTrouble::Missing(self.what.clone())));
         }
-        // The code on a sheet: the run, and the SHA-256 of its content that the sheet was written from.
+        // The code on a sheet holds the run's id, and the SHA-256 of the run's content from which the sheet was
+        // written.
         let code = self.what.strip_prefix("ptu:");
         let (asked, digest) = match code.map(|code| code.split_once('/')) {
             None => (self.what.as_str(), None),
@@ -173,7 +173,7 @@ impl VerifyArguments {
             .map(|problem| words.trouble(&problem.detail))
             .collect();
         found.remarks = report.remarks;
-        // What this computer's own history has seen of it, by a sync or an import.
+        // Compares the database with what this computer's own history knows of it from a sync or an import.
         if let Ok(own) = self.database.open_read_only() {
             for broken in own.seen_otherwise(&store)? {
                 if !found.changes.contains(&broken) {
@@ -224,7 +224,7 @@ impl VerifyArguments {
         Ok(found)
     }
 
-    /// A certificate by itself, and held against the run where the database has it.
+    /// Verifies a certificate, and compares it with the run if the database has this run.
     fn certificate(
         &self,
         text: &str,
@@ -272,12 +272,12 @@ impl VerifyArguments {
     }
 }
 
-/// Whether a run was sealed with this SHA-256 of its content.
+/// Whether the run's seal has this SHA-256 of its content.
 fn has_content(seen: &Verification, digest: &str) -> bool {
     (seen.seal.as_ref()).is_some_and(|seal| seal.digest == digest)
 }
 
-/// Whether a name is meant as that of a file.
+/// Whether a name that is no existing file is meant as a file's name.
 fn looks_like_a_file(name: &str) -> bool {
     let ending = PathBuf::from(name);
     let ending = ending.extension().and_then(|ending| ending.to_str());

@@ -1,4 +1,5 @@
-//! One word of the command line has one meaning, in all verbs.
+//! Tests of the command line's words: an option has one meaning in all verbs, and each example of the help can be
+//! typed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +7,7 @@ use clap::{Command, CommandFactory as _, Parser as _};
 
 use super::Cli;
 
-/// Every option of a command and of its verbs, with the kind of value it takes and the verbs that have it.
+/// Collects the options of a command and its verbs, each with the kinds of value it takes and the verbs that take it.
 fn options(command: &Command, verb: &str, found: &mut BTreeMap<String, BTreeMap<String, String>>) {
     for option in command.get_arguments() {
         let Some(word) = option.get_long() else {
@@ -26,8 +27,8 @@ fn options(command: &Command, verb: &str, found: &mut BTreeMap<String, BTreeMap<
     }
 }
 
-/// Goal: what a word means in one verb it means in the others, so that nobody has to look it up twice. Method: where two
-/// verbs have an option of one name, both take the same kind of value.
+/// Goal: an option means the same in all verbs, so that nobody has to look it up twice. Method: where two verbs have an
+/// option of one name, both take the same kind of value.
 #[test]
 fn an_option_takes_the_same_in_every_verb() {
     let mut found = BTreeMap::new();
@@ -40,8 +41,8 @@ fn an_option_takes_the_same_in_every_verb() {
     assert!(differ.is_empty(), "{differ:#?}");
 }
 
-/// Goal: `docs/commands.md` says which word stands for what. Method: each option that its table names exists, and no
-/// other document word is in it twice.
+/// Goal: the table of words in `docs/commands.md` is right. Method: each option that the table names exists, and none
+/// is in the table twice.
 #[test]
 fn the_table_of_words_names_options_that_exist() {
     let mut found = BTreeMap::new();
@@ -78,7 +79,7 @@ fn examples(command: &Command, found: &mut Vec<String>) {
     }
 }
 
-/// The words of an example: quotes keep what they enclose together, and two spaces begin its explanation.
+/// Splits an example into words as a shell does; two spaces end the command and begin its explanation.
 fn shell_words(example: &str) -> Vec<String> {
     let command = example.split("  ").next().unwrap_or_default();
     let command = command.split(" && ").next().unwrap_or_default();

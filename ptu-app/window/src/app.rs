@@ -24,16 +24,16 @@ use ptu_runs::clock;
 use ptu_runs::failure::Failure;
 use ptu_runs::stop::Stop;
 
-/// Interval at which a closing window looks whether all units are let go.
+/// Interval at which a closing window looks whether all units are disconnected.
 const CLOSING: Duration = Duration::from_millis(50);
 
 /// Options with which a window is opened.
 pub struct Options {
-    /// Where database and scripts are.
+    /// Places of database and scripts.
     pub paths: DataPaths,
     /// Settings of the last time.
     pub settings: Settings,
-    /// Where it is kept; none = nowhere.
+    /// File in which the settings are saved; none = they are not saved.
     pub settings_file: Option<PathBuf>,
     /// Connect the unit at once.
     pub connect: bool,
@@ -42,15 +42,15 @@ pub struct Options {
 }
 
 pub struct App {
-    /// Questions to the database and to files, likewise.
+    /// Thread for queries to the database and to files.
     pub queries: QueryWorker,
     database: DataWatch,
-    /// The person was told that it is gone.
+    /// A message has said that the database is gone.
     told_gone: bool,
-    /// The units, for who drives the window from outside.
+    /// The units; public for programs that drive the window, such as tests.
     pub units: Units,
     pub settings: Settings,
-    /// The name of the operator as it was written last.
+    /// The operator's name in the previous frame.
     operator: String,
     saved: Settings,
     settings_file: Option<PathBuf>,
@@ -59,16 +59,16 @@ pub struct App {
     pages: Pages,
     go_to: Vec<Destination>,
     closing: bool,
-    /// The window is closed: every run recorded, every unit disarmed.
+    /// The window may close: every run is recorded, every unit disarmed.
     pub closed: bool,
-    /// The person knows that outputs were not confirmed safe.
+    /// A person has acknowledged that outputs were not confirmed safe.
     noted_not_safe: bool,
-    /// The system asks the program to end.
+    /// Pressed when the system asks the program to end.
     interrupted: Stop,
 }
 
 impl App {
-    /// A window that is not shown yet; `wake` has it shown again.
+    /// A window before its first frame; `wake` requests a new frame.
     ///
     /// # Errors
     /// The system gives no threads.
@@ -167,7 +167,7 @@ impl App {
         self.settings.page
     }
 
-    /// Told when the database goes, and no longer when it is back.
+    /// Adds a message when the database is gone, and ends the message when the database is back.
     fn tell_if_gone(&mut self, words: &Words) {
         let gone = self.database.is_gone();
         if std::mem::replace(&mut self.told_gone, gone) == gone {
@@ -181,7 +181,7 @@ impl App {
         }
     }
 
-    /// Notes when the name was written; one of another shift is asked for again, unless a run goes on under it.
+    /// Notes when the operator's name was written; a name from another shift is cleared, unless a run is under way.
     fn follow_operator(&mut self) {
         let now_us = clock::now_us();
         self.settings.note_operator(&self.operator, now_us);
@@ -205,7 +205,7 @@ impl App {
         self.settings.density.keep(context);
     }
 
-    /// The window closes when runs are stopped and recorded, outputs safe and units disarmed.
+    /// Closes the window once runs are stopped and recorded, outputs safe and units disarmed.
     fn close_in_order(&mut self, context: &Context) {
         let asked = context.input(|input| input.viewport().close_requested());
         if (asked || self.interrupted.presses() > 0) && !self.closing {
@@ -216,7 +216,7 @@ impl App {
             return;
         }
         let let_go = self.units.close();
-        // The person is to know before the window is gone.
+        // Before the window closes, a person acknowledges that outputs were not confirmed safe.
         let known = !self.units.any_not_safe() || self.noted_not_safe;
         if let_go && known {
             self.closed = true;
@@ -238,7 +238,7 @@ impl App {
         let Some(file) = &self.settings_file else {
             return;
         };
-        // Not worth keeping the window open for.
+        // If saving fails, the window closes all the same.
         if self.settings.save(file).is_ok() {
             self.saved = self.settings.clone();
         }

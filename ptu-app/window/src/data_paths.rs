@@ -1,4 +1,4 @@
-//! Where the window's data are: the database, a file or a server, and the scripts directory.
+//! Places of the window's data: the database (a file or a server) and the scripts directory.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,18 +11,18 @@ use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::Failure;
 use ptu_runs::{keys, owner_only};
 
-/// The files that pages read and runs are recorded in.
+/// The database and files that pages read, and in which runs are recorded.
 #[derive(Clone, Debug)]
 pub struct DataPaths {
     /// The database file, or the address of a server as it is shown.
     pub database: PathBuf,
-    /// The server, if it is one: it is read and never written to.
+    /// The server, if the database is on one; a server is read and never written to.
     server: Option<Address>,
-    /// Procedures, lines, units.
+    /// Procedures, lines, units, trains.
     pub scripts: ScriptsDirectory,
     /// The folder of the keys of this computer's user.
     pub keys: PathBuf,
-    /// The database was there; the same for all copies.
+    /// The database existed at some time; shared by all clones.
     was_there: Arc<AtomicBool>,
 }
 
@@ -56,12 +56,12 @@ impl DataPaths {
         self.is_server() || self.database.exists()
     }
 
-    /// The database was there and is no longer.
+    /// The database existed and is gone.
     pub fn is_gone(&self) -> bool {
         self.was_there.load(Ordering::Relaxed) && !self.is_there()
     }
 
-    /// Opens the database for writing. A missing one is made, but never in place of one that was there.
+    /// Opens the database for writing. A missing database is created, but not if it existed before.
     ///
     /// # Errors
     /// The database cannot be opened, is gone, or is a server.
@@ -83,8 +83,8 @@ impl DataPaths {
         store
     }
 
-    /// Opens the database for reading. A missing one is made; one of an older schema is copied and
-    /// brought up to date.
+    /// Opens the database for reading. A missing database is created; one of an older schema is first copied
+    /// beside it, and then brought up to date.
     ///
     /// # Errors
     /// The database cannot be opened.

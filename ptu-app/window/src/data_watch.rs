@@ -1,7 +1,7 @@
-//! Follows the database file: says when another program has written to it, and when it is gone.
+//! Watches the database file: tells when a program has written to it, and when it is gone.
 //!
-//! Only the file and its write-ahead log are looked at, by size and time. A connection kept open for this would hold a
-//! lock, and keep other programs from what they need the file for alone.
+//! The watch looks at size and time of the file and its write-ahead log. An open connection would hold a lock and keep
+//! other programs from work that needs the file exclusively.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,10 +14,10 @@ use ptu_runs::bench_worker::Wake;
 use ptu_runs::failure::{Failure, RunTrouble};
 use ptu_runs::platform::identity;
 
-/// Time between two looks.
+/// Interval at which the file is looked at.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// Looks after which a server is asked again: it does not say when somebody has written to it.
+/// Number of intervals after which a server counts as changed: a server does not tell when it was written to.
 const ASK_AGAIN: u32 = 60;
 
 #[derive(Default)]
@@ -26,7 +26,7 @@ struct Seen {
     gone: AtomicBool,
 }
 
-/// The thread that looks; it ends when this is dropped.
+/// Handle of the thread that watches the database; the thread ends when the handle is dropped.
 pub struct DataWatch {
     seen: Arc<Seen>,
     _ends_when_dropped: Sender<()>,
@@ -66,18 +66,18 @@ impl DataWatch {
         })
     }
 
-    /// Counts the times it was seen to be another than before.
+    /// Number of times that a change of the database was seen.
     pub fn changes(&self) -> u64 {
         self.seen.changes.load(Ordering::Relaxed)
     }
 
-    /// The history was there and is no longer.
+    /// The database existed and is gone.
     pub fn is_gone(&self) -> bool {
         self.seen.gone.load(Ordering::Relaxed)
     }
 }
 
-/// Identity of the file and its log, with the time of the last change.
+/// Identity, size and time of the last change of the database file and of its log.
 #[derive(PartialEq, Eq)]
 struct Stamp([Option<(u64, u64, Option<SystemTime>)>; 2]);
 
@@ -85,7 +85,7 @@ impl Stamp {
     fn of(database: &Path) -> Self {
         let of = |path: &Path| {
             let found = std::fs::metadata(path).ok()?;
-            // A reader makes an empty log, and takes it away.
+            // An empty log does not count: a reader creates and removes one.
             (found.len() > 0).then(|| (identity(&found), found.len(), found.modified().ok()))
         };
         Self([of(database), of(&beside(database, "-wal"))])
@@ -96,8 +96,8 @@ impl Stamp {
 mod tests {
     use super::*;
 
-    /// Goal: reading is no change, or the window would read for ever. Method: the stamp before and after a reader, and
-    /// after a writer.
+    /// Goal: reading does not count as a change, or the window would read for ever. Method: the stamp before and after
+    /// a reader, and after a writer.
     #[test]
     fn a_reader_leaves_the_stamp_and_a_writer_does_not() {
         let folder = tempfile::tempdir().expect("a folder");

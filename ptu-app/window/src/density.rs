@@ -1,4 +1,4 @@
-//! How large the window is laid out: for an operator who reads and touches at arm's length, or as dense as an engineer's pages.
+//! Density of the window's layout: large for an operator at arm's length, or dense for an engineer.
 
 use eframe::egui::{Context, Id, Style, TextStyle, Ui};
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Density {
-    /// Large text and targets; nothing that only scripts name.
+    /// Large text and buttons; no names that occur only in scripts.
     Operator,
     /// Shows as much as there is room for.
     #[default]
@@ -15,7 +15,7 @@ pub enum Density {
 }
 
 impl Density {
-    /// Sizes, which do not grow with the window.
+    /// Sizes of this density; they do not grow with the window.
     pub const fn sizes(self) -> Sizes {
         match self {
             Self::Operator => Sizes {
@@ -45,7 +45,7 @@ impl Density {
         }
     }
 
-    /// The sizes of this window from now on.
+    /// Sets the sizes of the window.
     pub fn keep(self, context: &Context) {
         let sizes = self.sizes();
         if context.data(|data| data.get_temp(id())) != Some(sizes) {
@@ -61,22 +61,22 @@ pub struct Sizes {
     /// Size of text that explains another text.
     pub caption: f32,
     pub body: f32,
-    /// Size of the text a page is about.
+    /// Size of a page's main text.
     pub lead: f32,
     pub title: f32,
     pub headline: f32,
     pub icon: f32,
-    /// Height of what can be clicked, and of a row.
+    /// Height of buttons and rows.
     pub target: f32,
     /// Height of the bar above the pages.
     pub bar: f32,
-    /// Height of what stands below a page.
+    /// Height of the foot of a page.
     pub footer: f32,
     pub density: Density,
 }
 
 impl Sizes {
-    /// Sizes of the window as it is.
+    /// Present sizes of the window.
     pub fn of(ui: &Ui) -> Self {
         let kept = ui.data(|data| data.get_temp(id()));
         kept.unwrap_or_else(|| Density::default().sizes())

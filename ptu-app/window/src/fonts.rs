@@ -1,4 +1,4 @@
-//! Fonts: the shipped one for everything people read, those of the toolkit for scripts and symbols, and one of icons.
+//! Fonts: the shipped one for text, the toolkit's for scripts and symbols, and one of icons.
 
 use eframe::egui::{Context, FontData, FontDefinitions, FontFamily};
 

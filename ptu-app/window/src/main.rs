@@ -35,7 +35,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Opens the window, or loads scripts for the process of the window that asks for them.
+/// Opens the window; or, as a helper process of a window, loads scripts for it.
 fn run() -> Result<Exit, Failure> {
     if std::env::args_os()
         .nth(1)
@@ -52,7 +52,7 @@ fn run() -> Result<Exit, Failure> {
     Ok(Exit::Passed)
 }
 
-/// Options of the window: command line over settings of the last time.
+/// Options of the window: the saved settings, overridden by the command line.
 fn options(asked: WindowOptions) -> Result<Options, Failure> {
     if !asked.create {
         asked.database.check_named().map_err(|why| {

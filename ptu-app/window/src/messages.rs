@@ -11,13 +11,13 @@ pub struct Messages {
     pub all: Vec<Message>,
     /// Index of the latest trouble, until the user acknowledges it.
     unread: Option<usize>,
-    /// Record that was taken back last.
+    /// Step that was undone last.
     taken_back: Option<Written>,
-    /// Runs that had ended when an undo was offered last.
+    /// Number of runs that had ended at the last call of [`undoable`](Self::undoable).
     runs_ended: usize,
 }
 
-/// A person's step that was written about a fault, and with it about its case.
+/// Written step of a person about a fault, and so about the fault's case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Written {
     pub fault: Id,
@@ -25,7 +25,7 @@ pub struct Written {
     pub at_us: i64,
 }
 
-/// Subject of a message while it is shown: the message goes when the matter is over.
+/// Subject of a message; when the subject is over, the message is hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum About {
     /// The connection to the unit of this number.
@@ -39,18 +39,18 @@ pub enum About {
 pub struct Message {
     /// Text, in the language chosen when the message came.
     pub text: String,
-    /// The trouble; empty if the text says it all.
+    /// Cause of the trouble; empty if the text says everything.
     pub detail: Trouble,
     pub bad: bool,
     /// µs since 1970.
     pub at_us: i64,
-    /// Subject of the message; none = shown until the next message.
+    /// Subject of the message; when the subject is over, the message is hidden.
     about: Option<About>,
-    /// The matter is over: the message is only listed.
+    /// The subject is over: the message is only listed.
     pub over: bool,
-    /// Record that the message tells of; the message can undo it for a while.
+    /// Step that the message tells of; a button in the message undoes the step for [`UNDO_S`].
     written: Option<Written>,
-    /// When it was shown first, in the window's time, s.
+    /// When the message was first shown, in the window's time, s.
     shown_at_s: Option<f64>,
 }
 
@@ -61,14 +61,14 @@ impl Message {
     }
 }
 
-/// Time for which a written record can be undone, s.
+/// Time for which a written step can be undone, s.
 pub const UNDO_S: f64 = 10.0;
-/// Any other message is shown so long, s.
+/// Time for which any other message is shown, s.
 const SHOWN_S: f64 = 10.0;
 /// Messages kept; older ones are dropped.
 const KEPT: usize = 100;
 
-/// A detail in words that are chosen already; none where they are empty.
+/// Detail of a message as finished text; an empty text is no detail.
 pub fn told(words: impl Into<String>) -> Trouble {
     Trouble::Told(words.into())
 }
@@ -83,7 +83,7 @@ impl Messages {
         self.note_about(None, text);
     }
 
-    /// As [`trouble`](Self::trouble), until what it is about is over.
+    /// As [`trouble`](Self::trouble), but hidden when its subject is over.
     pub fn trouble_about(
         &mut self,
         about: impl Into<Option<About>>,
@@ -93,12 +93,12 @@ impl Messages {
         self.push(text.into(), detail.into(), true, about.into());
     }
 
-    /// As [`note`](Self::note), until what it is about is over.
+    /// As [`note`](Self::note), but hidden when its subject is over.
     pub fn note_about(&mut self, about: impl Into<Option<About>>, text: impl Into<String>) {
         self.push(text.into(), told(""), false, about.into());
     }
 
-    /// Tells what was written, which can be undone for [`UNDO_S`].
+    /// Adds a message that a step was written; the step can be undone for [`UNDO_S`].
     pub fn note_written(&mut self, text: impl Into<String>, written: Written) {
         self.note(text);
         if let Some(message) = self.all.last_mut() {
@@ -106,8 +106,8 @@ impl Messages {
         }
     }
 
-    /// The place of the latest message whose step can be undone now, the step, and how long it still can, s. What a run that has
-    /// ended since found may rest on the step: `runs_ended` = how many have.
+    /// Latest message whose step can be undone now: its index, the step, and the time left, s. `runs_ended` = runs that
+    /// have ended in this window; when the number changes, no step can be undone: a run's result may rest on it.
     pub fn undoable(&mut self, now_s: f64, runs_ended: usize) -> Option<(usize, Written, f64)> {
         if std::mem::replace(&mut self.runs_ended, runs_ended) != runs_ended {
             for message in &mut self.all {
@@ -127,7 +127,7 @@ impl Messages {
         Some((place, written, left_s))
     }
 
-    /// The step is being undone: it is not offered again.
+    /// Takes away the offer to undo this step, because the step is being undone.
     pub fn take_offer(&mut self, written: Written) {
         for message in &mut self.all {
             if message.written == Some(written) {
@@ -136,18 +136,18 @@ impl Messages {
         }
     }
 
-    /// The step was taken back.
+    /// Adds a message that the step was undone.
     pub fn tell_taken_back(&mut self, text: impl Into<String>, written: Written) {
         self.note(text);
         self.taken_back = Some(written);
     }
 
-    /// Whether this was what was taken back last.
+    /// Whether this step was the last that was undone.
     pub fn was_taken_back(&self, written: Written) -> bool {
         self.taken_back == Some(written)
     }
 
-    /// Ends the messages about this matter.
+    /// Ends the messages about this subject.
     pub fn over(&mut self, about: About) {
         for message in &mut self.all {
             message.over |= message.about == Some(about);
@@ -159,7 +159,7 @@ impl Messages {
         self.all.get(self.unread?).filter(|message| !message.over)
     }
 
-    /// The latest that is no trouble and still holds, for [`SHOWN_S`], unless trouble came after it or it is that of this place.
+    /// The newest message, for [`SHOWN_S`]; none if it is trouble, or over, or the message at index `but`.
     pub fn latest_note(&self, but: Option<usize>, now_s: f64) -> Option<&Message> {
         let place = self
             .all
@@ -180,7 +180,7 @@ impl Messages {
         self.unread = None;
     }
 
-    /// The latest is shown no longer; it stays listed.
+    /// Hides the latest message; it stays listed.
     pub fn note_seen(&mut self) {
         if let Some(last) = self.all.last_mut() {
             last.over = true;
@@ -217,8 +217,8 @@ impl Messages {
 mod tests {
     use super::*;
 
-    /// Goal: an undo is offered only where it is done, and hides nothing. Method: a step that was written, a note after it, and a
-    /// run that ends, on whose proof the step may rest.
+    /// Goal: an undo is offered only while it is possible, and hides no newer message. Method: a written step, a note
+    /// after it, and the end of a run whose result may rest on the step.
     #[test]
     fn an_undo_hides_no_newer_message_and_ends_with_the_next_run() {
         let (fault, at_us) = (Id::from_bytes([1; 16]), 7);

@@ -19,7 +19,7 @@ pub struct PageContext<'a> {
     pub words: &'static Words,
     /// Queries to the database and the scripts directory.
     pub queries: &'a QueryWorker,
-    /// The database file as others leave it.
+    /// Watch of the database for changes by other programs.
     pub database: &'a DataWatch,
     /// The units under test of this window.
     pub units: &'a mut Units,
@@ -47,11 +47,11 @@ impl PageContext<'_> {
 /// The faults that a bar of the statistics stands for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FaultsOf {
-    /// Part that they come from.
+    /// Part that the faults come from.
     pub cause: Option<String>,
-    /// When they were first seen, µs since 1970.
+    /// When the faults were first seen, µs since 1970.
     pub first_seen_us: Option<Range<i64>>,
-    /// The name of this span.
+    /// Name of the span `first_seen_us`.
     pub month: String,
     /// Days to look back.
     pub days: Option<i64>,
@@ -66,7 +66,7 @@ pub enum Destination {
     Report(Id),
     Diagnosis(Id),
     Fault(Id),
-    /// The life of a unit, a train or a part by its serial number.
+    /// The history of a unit, a train or a part by its serial number.
     Life(String),
     /// The faults that a bar of the statistics stands for.
     Faults(FaultsOf),
@@ -74,7 +74,7 @@ pub enum Destination {
     Run(Wanted),
     /// The set-up dialog of the chosen unit; the page stays.
     Setup,
-    /// The dialog of the history's care; the page stays.
+    /// The dialog that maintains the fault history; the page stays.
     History,
     /// The dialog that says what this program is; the page stays.
     About,
@@ -97,7 +97,7 @@ pub enum Wanted {
         /// Serial number of the unit the step is meant for.
         unit: String,
     },
-    /// Procedures for a faulty part: as few steps as it takes to find the part, or else all; stays with the case.
+    /// Procedures that look for a faulty part; the page Case stays. `adaptive`: as few steps as needed, else all.
     Part {
         /// Symptom with which the unit was brought.
         symptom: Option<Symptom>,
@@ -105,7 +105,7 @@ pub enum Wanted {
     },
     /// Rest of a run that broke off with the link, once its unit is connected again; the page stays.
     Rest,
-    /// These procedures, and procedures that suspect the part; stays with the case.
+    /// These procedures, and those that suspect the part, to prove its repair; the page Case stays.
     Prove {
         procedures: BTreeSet<String>,
         part: String,

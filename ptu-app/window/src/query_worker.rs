@@ -8,7 +8,7 @@ use ptu_runs::failure::{Asked, Failure, RunTrouble};
 
 type Query = Box<dyn FnOnce(&DataPaths) + Send>;
 
-/// The thread and the queue of its queries; the thread ends when this is dropped.
+/// Handle of the thread, with the queue of its queries; the thread ends when the handle is dropped.
 pub struct QueryWorker {
     queries: Sender<Query>,
     pub wake: Wake,

@@ -63,7 +63,7 @@ impl<T> Request<T> {
         None
     }
 
-    /// The response; while there is none, says in its place why.
+    /// The response; while there is none, shows that it is loading or why it failed.
     pub fn shown(&self, ui: &mut Ui, words: &Words) -> Option<&T> {
         match self {
             Self::Ready(value) => return Some(value),
@@ -75,8 +75,8 @@ impl<T> Request<T> {
         None
     }
 
-    /// Says that the response is still to come, or what was not done and why, with a button; true when a person tries
-    /// again.
+    /// Shows that the response is still to come, or after a failure `not_done`, the reason and a button to try again;
+    /// true when the button was clicked.
     pub fn missing(&self, ui: &mut Ui, words: &Words, not_done: &str) -> bool {
         let Self::Failed(why) = self else {
             ui.label(words.common.loading);
@@ -89,13 +89,13 @@ impl<T> Request<T> {
     }
 }
 
-/// Which database is open, and how often it was changed.
+/// Version of the data: see [`PageContext::data_version`].
 type DataVersion = (usize, u64);
 
-/// A response that is requested again when the data have changed, or something else is to be read. The previous response
-/// stays until the newer one has arrived, so that the page's layout does not jump.
+/// A response that is requested again when the data or the question have changed. The previous response may stay
+/// until the newer one has arrived, so that the page's layout does not jump.
 pub struct FollowingResponse<K, T> {
-    /// What was asked for, and the version of the data then; without a version it is to be requested again.
+    /// The question, and the version of the data when it was asked; no version = it is to be asked again.
     asked: Option<(K, Option<DataVersion>)>,
     shown: Request<T>,
     newer: Request<T>,
@@ -113,7 +113,7 @@ impl<K, T> Default for FollowingResponse<K, T> {
 
 impl<K: Clone + PartialEq + Send + 'static, T: Send + 'static> FollowingResponse<K, T> {
     /// Reads `what` if it is not read yet or the data have changed since; true when a response has arrived with this
-    /// call. The response to something else is dropped at once, unless it is one that `stays`.
+    /// call. When `what` has changed, the previous response is dropped at once, unless `stays`.
     pub fn keep_up(
         &mut self,
         (what, stays): (K, bool),
@@ -127,7 +127,8 @@ impl<K: Clone + PartialEq + Send + 'static, T: Send + 'static> FollowingResponse
         self.poll()
     }
 
-    /// Whether `what` is to be requested, and if so, whether something else was asked for before.
+    /// `None` if the response to `what` is up to date; `Some` if `what` is to be requested: `true` = it has changed,
+    /// `false` = first request, or the same `what` again.
     fn wants(&mut self, what: &K, version: DataVersion) -> Option<bool> {
         let before = self.asked.replace((what.clone(), Some(version)));
         match before {
@@ -139,7 +140,7 @@ impl<K: Clone + PartialEq + Send + 'static, T: Send + 'static> FollowingResponse
 }
 
 impl<K, T> FollowingResponse<K, T> {
-    /// Waits for a response, and shows the previous response meanwhile if that `stays`.
+    /// Waits for a response; `stays`: the previous response is shown meanwhile.
     fn request(&mut self, pending: Pending<T>, stays: bool) {
         match self.shown {
             Request::Ready(_) if stays => self.newer = Request::Pending(pending),
@@ -155,7 +156,7 @@ impl<K, T> FollowingResponse<K, T> {
         newer || self.shown.poll()
     }
 
-    /// Has it read again, whether the data have changed or not.
+    /// Has the response read again, whether the data have changed or not.
     pub fn read_again(&mut self) {
         if let Some((_, version)) = &mut self.asked {
             *version = None;
@@ -235,8 +236,8 @@ mod tests {
         assert!(cached.get().value().is_none());
     }
 
-    /// Goal: what was asked for is known for as long as a response to it may be shown. Method: the same and something else, with the
-    /// data unchanged, changed, and to be read again.
+    /// Goal: a changed question is told from the same question read again. Method: the same and another question, with
+    /// the data unchanged, changed, and to be read again.
     #[test]
     fn something_else_is_told_from_the_same_read_again() {
         let mut following = FollowingResponse::<u8, u8>::default();

@@ -12,7 +12,7 @@ use ptu_runs::failure::Failure;
 use ptu_runs::run::BenchChoice;
 use ptu_runs::whole_file::LONGEST_FILE;
 
-/// A name is asked for again after so long: another shift has begun.
+/// Age at which the operator's name is asked for again, because another shift has begun, µs.
 const SHIFT_US: i64 = 10 * 3_600_000_000;
 
 /// Settings that the window keeps between starts.
@@ -20,7 +20,7 @@ const SHIFT_US: i64 = 10 * 3_600_000_000;
 #[serde(default)]
 pub struct Settings {
     pub language: Language,
-    /// Dark window, as in a dark cab.
+    /// Dark window, as for a dark cab; none = as the desktop has it.
     pub dark: Option<bool>,
     /// The reader that the window is laid out for.
     pub density: Density,
@@ -29,13 +29,13 @@ pub struct Settings {
     pub window_size: Option<[f32; 2]>,
     /// Page shown last.
     pub page: Page,
-    /// Name of the tester.
+    /// Name of the operator.
     pub operator: String,
     #[serde(flatten)]
     pub shift: Shift,
-    /// Where units are brought to; it stands on the sheet of a case.
+    /// Depot that units are brought to, for the sheet of a case.
     pub depot: String,
-    /// The server synced with last.
+    /// Server of the last replication.
     pub server: String,
     /// File with readings of trains' odometers.
     pub distances: String,
@@ -46,15 +46,15 @@ pub struct Settings {
     pub live_plot: bool,
     /// Lanes of the trace page, by channel.
     pub lanes: Vec<String>,
-    /// Layouts of its lanes that were given a name.
+    /// Named layouts of the trace page's lanes.
     pub layouts: Vec<SavedQuestion<Vec<String>>>,
-    /// Questions of the page Statistics.
+    /// Saved questions of the page Statistics.
     pub statistics: Vec<SavedQuestion<StatisticsQuestion>>,
-    /// Questions of the page Faults.
+    /// Saved questions of the page Faults.
     pub faults: Vec<SavedQuestion<FaultsQuestion>>,
 }
 
-/// Size of everything, 1 = as the desktop has it; what is too small or too large to work with is none.
+/// Scale of the whole window, 0.7 to 2.5; 1 = the desktop's scale.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "f32", into = "f32")]
 pub struct Zoom(f32);
@@ -71,13 +71,13 @@ impl From<Zoom> for f32 {
     }
 }
 
-/// The presence of the tester who gave a name.
+/// When the operator gave a name, and whether the window is locked until the next one does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Shift {
     /// When the name was written, µs since 1970; 0 = not known.
     operator_at_us: i64,
-    /// Nothing is begun, armed or written until somebody gives a name.
+    /// The window is locked: nothing is begun, armed or written until a person gives a name.
     locked: bool,
 }
 
@@ -106,13 +106,13 @@ pub struct Measured {
 pub struct FaultsQuestion {
     /// Serial number.
     pub unit: Option<String>,
-    /// Part that is pointed at.
+    /// Part to which the faults point.
     pub part: Option<String>,
-    /// State, by its word.
+    /// Fault state, by its word.
     pub state: Option<String>,
     /// Days to look back; none = all there is.
     pub days: Option<i64>,
-    /// Something that is contained.
+    /// Text that the faults shown contain.
     pub text: String,
 }
 
@@ -144,15 +144,14 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Settings in `file`; defaults if there is none or it cannot be read, which is no reason not to
-    /// open.
+    /// Settings in `file`; defaults if there is no file or it cannot be read, so that the window always opens.
     pub fn load(file: &Path) -> Self {
         Self::of(&read_regular_file(file, LONGEST_FILE).unwrap_or_default())
     }
 
     fn of(text: &[u8]) -> Self {
         let mut settings: Self = match text.is_empty() {
-            // A person who starts the window for the first time is led through a case.
+            // The first start of the window has the layout that leads through a case.
             true => Self {
                 density: Density::Operator,
                 ..Self::default()
@@ -171,7 +170,7 @@ impl Settings {
         }
     }
 
-    /// Notes when the name was written, if it is another than before.
+    /// Notes when the name was written, if it differs from `before`.
     pub fn note_operator(&mut self, before: &str, now_us: i64) {
         if self.operator != before || self.shift.operator_at_us == 0 {
             self.shift.operator_at_us = now_us;
@@ -193,7 +192,7 @@ impl Settings {
         self.shift.locked
     }
 
-    /// Keeps them in `file`, at once or not at all.
+    /// Saves the settings in `file`, as a whole or not at all.
     ///
     /// # Errors
     /// The file or its folder cannot be written.

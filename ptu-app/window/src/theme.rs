@@ -1,5 +1,4 @@
-//! Colours that carry a meaning, in light and dark. None stands alone: a word or a shape stands
-//! beside it.
+//! Colours with a meaning, for the light and the dark window. A word or a shape stands beside each coloured mark.
 
 use btu_rig::procedure::Verdict;
 use eframe::egui::{Color32, Context, Stroke, Theme, Ui, Visuals};
@@ -9,39 +8,39 @@ use eframe::egui::{Color32, Context, Stroke, Theme, Ui, Visuals};
 pub struct Palette {
     /// Dark window.
     pub dark: bool,
-    /// Page.
+    /// Background of pages.
     pub ground: Color32,
-    /// Bar, rails and cards.
+    /// Background of bar, rails and cards.
     pub panel: Color32,
-    /// Dialogs and what is told for a while.
+    /// Background of dialogs and passing messages.
     pub raised: Color32,
-    /// Fields.
+    /// Background of input fields.
     pub well: Color32,
     pub control: Color32,
     pub hover: Color32,
     /// Lines behind curves and between parts.
     pub grid: Color32,
     pub edge: Color32,
-    /// The strongest ink there is on the window's ground.
+    /// Text colour of the greatest contrast with the background.
     pub ink: Color32,
     pub second: Color32,
-    /// Labels.
+    /// Text colour of labels.
     pub quiet: Color32,
     /// Colour of a choice, an acting button and the first curve.
     pub accent: Color32,
-    /// Ground of the button that is pressed first; white stands on it.
+    /// Background of the primary button, whose text is white.
     pub fill: Color32,
-    /// Ground of what is chosen.
+    /// Background of a chosen entry.
     pub chosen: Color32,
     pub bad: Color32,
     pub bad_ground: Color32,
-    /// Could not be told, or wants a look.
+    /// Colour of what could not be tested or needs a look.
     pub warn: Color32,
     pub warn_ground: Color32,
     pub good: Color32,
-    /// An armed unit: outranks everything else on the screen.
+    /// Colour of an armed unit, more conspicuous than all others.
     pub armed: Color32,
-    /// Curves, in the order they are added; told apart with the common kinds of colour blindness.
+    /// Colours of curves, in the order they are added; distinct for the common kinds of colour blindness.
     pub curves: [Color32; 6],
 }
 
@@ -109,7 +108,7 @@ const LIGHT: Palette = Palette {
     ],
 };
 
-/// A colour as it is written, RRGGBB.
+/// A colour from its code 0xRRGGBB.
 const fn rgb(code: u32) -> Color32 {
     let [_, red, green, blue] = code.to_be_bytes();
     Color32::from_rgb(red, green, blue)
@@ -123,15 +122,15 @@ pub fn set(context: &Context) {
     context.all_styles_mut(|style| {
         style.spacing.item_spacing = [8.0, 5.0].into();
         style.spacing.button_padding = [8.0, 3.5].into();
-        // An animation would repaint the window again and again for something that nobody sees move.
+        // No animations: each would repaint the window many times for a movement nobody notices.
         style.animation_time = 0.0;
     });
 }
 
-/// Parts that the toolkit paints by itself, in these colours.
+/// Colours of what the toolkit paints by itself.
 fn visuals(theme: Theme, palette: &Palette) -> Visuals {
     let mut visuals = theme.default_visuals();
-    // The window is cleared with its ground: painted again under each panel it would cost time at each pixel.
+    // The window is cleared with its background colour already; painting it again under each panel costs time.
     visuals.panel_fill = Color32::TRANSPARENT;
     visuals.window_fill = palette.raised;
     visuals.window_stroke = Stroke::new(1.0, palette.grid);
@@ -228,8 +227,8 @@ mod tests {
         one.max(other) / one.min(other)
     }
 
-    /// Goal: every text can be read, in a dark cab and in the sun. Method: contrast of each ink with each ground it stands on, and of
-    /// edges, by their colours.
+    /// Goal: every text can be read, in a dark cab and in the sun. Method: contrast of each text colour, and of edges,
+    /// with each background on which they are used.
     #[test]
     fn every_ink_has_contrast_on_every_ground_it_stands_on() {
         for palette in [DARK, LIGHT] {

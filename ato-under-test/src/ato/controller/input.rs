@@ -7,9 +7,9 @@ pub struct ControllerInput {
     pub cruise_mps: f64,
     /// Speed at which the coming effort will meet the train, m/s.
     pub speed_mps: f64,
-    /// Acceleration then, m/s².
+    /// Acceleration when the coming effort meets the train, m/s².
     pub accel_mps2: f64,
-    /// Distance to the stop point then, m; `None` = not known.
+    /// Distance to the stop point when the coming effort meets the train, m; `None` = not known.
     pub to_stop_m: Option<f64>,
     /// Distance from each marker to the stop point, m.
     pub markers_to_stop_m: [f64; 4],

@@ -32,7 +32,7 @@ pub use servo::Servo;
 /// Turns a situation into a demand.
 pub trait SpeedController: Debug + Send + CloneBoxed {
     fn step(&mut self, input: &ControllerInput) -> Demand;
-    /// Way in which it brings a train from one cruising speed to a lower one, m.
+    /// Way in which the controller brings a train from one cruising speed to a lower one, m.
     fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64;
     /// Resets the controller's state; the train stands and is not driven.
     fn reset(&mut self);
@@ -40,7 +40,6 @@ pub trait SpeedController: Debug + Send + CloneBoxed {
 
 /// Copies a controller with its state, whichever it is.
 pub trait CloneBoxed {
-    /// A copy of its own.
     fn clone_boxed(&self) -> Box<dyn SpeedController>;
 }
 

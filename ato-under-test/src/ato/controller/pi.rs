@@ -18,12 +18,12 @@ use super::{ControllerInput, Demand, ProfileFollower, SpeedController};
 #[derive(Clone, Debug)]
 pub struct Pi {
     follower: ProfileFollower,
-    /// N per m/s at `mass_kg`.
+    /// Proportional gain, N per m/s at `mass_kg`.
     proportional: f64,
-    /// N/s per m/s at `mass_kg`.
+    /// Integral gain, N/s per m/s at `mass_kg`.
     integral_rate: f64,
     mass_kg: f64,
-    /// N at `mass_kg`.
+    /// Integral of the speed error, N at `mass_kg`.
     integral: Integral,
 }
 

@@ -28,7 +28,7 @@ pub struct Pss {
     integral_per_s: f64,
     integral_above_mps: f64,
     near_mps: f64,
-    /// m/s².
+    /// Integral of the speed error, m/s².
     integral: Integral,
     /// The reference in the station stop.
     stop: Option<Setpoint>,

@@ -47,7 +47,7 @@ impl Descent {
             speed_mps,
             accel_mps2,
         };
-        // The cycle ends where the curve is read, so the gap is that of its end.
+        // The curve is read at the end of the cycle, so the gap is that at the end, too.
         let gap = speed_mps - (from.speed_mps + accel_mps2 * dt).max(0.0);
         let correction_mps2 = correction_mps2(gap, self.gain_per_s, self.jerk_mps3);
         let step = self.jerk_mps3 * dt;

@@ -53,8 +53,8 @@ impl JerkLimited {
         };
     }
 
-    /// Goes on for `dt_s` toward `target_mps`, which it reaches exactly and without acceleration. A
-    /// target that is no number is standstill.
+    /// Goes on for `dt_s` toward `target_mps`, which it reaches exactly and without acceleration. A target that is not
+    /// finite counts as standstill.
     pub fn step(&mut self, target_mps: f64, dt_s: f64) -> Setpoint {
         let target_mps = if target_mps.is_finite() {
             target_mps
@@ -77,7 +77,7 @@ impl JerkLimited {
         self.now
     }
 
-    /// Duration of a whole ramp between two speeds, s. It is symmetric, so it runs at their mean.
+    /// Duration of a whole ramp between two speeds, s. The ramp is symmetric, so its mean speed is the mean of both.
     pub fn ramp_s(&self, from_mps: f64, to_mps: f64) -> f64 {
         let mut from = *self;
         from.place(Setpoint {

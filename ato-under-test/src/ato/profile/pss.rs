@@ -49,8 +49,8 @@ impl StopCurve {
         (to_stop_m <= self.halt_m).then_some(self.halt_mps2)
     }
 
-    /// Target speed, m/s, and its rate of change when followed, m/s². Beyond the stop point the
-    /// speed is none and the brake as hard as on the way there, which holds any gradient a line has.
+    /// Target speed, m/s, and its rate of change when followed, m/s². Beyond the stop point the speed is 0 and the
+    /// brake as hard as on the way there, which holds any gradient a line has.
     pub fn at(&self, to_stop_m: f64) -> (f64, f64) {
         if to_stop_m > self.join_m {
             let speed = libm::sqrt(2.0 * self.rate_mps2 * (to_stop_m - self.offset_m));

@@ -40,13 +40,13 @@ impl ReferenceGenerator {
         }
     }
 
-    /// One cycle: the speed to run at, the train's own, and the distance to the stop point if it is known.
+    /// One cycle. `train`: the train's own speed and acceleration; `to_stop_m`: `None` while it is not known.
     pub fn step(&mut self, cruise_mps: f64, train: Setpoint, to_stop_m: Option<f64>) -> Reference {
         let command_mps = cruise_mps.max(0.0);
         self.keep_to_the_train(command_mps, train);
         let from = self.ramp.setpoint();
         if self.ramp.step(command_mps, CYCLE.as_secs()).speed_mps < 0.0 {
-            // A train that brakes to its last moment would be led backward by the jerk that is left.
+            // The jerk limit would lead a train that brakes to its last moment backward.
             self.ramp.place(Setpoint::default());
         }
         let ramp = self.ramp.setpoint();
@@ -63,12 +63,12 @@ impl ReferenceGenerator {
         }
     }
 
-    /// Way of its ramp from one speed to a lower one, m.
+    /// Way of the ramp from one speed to a lower one, m.
     pub fn slowing_m(&self, from_mps: f64, to_mps: f64) -> f64 {
         self.ramp.ramp_s(from_mps, to_mps) * 0.5 * (from_mps + to_mps)
     }
 
-    /// Begins where the train is, and does not run away from it.
+    /// Begins the ramp where the train is, and keeps the ramp from running away from the train.
     fn keep_to_the_train(&mut self, command_mps: f64, train: Setpoint) {
         let ramp = self.ramp.setpoint();
         let last_mps = self.command_mps.replace(command_mps);

@@ -11,9 +11,9 @@ pub struct Setpoint {
     pub accel_mps2: f64,
 }
 
-/// A change of speed. Eq. (1) begins and ends without acceleration; one that is there when a new
-/// target arrives in the middle of a ramp fades away beside it, so that the target stays continuous in
-/// speed and acceleration.
+/// A change of speed. Eq. (1) begins and ends without acceleration; an acceleration that is there when a new target
+/// arrives in the middle of a ramp fades away beside the curve, so that the target stays continuous in speed and
+/// acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SCurve {
     from_mps: f64,
@@ -25,8 +25,8 @@ pub struct SCurve {
 }
 
 impl SCurve {
-    /// From a reference to a speed in `seconds` [S0: t_a = 5/6·|Δv| + 11]; an acceleration it begins with
-    /// is taken away at about `jerk_mps3`.
+    /// A curve from a reference to a speed in `seconds` [S0: t_a = 5/6·|Δv| + 11]; an acceleration that the reference
+    /// has is taken away at about `jerk_mps3`.
     pub fn new(from: Setpoint, to_mps: f64, seconds: f64, jerk_mps3: f64) -> Self {
         let carried_s = (2.0 * libm::fabs(from.accel_mps2) / jerk_mps3).max(CARRY_S);
         Self {

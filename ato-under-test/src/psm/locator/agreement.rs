@@ -38,8 +38,8 @@ impl Locator {
         self.ways.note(to.place_m - from.place_m, wheel_m, off_m);
     }
 
-    /// Wheels of any size make the same share of each way. Where they do not, markers are displaced: no doors, and nothing
-    /// is learned of the wheels.
+    /// Compares the ways of the section: wheels of any size measure each way wrong by the same share. Where the shares
+    /// differ, markers are displaced: no doors, and nothing is learned of the wheels.
     pub(super) fn compare_ways(&mut self, now: Instant, log: &mut EventLog) {
         let holds = self.holds_markers && self.holds_ways;
         let Some(share) = self.ways.contradiction().filter(|_| holds) else {
@@ -49,7 +49,7 @@ impl Locator {
             return;
         };
         self.contradicted = true;
-        // A speed that is told too high is the safe error: the doors alone lose what was learned.
+        // Too high a speed is the safe error: the speed keeps what was proved of the wheels, the doors alone lose it.
         self.proved_farther = self.runs_farther();
         self.wheel = self.wheel.of_other_wheels(self.config.wheel_spread);
         log.push(now, Event::MarkersDisplaced, hundredths_of_percent(share));
@@ -86,7 +86,7 @@ impl Locator {
         }
     }
 
-    /// Whether markers are held against the way from the one before.
+    /// Sets whether markers are compared with the way before them, and, if not `tested`, all ways with each other.
     pub fn hold_markers(&mut self, holds: bool, tested: bool) {
         // Test markers are pulsed by a tester, whose requests take their time.
         self.holds_ways = !tested;
@@ -94,7 +94,7 @@ impl Locator {
     }
 
     /// Where a span that ends at a believed marker begins, and the distance slid from the fix until there, m: at the
-    /// marker of the fix, or at the one that waits for a second one to agree with.
+    /// marker of the fix, or at the pending one, which waits for a second one to agree with.
     pub(super) fn span_from(
         &self,
         end: &MarkerDetection,

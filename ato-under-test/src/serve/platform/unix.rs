@@ -19,8 +19,8 @@ use thread_priority::{
 
 /// Time for which reads and writes of a serial port wait.
 pub const PORT_WAITS: Duration = Duration::ZERO;
-/// Above all that goes by no clock, and low among what does: the system's own time-keeping threads stand higher
-/// \[default\].
+/// Real-time priority: above all threads without one, low among those with one; the system's own time-keeping threads
+/// stand higher \[default\].
 const PRIORITY: u8 = 10;
 
 /// A new pseudo-terminal: the master side; the slave is kept open so that testers can come and go.
@@ -30,7 +30,7 @@ pub struct Pty {
 }
 
 impl Pty {
-    /// Opens one, and tells its name. Its reads wait, or do not.
+    /// Opens a pseudo-terminal, and returns its name with it. Its reads wait if `waits`.
     ///
     /// # Errors
     /// The system has none left.
@@ -80,9 +80,9 @@ pub fn read_port(port: &mut dyn SerialPort, into: &mut [u8]) -> Result<usize> {
     port.read(into)
 }
 
-/// The present thread keeps time from now on: it is asked of the system to let nothing else delay it. Returns whether
-/// the system lets it; where it does not, the thread goes on as it is. Needs the right to real-time priorities
-/// (on Linux `RLIMIT_RTPRIO` or root).
+/// Asks the system to let nothing else delay the present thread, which keeps time from now on. Returns whether the
+/// system lets it; where it does not, the thread goes on as it is. Needs the right to real-time priorities (on Linux
+/// `RLIMIT_RTPRIO` or root).
 pub fn keep_time() -> bool {
     let Ok(priority) = ThreadPriorityValue::try_from(PRIORITY) else {
         return false;

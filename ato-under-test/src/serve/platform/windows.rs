@@ -19,7 +19,7 @@ pub const PORT_WAITS: Duration = Duration::from_millis(100);
 pub enum Pty {}
 
 impl Pty {
-    /// Refuses.
+    /// Refuses: Windows has no pseudo-terminal.
     ///
     /// # Errors
     /// Always.
@@ -57,8 +57,8 @@ pub fn read_port(port: &mut dyn SerialPort, into: &mut [u8]) -> Result<usize> {
     }
 }
 
-/// The present thread keeps time from now on: it is asked of the system to let nothing else delay it. Returns whether
-/// the system lets it.
+/// Asks the system to let nothing else delay the present thread, which keeps time from now on. Returns whether the
+/// system lets it.
 pub fn keep_time() -> bool {
     set_winapi_thread_priority(thread_native_id(), WinAPIThreadPriority::Highest).is_ok()
 }

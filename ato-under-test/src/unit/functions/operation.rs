@@ -1,5 +1,5 @@
-//! ATO's part of a cycle: what it looks at, the watchdog over its processor, KRN's checks of what it needs, and what is
-//! logged of it.
+//! ATO's part of a cycle: its inputs, the watchdog over its processor, KRN's checks of what ATO needs, and what is
+//! logged of ATO.
 
 use protocol::config::UnitConfig;
 use protocol::event::Event;
@@ -81,7 +81,7 @@ impl Functions {
         self.ato_outputs = AtoOutputs::default();
     }
 
-    /// Speed ATO goes by: of the wheel that markers calibrate; ATP keeps its own, safe speed.
+    /// Speed that ATO uses: by the wheel that markers calibrate; ATP keeps its own, safe speed.
     fn wheel_speed(&self) -> Speed {
         let tachometers = self.atp.tachometers();
         let wheel = 1.0 + self.locator.wheel.correction();

@@ -7,7 +7,7 @@ use super::Finding;
 /// Most findings of a step that are kept apart; the others are counted.
 const MOST: usize = 64;
 
-/// All that was found in one place, each once with how often it came, in order.
+/// All findings of one place, each once with the number of times it came, in the order of their first appearance.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Findings(Vec<Found>);

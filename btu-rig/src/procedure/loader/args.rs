@@ -141,7 +141,7 @@ impl Args<'_> {
         texts.collect()
     }
 
-    /// Origin of the numbers in the call: that of each quantity, and the sources that the call states.
+    /// Origin of the numbers in the call: the origin of each quantity, and the sources that the call states.
     pub(super) fn origin(&self) -> Origin {
         let mut origin = Origin::default();
         (self.values.iter().flatten()).for_each(|item| origin.join(&item.origin()));
@@ -173,7 +173,7 @@ impl Args<'_> {
         texts.collect()
     }
 
-    /// Number of a section given by number or as itself.
+    /// Number of the section that the argument gives, by number or as a section of the line.
     pub(super) fn section(&self, name: &str) -> Option<u16> {
         let number = match self.get(name)? {
             Item::Record(record) => match record.get("section")? {

@@ -168,7 +168,7 @@ fn checks(step: &Step) -> bool {
     !step.expectations.is_empty() || !step.measures.is_empty() || step.actions.iter().any(judges)
 }
 
-/// Items of a self-test are measurements of the step that asks for it.
+/// Whether the actions ask for a self-test, whose items then are measurements of the step.
 fn tests_unit_itself(actions: &[Action]) -> bool {
     let asks = |action: &Action| matches!(action, Action::Stimulus(Stimulus::PtuSelfTest));
     actions.iter().any(asks)

@@ -77,7 +77,7 @@ struct Checker<'a> {
     ast: &'a AstModule,
     context: &'a Context,
     predeclared: &'a BTreeMap<&'static str, Item>,
-    /// Names the script binds itself anywhere: they may mean something else than the predeclared.
+    /// Names that the script itself binds anywhere: they may mean something else than the predeclared names.
     shadowed: HashSet<String>,
     depth: usize,
     too_deep: bool,

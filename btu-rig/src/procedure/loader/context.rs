@@ -70,7 +70,7 @@ impl Context {
         ]
     }
 
-    /// Whether `source` says where a number comes from, and there is such a place; `Err` says what it is instead.
+    /// Whether `source` names a place from which a number can come, and the place exists; `Err` says what `source` is.
     pub(super) fn source(&self, source: &str) -> Result<(), String> {
         let [configuration, track, train] = &self.trees;
         let Some((kind, key)) = SourceKind::split(source) else {
@@ -106,7 +106,7 @@ impl Context {
     }
 }
 
-/// Named values, their quantities with them; `source` stands before their names where these are said.
+/// A record of named values and of their quantities; `source` stands before the names in the quantities' origins.
 fn record(
     kind: &'static str,
     fields: impl IntoIterator<Item = (impl Into<String>, Item)>,
@@ -125,7 +125,7 @@ fn bits<Set: bitflags::Flags<Bits = u16>>(kind: &'static str) -> Item {
     record(kind, fields, "")
 }
 
-/// Configuration data as nested records, by way of their names in configuration files.
+/// Configuration data as nested records, with the names that configuration files use.
 fn tree(kind: &'static str, data: &impl serde::Serialize, source: &str) -> Item {
     match serde_json::to_value(data) {
         Ok(value) => item(kind, &value, source),

@@ -13,7 +13,7 @@ pub(super) enum Declaration {
 
 #[derive(Clone, Debug)]
 pub(super) struct ProcedureDraft {
-    /// Without steps, and without what the file says: path and checksum.
+    /// The procedure without steps, path and checksum.
     pub procedure: Procedure,
     /// Sources of numbers in expectations that name none themselves.
     pub sources: Vec<String>,
@@ -21,7 +21,7 @@ pub(super) struct ProcedureDraft {
 
 #[derive(Clone, Debug)]
 pub(super) struct StepDraft {
-    /// Without line and times; its suspect is that of the call.
+    /// The step without line and times; its suspect is the one that the call names.
     pub step: Step,
     pub limit: Option<Duration>,
     /// The call says which part the step suspects, or that it suspects none.

@@ -5,7 +5,7 @@ use starlark::ErrorKind;
 use starlark::codemap::FileSpan;
 use thiserror::Error;
 
-/// Longest text of an error or a printed line, characters: a script may make it of anything.
+/// Longest text of an error or a printed line, characters: a script may make the text as long as it likes.
 const LONGEST_TEXT: usize = 2000;
 
 /// What is wrong with a script, and where.
@@ -84,7 +84,7 @@ fn caller(path: &str, error: &starlark::Error) -> Option<String> {
     })
 }
 
-/// Starlark's messages are for programmers; those of limits, which have no kind of their own, are said in plain words.
+/// Says in plain words Starlark's messages about limits, which have no error kind of their own.
 fn plain_words(message: &str) -> String {
     let first = message.lines().next().unwrap_or_default();
     if first.starts_with("Heap memory limit") {

@@ -10,7 +10,7 @@ use super::handle::alloc_frozen;
 use super::item::Item;
 use super::verb;
 
-/// Our own predeclared names.
+/// The predeclared names of this program, without Starlark's own.
 pub(super) fn predeclared(context: &Context) -> BTreeMap<&'static str, Item> {
     let mut names: BTreeMap<&'static str, Item> = context.globals().into_iter().collect();
     for &signal in Signal::ALL {

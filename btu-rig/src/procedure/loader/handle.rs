@@ -44,7 +44,7 @@ pub(super) struct Session<'a> {
 #[error("{0}")]
 pub(super) struct ScriptError(pub String);
 
-/// A value of ours inside Starlark.
+/// An [`Item`] as a value inside Starlark.
 #[derive(Clone, Debug, ProvidesStaticType, NoSerialize, StarlarkPagablePanic, Allocative)]
 pub(super) struct Handle(#[allocative(skip)] pub Item);
 starlark_simple_value!(Handle);
@@ -145,7 +145,7 @@ impl<'v> StarlarkValue<'v> for Handle {
     }
 }
 
-/// A signal has no value while a script is loaded; taking it for one would quietly choose a branch.
+/// Message for a signal used as a value: signals have none while a script is loaded, and would quietly choose a branch.
 pub(super) fn no_value(name: &str) -> String {
     format!("{name} has no value while a script is loaded; use is_({name}, …) in a step")
 }

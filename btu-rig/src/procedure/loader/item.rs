@@ -28,7 +28,7 @@ pub(super) enum Item {
     /// An expectation, with the source of its numbers.
     Expectation(Expectation, Origin),
     Measure(Box<Measure>),
-    /// A value measured by an earlier step, by name, and what is added to it.
+    /// Name of a value measured by an earlier step, and the quantity added to the value.
     Measured(String, Option<Quantity>),
     /// `step()` or `procedure()`: takes effect when a script is evaluated, not when it is checked.
     Declaration(Box<Declaration>),
@@ -36,7 +36,7 @@ pub(super) enum Item {
     Namespace(&'static str),
     /// A Starlark value that no verb takes; holds its type's name.
     Foreign(String),
-    /// Only while a script is checked without being run: a value that is not known then.
+    /// A value that is not known while a script is only checked, without being run.
     Unknown,
 }
 
@@ -113,7 +113,7 @@ impl Item {
         }
     }
 
-    /// `name` behind a dot; a namespace's verbs and a record's fields.
+    /// What `name` behind a dot stands for: a verb of a namespace, or a field of a record.
     pub(super) fn attribute(&self, name: &str) -> Option<Item> {
         match self {
             Self::Record(record) => record.get(name).cloned(),
@@ -131,7 +131,7 @@ impl Item {
         }
     }
 
-    /// `self + other` or, with `sign` -1, `self - other`; `None` if this is not for us to decide.
+    /// `self + other` or, with `sign` -1, `self - other`; `None` if Starlark itself is to decide.
     pub(super) fn plus(&self, other: &Self, sign: f64) -> Option<Result<Self, String>> {
         let sum = match (self, other) {
             (Self::Quantity(a), Self::Quantity(b)) => a.plus(b, sign).map(Self::Quantity),

@@ -2,11 +2,12 @@
 //!
 //! Layers, bottom up:
 //! * `quantity`, `item`: the values of the script language, free of Starlark;
-//! * `verb`, `param_type`, `args`, `verbs`: its verbs, each a table entry with typed parameters;
-//! * `context`, `amounts`, `globals`: unit configuration, line, signals: the names a script knows; `stubs`: the same for editors;
-//! * `handle`: those values inside Starlark;
-//! * `nesting`, `check`: find errors without running a script, also where it would never run;
-//! * `evaluate`: runs it once, within bounds, with no access to anything but its libraries;
+//! * `verb`, `param_type`, `args`, `verbs`: the verbs of the language, each a table entry with typed parameters;
+//! * `context`, `amounts`, `globals`: unit configuration, line, signals: the names a script knows;
+//! * `stubs`: these names and the verbs, for editors;
+//! * `handle`: the values of the language inside Starlark;
+//! * `nesting`, `check`: find errors without running a script, also in code that would never run;
+//! * `evaluate`: runs a script once, within bounds, with no access to anything but its libraries;
 //! * `assemble`: resolves names between steps and computes times;
 //! * `error`: what is wrong, where, in plain words.
 
@@ -58,7 +59,7 @@ pub struct Loaded {
     pub procedures: Vec<Arc<Procedure>>,
     /// All errors of all scripts, by path and line.
     pub errors: Vec<LoadError>,
-    /// Procedures, by name, that a train without cars cannot be tested by.
+    /// Names of the procedures that cannot test a train without cars.
     pub need_cars: Vec<String>,
     pub printed: Vec<String>,
 }
@@ -73,9 +74,9 @@ pub enum LoadEvent<'a> {
 
 /// Loads all `scripts` for a unit of type `unit` on `line` in `train`.
 ///
-/// Files whose names start with `_` are libraries for `load()`; every other is one procedure. One that
-/// cannot be read for a train that is a point mass, and can for a train of cars, needs cars: it is no error
-/// but is set apart.
+/// Files whose names start with `_` are libraries for `load()`; every other file is one procedure. A procedure that
+/// cannot be read for a train that is a point mass, but can for a train of cars, needs cars: it is no error, and
+/// is listed in [`Loaded::need_cars`].
 ///
 /// Calls, loops and small values are bounded here; what one built-in word of the language makes of a few
 /// characters (`[0] * 10**9`) is not. Scripts that may be hostile are loaded in a process with limits.

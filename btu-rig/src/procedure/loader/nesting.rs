@@ -4,7 +4,7 @@
 //! text is measured first, without a parser: each open bracket counts, and in each bracket the
 //! operators, dots and nesting words since the last comma, since all of these may nest.
 
-/// Nesting that a person can still read, many times over.
+/// Deepest nesting that is accepted: many times what a person can still read.
 const DEEPEST: usize = 48;
 /// An `elif` nests in the `if` before it.
 const MOST_ELIFS: usize = 48;

@@ -39,7 +39,7 @@ pub(super) enum ParamType {
     Events,
     /// A condition, "start" or "actions".
     TimeFrom,
-    /// One or a list of whole numbers.
+    /// A whole number or a list of them.
     Ints,
     Conditions,
     /// Where numbers come from: a text or a list of them.
@@ -74,7 +74,7 @@ impl ParamType {
         }
     }
 
-    /// `Err` says what was found instead.
+    /// Whether the item fits the type; `Err` says what was found instead.
     pub(super) fn check(self, item: &Item, context: &Context) -> Result<(), String> {
         if matches!(item, Item::Unknown) {
             return Ok(());
@@ -140,7 +140,7 @@ impl ParamType {
     }
 }
 
-/// Whether all of them are sources that exist; `Err` says which is none.
+/// Whether all texts in the item are sources that exist; `Err` says which text is none.
 fn sources(item: &Item, context: &Context) -> Result<(), String> {
     match item {
         Item::List(items) => items.iter().try_for_each(|item| sources(item, context)),

@@ -26,7 +26,7 @@ protocol::labelled! {
 }
 
 /// Units by their name, as scripts call them and as keys of configuration files end; with the factor to the unit of the
-/// dimension. Of two that a key may end in, the first counts.
+/// dimension. Where a key ends in the names of two units, the first in this table counts.
 pub(super) const UNITS: [(&str, Dimension, f64); 11] = [
     ("kmh_per_s", Dimension::Acceleration, 1.0 / 3.6),
     ("mps2", Dimension::Acceleration, 1.0),
@@ -87,7 +87,7 @@ pub(super) struct Quantity {
     pub dimension: Dimension,
     /// Value in the dimension's unit.
     pub value: f64,
-    /// Where its number comes from.
+    /// Where the value comes from.
     pub origin: Origin,
 }
 

@@ -47,7 +47,7 @@ fn stub(verb: &Verb, name: &str) -> String {
     let (mut may_be_left_out, mut by_name) = (false, false);
     let params = verb.params.iter().map(|param| {
         may_be_left_out |= !param.required;
-        // Python has what must be given before what may be left out, unless it is given by its name.
+        // In Python a parameter that must be given stands before those that may be left out, or is given by its name.
         let marks = param.required && may_be_left_out && !std::mem::replace(&mut by_name, true);
         let mark = if marks { "*, " } else { "" };
         match param.required {

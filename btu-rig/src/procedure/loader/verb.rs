@@ -71,7 +71,7 @@ pub(super) struct CallError {
 impl Verb {
     /// Binds arguments, checks them, and makes the verb's value.
     ///
-    /// While a script is only checked, arguments may be unknown; then what can be checked is, and
+    /// While a script is only checked, arguments may be unknown; then the known arguments are checked, and
     /// the value is unknown, too.
     pub(super) fn call(
         &'static self,

@@ -1,9 +1,9 @@
 //! Steps in which the tester's own computer stood still: not tested, and repeated from the procedure's set-up.
 //!
 //! The unit was not heard or not driven meanwhile, so it may have braked for that reason alone. What is left of the
-//! procedure is run by another runner, which is made from a [`Resume`]: set-up, the steps before that the repeated one
-//! continues from, the step itself and those after it. Only a step that was not tested is repeated, never one
-//! that failed.
+//! procedure is run by another runner, which is made from a [`Resume`]: set-up, the earlier steps from which the
+//! repeated step continues, the repeated step, and the steps after it. Only a step that was not tested is repeated,
+//! never a step that failed.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ const AFTERMATH: Duration = Duration::from_ms(1_000);
 /// How often clean-up is begun at most.
 const CLEAN_UPS: u32 = 3;
 
-/// State that a runner is to go on with, and what it knows of earlier steps.
+/// Place in the schedule at which a runner is to go on, and what the runner before knew of earlier steps.
 #[derive(Clone, Debug)]
 pub struct Resume {
     /// Place in the schedule of the first step that is run again, so that the target finds the state it needs.
@@ -46,7 +46,7 @@ pub struct Resume {
 }
 
 impl Resume {
-    /// From the first step on.
+    /// The runner begins with the first step, and nothing is known of earlier steps.
     pub(super) fn from_the_start(slots: usize) -> Self {
         Self {
             first: 0,
@@ -77,13 +77,14 @@ impl Runner {
         }
     }
 
-    /// Rest of the procedure, when this runner is done and has not run all of it.
+    /// Rest of the procedure, when this runner is done and has not run the whole procedure.
     pub fn to_be_resumed(&self) -> Option<&Resume> {
         self.resume.as_ref()
     }
 
-    /// The tester's computer stood still for so long since the last scan that the unit was not driven: what it did
-    /// meanwhile is not judged. The present step is repeated, by the runner that goes on as [`Runner::to_be_resumed`] says.
+    /// The tester's computer stood still for so long since the last scan that the unit was not driven: what the unit
+    /// did meanwhile is not judged. The present step is repeated, by the runner that goes on as
+    /// [`Runner::to_be_resumed`] says.
     pub fn stood_still(&mut self, by: Duration) {
         self.stood_still = Some(by);
     }
@@ -99,19 +100,20 @@ impl Runner {
         }
     }
 
-    /// The computer stood still with tester and unit on it: time that counts for neither. Frames may have been lost all the
-    /// same, so a step that fails meanwhile or shortly after was not tested.
+    /// The computer on which both tester and unit run stood still: the time counts for neither. Frames may have been
+    /// lost all the same, so a step that fails meanwhile or shortly after was not tested.
     pub fn paused_with_unit(&mut self, now: Instant, by: Duration) {
         self.last_pause = Some((now, by));
     }
 
-    /// Length of such a pause, if it may explain what is seen now.
+    /// Length of the last pause of tester and unit together, if that pause may explain what is seen now.
     pub(super) fn after_pause(&self, now: Instant) -> Option<Duration> {
         let (at, by) = self.last_pause?;
         (now.since(at) <= AFTERMATH).then_some(by)
     }
 
-    /// After the set-up of a repetition: what the unit logged until now is read, so that no step is held to it.
+    /// Whether, after the set-up before a repeated step, the unit's log is read, so that no step is blamed for entries
+    /// from before.
     pub(super) fn has_settled(&mut self, now: Instant) -> bool {
         if self.begun_at.target == 0 && self.begun_at.attempt == 1 {
             return true;
@@ -151,7 +153,7 @@ impl Runner {
 
     /// The step at `place` was not tested: it is repeated, or given up after the last attempt.
     pub(super) fn spoil(&mut self, place: usize, started: Instant, now: Instant, by: Duration) {
-        // A step that is run again only to reach the target's state is the target's attempt.
+        // A step that is run again only to reach the target's state counts as an attempt at the target.
         let target = place.max(self.begun_at.target);
         let attempt = match target == self.begun_at.target {
             true => self.begun_at.attempt,
@@ -175,7 +177,7 @@ impl Runner {
         self.phase = Phase::clean_up(now);
     }
 
-    /// Reports the steps that cannot be run without the one given up as skipped; the place of the next one that can.
+    /// Reports as skipped the steps that continue from the step given up; returns the place of the first that does not.
     fn after_given_up(&mut self, target: usize, now: Instant) -> Option<usize> {
         let procedure = Arc::clone(&self.procedure);
         let name = &procedure.steps[self.schedule[target].index].name;

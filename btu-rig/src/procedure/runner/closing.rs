@@ -17,7 +17,7 @@ use crate::procedure::{Driver, Verdict};
 /// Time outputs have to become safe: a wheel at top speed comes to rest first, because one that
 /// stops at once would be an impossible wheel.
 pub const SAFE_WITHIN: Duration = Duration::from_ms(25_000);
-/// Time the rest of the unit's log has: as much as a whole one takes, four times over.
+/// Time allowed for reading the rest of the unit's log: four times what a whole log takes.
 const LOG_WITHIN: Duration = Duration::from_ms(25_000);
 /// Time clean-up has when the link to the unit is lost.
 pub const CLEANUP_WITHOUT_LINK: Duration = Duration::from_ms(2000);
@@ -57,7 +57,7 @@ impl Runner {
             problems.push(Finding::CleanUpTooLong { within: allowed });
             over = true;
         }
-        // Before a repetition the unit may have braked because it was not driven: the next set-up has its say.
+        // Before a repetition the unit may have braked because it was not driven: the next set-up shows what is wrong.
         if self.resume.is_some() {
             problems.clear();
         }
@@ -82,8 +82,8 @@ impl Runner {
         self.phase = Phase::ReadLog { since: now };
     }
 
-    /// A procedure is over when all that the unit has logged meanwhile is read; the bench does not wait for that
-    /// after a stop, or where it cannot be.
+    /// A procedure is over when all that the unit has logged meanwhile is read; the bench does not wait for the log
+    /// after a stop, or when the link is lost.
     pub(super) fn read_log(&mut self, now: Instant, since: Instant) {
         let awaited = self.stop == Stop::No && !self.link_lost;
         if awaited && self.evidence.log != LogState::Read {

@@ -100,7 +100,7 @@ pub struct Runner {
     provoked: BTreeSet<Event>,
     brake_applied: Option<bool>,
     clock_reported: bool,
-    /// Part of the train that TCMS reported first, in a step that did not provoke it.
+    /// First part of the train that TCMS reported in a step that did not provoke the report.
     train_part: Option<LruId>,
     stop: Stop,
     answer: Option<bool>,
@@ -117,16 +117,16 @@ pub struct Runner {
     self_test: SelfTest,
     /// The unit has restarted by itself, as its log says.
     restarted: bool,
-    /// Events that TCMS and the wayside logged while nothing comes from the unit: not yet the unit's, nor the line's.
+    /// Events logged while nothing comes from the unit: it is still open whether the unit or the line caused them.
     left_open: Vec<UnitEvent>,
-    /// Reported events that no step provoked.
+    /// Number of events reported that no step provoked.
     reported: usize,
     /// Unprovoked events beyond those reported, because there were too many.
     not_reported: u64,
     leaving: bool,
     pause: Pause,
     begun_at: Resume,
-    /// State for the next runner.
+    /// Where the next runner goes on, if a next one is needed.
     resume: Option<Resume>,
     /// When the set-up before repeated steps was done.
     set_up_at: Option<Instant>,
@@ -142,7 +142,7 @@ pub struct Runner {
 }
 
 impl Runner {
-    /// A runner that has not begun, for one of the procedure's repetitions, `round` of them before it.
+    /// A runner that has not begun, for the repetition of the procedure that comes after `round` others.
     pub fn new(procedure: Arc<Procedure>, options: RunOptions, round: u32) -> Self {
         let lacks = procedure.lacks.clone();
         Self {
@@ -248,7 +248,7 @@ impl Runner {
     ) -> Poll {
         self.begin(now);
         self.take_evidence(now, driver.evidence());
-        // First, because what this scan brings results from the stall.
+        // First, because what this scan brings may result from the interruption.
         if let Some(reason) = self.interrupted.take() {
             self.break_off(now, sample, reason);
         }
@@ -381,13 +381,13 @@ impl Runner {
         self.findings.add(finding, 1);
     }
 
-    /// Part to suspect when a step fails: what TCMS has reported of the train, if anything, stays broken and shows in
-    /// every step after that, too.
+    /// Part to suspect when a step fails: a part of the train that TCMS has reported, as that part stays broken and
+    /// shows in every later step, else the step's own.
     fn suspect(&self, step: &Step) -> Option<LruId> {
         self.train_part.clone().or_else(|| step.suspect.clone())
     }
 
-    /// The operator's answer is for one prompt.
+    /// Hands the operator's answer on, once: an answer is for one prompt.
     fn operator(&mut self) -> Operator {
         Operator {
             policy: self.options.prompts,

@@ -8,7 +8,7 @@ use crate::procedure::report::RunEvent;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pause {
     on: bool,
-    /// Steps that may begin all the same.
+    /// Number of steps that may begin in spite of the pause.
     single: u32,
     /// The pause before the next step has been reported.
     said: bool,

@@ -12,10 +12,10 @@ pub struct RunOptions {
     /// Skip the rest after the first step that did not pass.
     pub stop_on_fail: bool,
     pub prompts: PromptPolicy,
-    /// A step begins one scan after the one before it ended, not with it, so that
+    /// A step begins one scan after the step before ended, not in the same scan, so that
     /// [`Runner::leave`](super::Runner::leave) can come between.
     pub one_by_one: bool,
-    /// Places of steps of which a trace is kept though they pass.
+    /// Places of steps whose trace is kept even if they pass.
     pub traced: Vec<usize>,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct ScheduledStep {
     pub turns: u32,
 }
 
-/// The chosen steps, each with its own repetitions, in one of the procedure's, counted from 0.
+/// The chosen steps, each with its own repetitions, for the procedure's repetition `round`, counted from 0.
 pub(super) fn schedule(
     procedure: &Procedure,
     options: &RunOptions,
@@ -59,7 +59,7 @@ pub(super) fn schedule(
     turns
 }
 
-/// Place of the step from which the one at `place` is repeated: itself, or the first of those it continues from.
+/// Place at which a repetition of the step at `place` begins: this step, or the first of those it continues from.
 pub(super) fn group_start(
     procedure: &Procedure,
     schedule: &[ScheduledStep],

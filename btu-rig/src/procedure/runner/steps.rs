@@ -56,7 +56,7 @@ impl Runner {
         }
     }
 
-    /// Begins the next step; `false` if its condition does not hold or is unknown.
+    /// Begins the next step; `false` if the step is reported as not run instead.
     fn start_step(
         &mut self,
         step: &Step,
@@ -138,7 +138,7 @@ impl Runner {
         for (measure, measurement) in step.measures.iter().zip(&end.measurements) {
             self.captured[measure.slot] = measurement.value;
         }
-        // Run again only for the state it leaves: its result stands already, unless it shows something else now.
+        // A step run again only for the state that it leaves has its result already; a failure now is reported, too.
         if before_target
             && matches!(
                 end.verdict,
@@ -169,7 +169,7 @@ impl Runner {
         self.stop_unless_passed(turn, end.verdict, now);
     }
 
-    /// Skips the rest after a step that did not pass, if it is to be so.
+    /// Skips the rest after a step that did not pass, if the run's options or the step's `on_fail` say so.
     fn stop_unless_passed(&mut self, turn: ScheduledStep, verdict: Verdict, now: Instant) {
         let step = &self.procedure.steps[turn.index];
         let stops = self.options.stop_on_fail || step.on_fail == OnFail::Stop;
@@ -182,7 +182,7 @@ impl Runner {
     /// Reports all steps still to come as skipped and goes on to clean-up.
     pub(super) fn skip_rest(&mut self, now: Instant, reason: &Finding) {
         if let Phase::Steps { next, .. } = &mut self.phase {
-            // Steps before this one have their results.
+            // Steps before the target have their results.
             *next = (*next).max(self.begun_at.target);
         }
         while let Phase::Steps { next, .. } = &self.phase

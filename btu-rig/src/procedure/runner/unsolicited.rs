@@ -139,8 +139,8 @@ impl Runner {
         }
     }
 
-    /// A clock of the unit that is found wrong fails the procedure, once: no step is about it, and when it shows depends
-    /// on how long the unit has been watched.
+    /// A clock of the unit that is found wrong fails the procedure, once: no step is about the clock, and how soon the
+    /// error shows depends on how long the unit has been watched.
     fn watch_clock(&mut self, now: Instant) {
         let Some(by_permille) = self.evidence.clock_wrong_by_permille else {
             return;

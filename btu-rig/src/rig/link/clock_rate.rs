@@ -1,4 +1,4 @@
-//! The unit's clock against the bench's, by the stamps of its frames: a rate, for a unit whose clock is wrong measures all
+//! Rate of the unit's clock against the bench's, by the stamps of frames: a unit whose clock is wrong measures all
 //! times and speeds wrong, and refuses good frames as late.
 
 use protocol::{Duration, Instant};
@@ -53,7 +53,7 @@ impl ClockRate {
 mod tests {
     use super::*;
 
-    /// What is measured after so many seconds of a clock at this rate, whose frames take up to 40 ms more, and that stands
+    /// The rate measured after `seconds` of a clock at `rate`, whose frames take up to 40 ms longer, and which stands
     /// still at `stands_at_s` for half a second.
     fn measured(rate: f64, seconds: u32, stands_at_s: u32) -> Option<i32> {
         let mut clock = ClockRate::default();

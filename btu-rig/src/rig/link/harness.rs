@@ -1,14 +1,14 @@
-//! Whether the bench harness is there: what the unit says shows it, or the user says so.
+//! Whether the bench harness is there, as shown by what the unit sends, or as the user says.
 //!
 //! A unit at a harness sends `IoOutput` every 10 ms. One on a train is heard at its maintenance port alone, and
-//! there it takes nothing but the tester's frames: whatever else a bench sends would be refused, and no bench may
-//! play a train that is there.
+//! there it takes nothing but the tester's frames: whatever else a bench sends would be refused, and a bench must not
+//! play a train beside the real one.
 
 use protocol::message::Channel;
 use protocol::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// Time in which the maintenance channel is heard and no other, after which no harness is taken to be there.
+/// Time for which only the maintenance channel is heard, after which the unit counts as one without harness.
 const ALONE: Duration = Duration::from_ms(500);
 
 /// Whether the bench harness is connected, as the user says.
@@ -48,7 +48,7 @@ impl std::str::FromStr for Harness {
 pub struct HarnessWatch {
     /// Whether there is one, once it is known.
     pub found: Option<bool>,
-    /// Since when the maintenance channel is heard and nothing else.
+    /// Since when only the maintenance channel is heard.
     alone_since: Option<Instant>,
 }
 

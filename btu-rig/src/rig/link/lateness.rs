@@ -1,13 +1,13 @@
-//! Lateness of the unit's frames: a link that holds bytes back shows what the unit did when it is over.
+//! Lateness of the unit's frames: while a link holds bytes back, the bench learns late what the unit did.
 //!
-//! A frame's stamp says when the unit made it. Of the frames of the last moments the fastest took the link's own time; what
-//! another took beyond that is its lateness.
+//! A frame's stamp says when the unit made it. The fastest of the latest frames took the link's own time; the time that
+//! another frame took beyond this is its lateness.
 
 use std::collections::VecDeque;
 
 use protocol::{Duration, Instant};
 
-/// Frames that are compared: so few that a clock wrong by some percent is no lateness.
+/// Time over which frames are compared: so short that a clock wrong by some percent makes no lateness.
 const SPAN: Duration = Duration::from_ms(600);
 /// Stamps further apart than this are of a unit that was started again, ms.
 const JUMPS_MS: i64 = 5_000;

@@ -1,10 +1,10 @@
 //! Counts frames between tester and unit that were lost or damaged on the line, in both directions.
 //!
-//! Counted here are only losses that no part of a unit can cause. From the unit: gaps in the sequence of
-//! the PTU and I/O channels, frames of theirs out of place, and refused bytes beyond what a modem of the
-//! other two channels may have damaged. To the unit: what it says it has refused, which is counted where
-//! its line ends, before any modem of its own. A unit whose clock goes wrong refuses good frames as late:
-//! what it refuses then is not counted.
+//! Only losses are counted that no part of a unit can cause. From the unit: gaps and frames out of place in the
+//! sequences of the PTU and I/O channels, and frames refused on these channels in excess of those refused on TCMS and
+//! TWC, whose modems may damage frames. To the unit: frames that the unit says it refused; it counts them at the end of
+//! the line, before its own modems. A unit whose clock goes wrong refuses good frames as late: its refusals are then
+//! not counted.
 
 use std::collections::VecDeque;
 
@@ -19,19 +19,20 @@ use crate::procedure::link_trouble::LinkTrouble;
 use super::clock_rate::ClockRate;
 use super::lateness::Lateness;
 
-/// Span over which a line is bad or good, as the unit's own.
+/// Time over which losses are counted to judge the line; the unit counts over as long.
 const SPAN: Duration = Duration::from_ms(10_000);
 /// Interval at which counts are kept.
 const EVERY: Duration = Duration::from_ms(500);
 /// Time for which the unit may still report the effects of lost frames: its time-outs, and reading its log.
 const LATELY: Duration = Duration::from_ms(12_000);
-/// After first contact and a restart both ends may refuse what is left of the time before.
+/// Time after first contact or a restart for which both ends may still refuse frames from before.
 const SETTLES: Duration = Duration::from_ms(2_200);
 /// A unit's clock that is off by more than this, and by more than one part in [`CLOCK_SHARE`], goes wrong.
 const CLOCK_OFF: Duration = Duration::from_ms(60);
-/// A crystal is off by less than a hundredth of this; what is beyond is no delay of a frame.
+/// A crystal is off by less than 1 part in 10 000; an error beyond 1 part in this number is no delay of a frame,
+/// either.
 const CLOCK_SHARE: u64 = 100;
-/// Channels no part of the unit damages.
+/// Channels whose frames no part of the unit damages.
 const WHOLE: [Channel; 2] = [Channel::Ptu, Channel::Io];
 /// When all channels of [`WHOLE`] are silent for longer, the line is lost or the unit starts again: longer than a link holds
 /// bytes back, shorter than the time after which TCMS, the wayside or the unit misses the other.
@@ -131,7 +132,8 @@ impl LineWatch {
         self.past.push_back((now, self.counts));
     }
 
-    /// Takes the stamp of a frame that has come, ms. What a modem of the unit may hold back counts for nothing.
+    /// Takes the time stamp of a frame that has come, ms. Channels on which a modem of the unit may hold bytes back are
+    /// ignored.
     pub fn on_frame(&mut self, at: Instant, channel: Channel, stamp_ms: u32) {
         if WHOLE.contains(&channel) {
             let late = self.lateness.take(at, stamp_ms);
@@ -155,19 +157,19 @@ impl LineWatch {
         let by_unit = u64::from(stamp_ms.wrapping_sub(first_ms)) * 1_000;
         let off = by_bench.abs_diff(by_unit);
         let wrong = off > CLOCK_OFF.as_us() && off > by_bench / CLOCK_SHARE;
-        // Before that a share this small cannot show: what was found before a stall stands.
+        // In a shorter time a share this small cannot show: what was found before a stall stands.
         if wrong || by_bench >= CLOCK_OFF.as_us() * CLOCK_SHARE {
             self.clock_is_wrong = wrong;
         }
     }
 
-    /// Takes the unit's own count, which wraps.
+    /// Takes the unit's count of refused frames, which wraps.
     pub fn on_refused(&mut self, now: Instant, refused: u16) {
         let more = self
             .rejected_by_unit
             .replace(refused)
             .map_or(0, |before| refused.wrapping_sub(before));
-        // A count that falls is of a unit that was started again.
+        // A count that falls shows that the unit was started again.
         let fallen = more > u16::MAX / 2;
         if fallen || self.clock_is_wrong || now < self.on_purpose_until {
             return;
@@ -179,7 +181,7 @@ impl LineWatch {
         }
     }
 
-    /// Takes the rig's own counts, once a cycle.
+    /// Takes the counters of the rig's own end of the link; counts once a cycle.
     pub fn step(&mut self, now: Instant, counters: &Counters) {
         if !now.as_us().is_multiple_of(CYCLE.as_us()) {
             return;
@@ -203,7 +205,7 @@ impl LineWatch {
                 whole(Counters::gaps).max(beyond_modems) + whole(Counters::out_of_place);
             let counts = &mut self.counts;
             if settled {
-                // Modems may catch up with what they may have damaged: what was counted stays counted.
+                // Refusals on the modem channels may come later and lower the sum: what was counted stays counted.
                 counts.from_unit = counts.from_unit.max(self.base.from_unit + from_unit);
                 counts.taken = self.base.taken + whole(Counters::accepted);
             } else {
@@ -275,7 +277,8 @@ fn of_whole(counters: &Counters, count: CountOf) -> u64 {
     WHOLE.iter().map(|&channel| count(counters, channel)).sum()
 }
 
-/// Refused as damaged or wrongly addressed, on a channel that no part of the unit damages, or on none.
+/// Frames refused as damaged or wrongly addressed, on a channel that no part of the unit damages or on no known
+/// channel.
 fn refused_whole(counters: &Counters) -> u64 {
     refused(counters, &[Some(Channel::Ptu), Some(Channel::Io), None])
 }

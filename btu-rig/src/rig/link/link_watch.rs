@@ -17,8 +17,8 @@ const FIRST_CONTACT: Duration = Duration::from_ms(3000);
 /// Silence that is an error: longer than the link takes to hear a unit that was started again.
 const SILENCE: Duration = Duration::from_us(RESYNC.as_us() + 500_000);
 
-/// Silence that is an error while frames of the unit come that do not continue those before them: it starts again, and
-/// may do so while it is about to be heard again.
+/// Silence that is an error while most refused frames have a wrong sequence number or stamp: the unit starts again, and
+/// may start once more just before it would be heard.
 const STARTING: Duration = Duration::from_ms(10_000);
 
 const WATCHED: [Channel; 2] = [Channel::Io, Channel::Ptu];
@@ -34,8 +34,7 @@ pub struct LinkWatch {
     refused: [RefusedCounts; WATCHED.len()],
 }
 
-/// Frames refused: all, and those for their sequence number or stamp, as the frames of a unit that starts
-/// again are.
+/// Frames refused: in total, and for their sequence number or stamp (`restarted`), as after a restart of the unit.
 #[derive(Clone, Copy, Debug, Default)]
 struct RefusedCounts {
     total: u64,
@@ -57,7 +56,7 @@ impl RefusedCounts {
         }
     }
 
-    /// Most of them are of a unit that starts again.
+    /// Most of the refused frames come from a unit that was started again.
     fn of_a_start(self) -> bool {
         2 * self.restarted > self.total
     }
@@ -161,7 +160,7 @@ impl LinkWatch {
             let most = reasons.max_by_key(refused);
             most.filter(|reason| refused(reason) > 0)
         };
-        // A frame whose check sequence fits was read at the right rate.
+        // A frame whose check sequence fits was read at the right baud rate.
         let fitting = |reason: &Reject| !before_checksum(*reason);
         let cause = match most_of(&mut Reject::ALL.into_iter().filter(fitting)) {
             Some(Reject::Version) => {
@@ -181,7 +180,7 @@ impl LinkWatch {
     }
 }
 
-/// Whether a frame refused for this may have had no check sequence that fits.
+/// Whether a frame refused for `reason` may have had a wrong check sequence.
 fn before_checksum(reason: Reject) -> bool {
     matches!(
         reason,

@@ -8,7 +8,7 @@ use protocol::{Duration, Instant};
 
 use super::signal_sources::{CARRIED, Carries, LINE_SIGNALS, Source, kmh};
 
-/// Age at which what the unit said is forgotten.
+/// Age at which values from the unit are forgotten.
 const FORGOTTEN: Duration = Duration::from_ms(500);
 
 /// The latest value of every signal, and when each source of the unit was last heard.
@@ -25,7 +25,8 @@ impl LatestSample {
         self.heard[Source::IoOutput as usize].map(|_| self.outputs)
     }
 
-    /// Forgets what the unit has not said again for too long; `harness`: the rig sets the train lines and plays TCMS.
+    /// Forgets values that the unit has not repeated for too long; `harness`: the rig sets the train lines and plays
+    /// TCMS.
     pub fn step(&mut self, now: Instant, harness: bool) {
         let both_ways = [Source::AtcToTcms as usize, Source::Status as usize];
         for (source, signals) in CARRIED {
@@ -64,7 +65,7 @@ impl LatestSample {
     /// Takes the unit's commands to TCMS.
     pub fn on_tcms(&mut self, now: Instant, tcms: &AtcToTcms) {
         self.take(now, tcms);
-        // While test signals act, `Status` is about the functions under test.
+        // `Status` counts more: while test signals act, it is about the functions under test.
         if self.heard[Source::Status as usize].is_none() {
             self.sample.set(Signal::Mode, tcms.mode.code().into());
             self.sample.set(Signal::Target, kmh(tcms.target_cms));
@@ -78,8 +79,8 @@ impl LatestSample {
         self.sample.set(Signal::Target, kmh(status.target_cms));
     }
 
-    /// Takes what the unit does to the train and has from it; `harness`: its contacts, its frames to TCMS and the train
-    /// lines are known at first hand.
+    /// Takes the unit's outputs to the train and its inputs from the train; with a `harness`, the unit's contacts, its
+    /// frames to TCMS and the train lines are known at first hand.
     pub fn on_train_state(&mut self, now: Instant, state: &TrainState, harness: bool) {
         self.take(now, state);
         if !harness {
@@ -105,7 +106,7 @@ impl LatestSample {
             (Signal::Brake, f64::from(state.effort < 0)),
             (Signal::ModeSwitch, f64::from(state.mode_switch.code())),
             (Signal::Controller, f64::from(state.controller)),
-            // Dated to the scan, `Status` is not.
+            // `TrainState` is dated to the scan, `Status` is not.
             (Signal::CodeIndex, f64::from(state.code_index)),
             (Signal::EbCause, f64::from(state.eb_cause.code())),
             (Signal::FsbCause, f64::from(state.fsb_cause.code())),

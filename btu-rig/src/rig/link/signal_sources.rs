@@ -23,7 +23,7 @@ pub enum Source {
 /// A frame of the unit that carries signals.
 pub trait Carries {
     const SOURCE: Source;
-    /// Signals of the frame, which are forgotten with it.
+    /// Signals of the frame; they become unknown when the frame no longer comes.
     const SIGNALS: &'static [Signal];
 
     /// Sets the signals of the frame.
@@ -179,7 +179,7 @@ pub fn kmh(cms: u16) -> f64 {
     Speed::from_cms(cms).kmh()
 }
 
-/// Signals that nothing but `TrainState` tells on a connection.
+/// Signals that on this connection only `TrainState` tells.
 pub fn told_by_train_state(connection: Connection) -> Vec<Signal> {
     let on_train = [IoOutput::SIGNALS, &LINE_SIGNALS, AtcToTcms::SIGNALS].concat();
     match connection {

@@ -1,8 +1,8 @@
 //! Requests of the tester that the unit must answer: arming, disarming, test signals.
 //!
-//! One request is under way at a time, and one begins in a cycle at most: the wire has a budget. Each is repeated when no answer comes, and given up with
-//! a text that names it; whatever was waiting behind it is dropped then, because it may depend on
-//! it.
+//! One request is under way at a time, and one begins in a cycle at most: the wire has a budget. A request is repeated
+//! when no answer comes, and then given up with a text that names it; requests waiting behind it are dropped then,
+//! because they may depend on it.
 
 use std::collections::VecDeque;
 
@@ -45,7 +45,7 @@ pub struct Exchange {
     pub ended: Option<ArmRefusal>,
     /// Results of the last self-test asked for, as far as they came.
     pub self_test: Vec<SelfTestItem>,
-    /// The outcome is not awaited: the bench is being made safe.
+    /// Failures are not reported: the bench is being made safe.
     quiet: bool,
 }
 
@@ -175,7 +175,7 @@ impl Exchange {
         match (current.request, armed) {
             (Request::Arm { .. }, true) | (Request::Disarm, false) => self.current = None,
             (Request::Arm { refusal_fails }, false) => match state.refusal {
-                // Not about this exchange but the end of the last one.
+                // The unit reports the end of the session before, not of this one.
                 ArmRefusal::TesterSilent | ArmRefusal::Disarmed => {}
                 ArmRefusal::StartingUp | ArmRefusal::Busy if patient => {
                     current.attempts = 0;

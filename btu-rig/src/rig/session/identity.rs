@@ -162,7 +162,7 @@ fn with_checksum((name, crc): &(String, u32)) -> String {
     format!("{name} {crc:08x}")
 }
 
-/// A field of the identity up to its end.
+/// Bytes of a field of the identity before its first 0.
 pub fn bytes_of(field: &[u8; 16]) -> &[u8] {
     field.split(|byte| *byte == 0).next().unwrap_or_default()
 }

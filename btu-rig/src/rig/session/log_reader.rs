@@ -18,19 +18,19 @@ use crate::procedure::{LogState, UnitEvent};
 pub const MAX_EVENTS: usize = 512;
 /// Times an entry may be lost on a bad line before it counts as gone in the unit.
 const PROBES: u32 = 4;
-/// Silence after which reading is asked for again.
+/// Silence after which the log is asked for again.
 const TIMEOUT: Duration = Duration::from_ms(300);
-/// Silence after which reading is in vain, so far: two questions are unanswered.
+/// Silence after which the log counts as not answered so far: two questions are unanswered.
 const IN_VAIN: Duration = Duration::from_us(2 * TIMEOUT.as_us());
 /// Silence after which no answer is expected any more.
 const NO_ANSWER: Duration = Duration::from_ms(5_000);
-/// Time the next entry may take to come while others do: longer than a whole log that has to be waited
-/// out, at half the pace at which a unit sends it.
+/// Longest time for the next entry to come while other entries come: longer than a whole log takes that has to be
+/// waited out, at half the pace at which a unit sends.
 const NO_ENTRY: Duration = Duration::from_ms(30_000);
 /// Entries a unit sends in a second, two in a cycle, as the budget of the wire has it.
 const ENTRIES_PER_S: u64 = 40;
 
-/// What of a log is still kept: as much as a unit can hold, and then what it can send meanwhile.
+/// Number of entries that may still be kept: as many as a unit can hold, and then as many as it can have sent since.
 #[derive(Debug)]
 struct LogBudget {
     left: u64,
@@ -64,7 +64,7 @@ pub struct LogReader {
     next: u32,
     /// Entries the unit says it has logged.
     logged: u32,
-    /// When the answer last showed that it is under way; `None` = nothing is asked for.
+    /// When the last question was sent or its answer went on; `None` = nothing is asked for.
     asked: Option<Instant>,
     /// Index at which an entry was missed and asked for again.
     gap_at: Option<u32>,
@@ -72,13 +72,13 @@ pub struct LogReader {
     probing: bool,
     /// Times the missed entry was asked for since.
     probes: u32,
-    /// Since when the next entry is wanted; `None` = there is none, or it is not taken.
+    /// Since when the next entry is wanted; `None` = none is, or there is no room for it.
     wanted_since: Option<Instant>,
     /// The unit has said how much it has logged.
     contact: bool,
     /// When the unit last sent anything of its log; `None` = nothing yet proves that the unit sends its log.
     heard: Option<Instant>,
-    /// Times the unit was asked since the next entry is wanted.
+    /// Questions to the unit since the next entry is wanted.
     asked_times: u32,
     events: VecDeque<UnitEvent>,
     /// Entries the unit had overwritten or cleared before they could be read.

@@ -1,6 +1,6 @@
 //! A tester that only listens: it reads the unit's identity, its log and what it has stored over power-ups. It
-//! gives no input, arms nothing and sends no stimulus, so a unit in a train is left as it was; it gives the unit the
-//! time, if it has it.
+//! gives no input, arms nothing and sends no stimulus, so a unit in a train is left as it was; but it tells the unit
+//! the time, if it knows the time.
 
 use protocol::link::{End, Link};
 use protocol::message::{Identity, Message, Mode, StatusBits, StoreKind};
@@ -13,7 +13,7 @@ use crate::procedure::UnitEvent;
 use crate::procedure::link_trouble::LinkTrouble;
 use crate::rig::link::LinkWatch;
 
-/// Session number, for arming only: never said.
+/// Session number; it is sent for arming only, so never here.
 const SESSION: u32 = 1;
 
 /// Silence before the first question: while a unit may still hear the tester before this one, it refuses any other
@@ -73,7 +73,8 @@ impl LogSession {
         }
     }
 
-    /// The stores one after the other, once it is known who the unit is. One that has none is asked for its log.
+    /// Reads the stores one after the other, once the unit has told its identity. A unit without stores is asked for
+    /// its log.
     fn step_stores(&mut self, now: Instant, out: &mut Vec<u8>) {
         if self.status.is_none() || self.identity().is_none() {
             return;
@@ -171,7 +172,7 @@ impl LogSession {
         self.tester.restarts
     }
 
-    /// Why the unit turned this tester away, if it did: another has it.
+    /// Why the unit turned this tester away, if it did: another tester has the unit.
     pub fn turned_away(&self) -> Option<LinkTrouble> {
         self.watch.turned_away()
     }
@@ -181,8 +182,8 @@ impl LogSession {
         self.tester.log.not_kept
     }
 
-    /// What is wrong with the connection, with who answers or with its log, after a time allowed for first
-    /// contact.
+    /// What is wrong with the connection, the unit that answers or its log, once the time allowed for first contact is
+    /// over.
     pub fn link_error(&self, now: Instant) -> Option<LinkTrouble> {
         let speaks_since = self.begun.map(|begun| begun + HOLD_BACK);
         let link = self.watch.error(now, &self.link, speaks_since, false);

@@ -14,7 +14,7 @@ const MAX_ATTEMPTS: usize = 3;
 )]
 pub enum Request {
     Arm {
-        /// A refusal is a failure, and else an outcome.
+        /// `true` = a refusal is a failure, `false` = it is an outcome.
         refusal_fails: bool,
     },
     /// The end of the session.
@@ -32,10 +32,10 @@ pub enum Request {
 pub struct Current {
     pub request: Request,
     pub begun: Instant,
-    /// When it is sent or given up next.
+    /// When the request is sent again or given up.
     pub due: Instant,
     pub attempts: usize,
-    /// Sequence numbers it was sent with: a late answer to an earlier try is an answer.
+    /// Sequence numbers of all tries: a late answer to an earlier try is an answer.
     pub seqs: [u16; MAX_ATTEMPTS],
     /// Challenge to be answered.
     pub challenge: Option<u32>,

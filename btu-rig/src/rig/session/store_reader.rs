@@ -1,8 +1,8 @@
 //! Reads one of the unit's two stores: each entry once, in order, whatever frames are lost on the way.
 //!
-//! First the end alone is asked for: a unit without stored memory does not answer, and one that does says how
-//! much there is. A number that is missing five times is of an entry that is damaged in the unit; the others were
-//! lost on the line.
+//! First only the end of the store is asked for: a unit without stored memory does not answer, any other unit says how
+//! much is stored. An entry whose number is missing five times is damaged in the unit; one that is missing less often
+//! was lost on the line.
 
 use protocol::link::Link;
 use protocol::message::{
@@ -12,7 +12,7 @@ use protocol::{Duration, Instant};
 
 use crate::procedure::link_trouble::LinkTrouble;
 
-/// Silence after which it is asked again.
+/// Silence after which the store is asked for again.
 const TIMEOUT: Duration = Duration::from_ms(400);
 /// Questions without an answer after which the unit counts as one without stored memory.
 const PROBES: u32 = 3;
@@ -49,13 +49,13 @@ pub enum StoreState {
     /// The unit has no store: it is an older one.
     Missing,
     Reading,
-    /// All is read that was there when it was first asked for.
+    /// Everything is read that the store held when it was first asked for.
     Read,
     /// The reason for which the store cannot be read.
     Failed(LinkTrouble),
 }
 
-/// A number that was missing, the one that came in its place, and how often.
+/// Number of a missing entry (`at`), number that came in its place, and how often that happened.
 #[derive(Clone, Copy, Debug)]
 struct Gap {
     at: u32,
@@ -68,10 +68,10 @@ pub struct StoreReader {
     store: StoreKind,
     per_cycle: u8,
     pub state: StoreState,
-    /// Number of the next entry to take, and the first that is not wanted.
+    /// Number of the next entry to take; `until` is the first number not wanted.
     next: u32,
     until: u32,
-    /// Last sign of the answer being under way; `None` = nothing asked.
+    /// When the last question was sent or its answer went on; `None` = nothing is asked for.
     asked: Option<Instant>,
     asked_times: u32,
     heard: Instant,
@@ -80,7 +80,7 @@ pub struct StoreReader {
 }
 
 impl StoreReader {
-    /// Reads a store at a pace, entries in each 50 ms.
+    /// Reads a store, `per_cycle` entries in each 50 ms.
     pub fn new(store: StoreKind, per_cycle: u8) -> Self {
         Self {
             store,
@@ -169,11 +169,11 @@ impl StoreReader {
         true
     }
 
-    /// Whether the numbers from the next one up to this one were missing often enough; they are counted then, and
-    /// asked for again otherwise.
+    /// Whether the entries from the next one up to `came` were missing often enough to count as damaged; if not, they
+    /// are asked for again.
     fn is_damaged_up_to(&mut self, came: u32) -> bool {
         let times = match self.gap {
-            // Later numbers are of the answer before.
+            // Later numbers belong to the answer before.
             Some(gap) if gap.at == self.next && came > gap.came => return false,
             Some(gap) if gap.at == self.next => gap.times + 1,
             _ => 1,
@@ -239,7 +239,7 @@ mod tests {
 
     use super::*;
 
-    /// A unit whose store has these numbers whole, of all up to `next`; one frame in `lost` is lost.
+    /// Reads a store with the numbers up to `next`, of which only `whole` are undamaged; one frame in `lost` is lost.
     fn read(whole: &[u32], oldest: u32, next: u32, lost: u32) -> StoreReader {
         let mut reader = StoreReader::new(StoreKind::Events, 3);
         let (mut tester, mut unit) = (Link::new(End::Bench), Link::new(End::Unit));
@@ -280,7 +280,7 @@ mod tests {
             }
             for message in answer {
                 frames += 1;
-                // Scattered: in step with the answers it would always be the same frame.
+                // Lost frames are scattered: in step with the answers it would always be the same entry.
                 let drawn = u32::wrapping_mul(frames, 2_654_435_761) >> 16;
                 if lost == 0 || drawn % lost != 0 {
                     reader.receive(now, &message);

@@ -1,4 +1,5 @@
-//! The tester's subscription to `TrainState`, and when the unit was as the latest one shows it.
+//! The tester's subscription to `TrainState`, and the time at which the unit was in the state that the latest one
+//! shows.
 //!
 //! A unit that does not know the request refuses it and goes on with `Status` alone: it is asked a few times and
 //! then no more, because it counts each refused frame.
@@ -55,7 +56,7 @@ impl Subscription {
         self.heard || self.refused()
     }
 
-    /// Another unit, or the same started again, may tell or not.
+    /// Starts over: another unit, or the same after a restart, may answer the subscription or not.
     pub fn restart(&mut self) {
         *self = Self::default();
     }
@@ -77,7 +78,7 @@ impl Subscription {
     pub fn on_state(&mut self, stamp_ms: u32, state: &TrainState, counters: &Counters) {
         let gaps = counters.gaps(Channel::Ptu);
         let before = self.times.map_or(stamp_ms, |times| times.stamp_ms);
-        // What was lost may have shown a change that is new here, too.
+        // A lost frame may have shown first what seems new here.
         let whole = self.heard && gaps == self.gaps && state.held == 0;
         self.gaps = gaps;
         self.heard = true;

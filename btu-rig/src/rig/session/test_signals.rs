@@ -107,7 +107,7 @@ pub fn release(session: u32) -> Request {
     )
 }
 
-/// Lets the unit test itself; asked again while it does, it goes on.
+/// Asks the unit to test itself; when asked again during the test, the unit goes on with it.
 pub fn self_test(session: u32) -> Request {
     repeatable("the request for a self-test", RunSelfTest { session })
 }

@@ -17,7 +17,7 @@ use super::request::Request;
 use super::test_signals;
 use super::unit_clock::UnitClock;
 
-/// Period of the keep-alive: the unit disarms after one second without.
+/// Period of the keep-alive: the unit disarms after one second without a keep-alive.
 const KEEP_ALIVE: Duration = Duration::from_ms(200);
 /// Period in which an unanswered question for the identity is repeated.
 const IDENTIFY_AGAIN: Duration = Duration::from_ms(300);
@@ -36,7 +36,7 @@ pub struct Tester {
     pub identity: Option<Identity>,
     /// Identity of the unit when it was first asked.
     first: Option<Identity>,
-    /// Differences of another unit that answered.
+    /// First difference between the unit that answered first and one that answered later.
     changed: Option<LinkTrouble>,
     /// Self-test items that failed, as the unit has said since it was started.
     pub self_test: SelfTest,
@@ -52,10 +52,10 @@ pub struct Tester {
     restarted_itself: bool,
     pub exchange: Exchange,
     pub log: LogReader,
-    /// The log is not read: what is stored is, instead.
+    /// The log is not read: the unit's store of events is read instead.
     pub holds_log: bool,
     pub clock: UnitClock,
-    /// The log was to be cleared: what is gone from it then is gone on purpose.
+    /// A request to clear the log was made: entries that are gone after it are not missed.
     clears_log: bool,
     /// Entries logged since contact that were gone before they could be read.
     missed: u64,
@@ -234,7 +234,7 @@ impl Tester {
         !self.silent && !self.exchange.armed() && self.exchange.idle()
     }
 
-    /// Since when it sends; `None` while it is silent.
+    /// Since when the tester sends; `None` while it is silent.
     pub fn speaks_since(&self) -> Option<Instant> {
         (!self.silent).then_some(self.speaks_since)
     }
@@ -244,7 +244,7 @@ impl Tester {
         self.exchange.ended.take().filter(|_| !self.silent)
     }
 
-    /// Whether it restarted by itself when it was started last, as its log says; `None` until that is read.
+    /// Whether the unit's last restart came from the unit itself, as its log says; `None` until the log is read.
     pub fn restarted_itself(&self, now: Instant) -> Option<bool> {
         let read = self.logged.is_some() && self.log.state(now) == LogState::Read;
         read.then_some(self.restarted_itself)

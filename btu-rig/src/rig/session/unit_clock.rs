@@ -6,7 +6,7 @@ use protocol::{Duration, Instant};
 
 /// Time in which the unit answers.
 const ANSWER_TIME: Duration = Duration::from_ms(1_000);
-/// Times it is sent without an answer: an older unit has none.
+/// Times that the time is sent without an answer: an older unit does not answer.
 const TRIES: usize = 2;
 
 /// A time of day at a time of the bench.
@@ -36,7 +36,7 @@ impl UnitClock {
         };
     }
 
-    /// Bench and unit both stood still for so long: the time of day went on, and is sent again.
+    /// Bench and unit both stood still for `pause`: the time of day went on, and is sent again.
     pub fn put_off(&mut self, pause: Duration) {
         if let Some(time) = self.time {
             self.tell(TimeOfDay {
@@ -46,7 +46,7 @@ impl UnitClock {
         }
     }
 
-    /// The unit was started again: its clock with it.
+    /// The unit was started again and has lost the time: it is sent again.
     pub fn restart(&mut self) {
         self.told.clear();
         self.settled = false;

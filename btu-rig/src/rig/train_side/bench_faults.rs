@@ -16,7 +16,7 @@ const DOOR_ENABLES: Outputs = Outputs::DOOR_ENABLE_LEFT.union(Outputs::DOOR_ENAB
 /// Faults of the bench that act.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchFaults {
-    /// Factor on the level of the code; 0 = none comes.
+    /// Factor on the level of the code; 0 = no code comes.
     level_factor: f64,
     carrier_offset_hz: f64,
     rate_offset_hz: f64,
@@ -25,11 +25,11 @@ pub struct BenchFaults {
     /// Nothing comes through the wire of speed sensor 1.
     speed_1_dead: bool,
     markers_dead: bool,
-    /// Nothing that the wayside sends comes out of the bench's loop.
+    /// No frame of the wayside leaves the bench's loop.
     pub twc_dead: bool,
     /// Lines of the unit without voltage.
     dead_lines: TrainLines,
-    /// Contacts that are read as closed, and those that are read as open.
+    /// Contacts that are read as closed; those of `read_open` are read as open.
     read_closed: Outputs,
     read_open: Outputs,
 }
@@ -80,7 +80,7 @@ impl BenchFaults {
         (outputs | self.read_closed) - self.read_open
     }
 
-    /// The second code as it leaves the bench.
+    /// The second code (of a neighbouring track circuit) as it leaves the bench.
     pub fn second(&self, second: Crosstalk) -> Crosstalk {
         Crosstalk {
             carrier_hz: self.carrier_hz(second.carrier_hz),
@@ -102,7 +102,7 @@ impl BenchFaults {
     }
 }
 
-/// A frequency that is there is moved; none stays none.
+/// `asked` Hz moved by `by` Hz; 0, which stands for no signal, stays 0.
 fn moved(asked: u16, by: f64) -> u16 {
     match asked {
         0 => 0,

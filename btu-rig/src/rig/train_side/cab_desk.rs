@@ -21,7 +21,7 @@ const ENTRY_FRAMES: u8 = 6;
 pub struct CabDesk {
     /// Doors on the left and on the right.
     pub doors: [DoorState; 2],
-    /// State that each door line shows the unit, whatever the doors do.
+    /// State that each door line shows the unit whatever the doors do; `None` = the state of the doors.
     pub line_said: [Option<bool>; DoorLine::ALL.len()],
     pub hcr: bool,
     pub maintenance_key: bool,
@@ -189,7 +189,7 @@ impl CabDesk {
         let faults = &self.faults;
         let of = |side: usize| {
             let closed = faults.side_doors[side].unwrap_or(self.doors[side] != DoorState::Open);
-            // The locks are proved through the contact.
+            // The line that proves the locks runs through the contact that proves the doors closed.
             let locked = closed && self.doors[side] == DoorState::Locked;
             faults.doors.map_or((closed, locked), |said| (said, said))
         };

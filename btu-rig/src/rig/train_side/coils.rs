@@ -40,12 +40,13 @@ pub struct Coils {
     sensors: [SensorWave; 2],
     counts: [u16; 2],
     channels: [Channel; Coil::ALL.len()],
-    /// Coils in which there are waveforms; the others have numbers.
+    /// Coils whose signals are waveforms; the signals of the others are numbers.
     made: Vec<Coil>,
 }
 
 impl Coils {
-    /// Silent coils for a unit of this configuration. Those of `made` have waveforms; the seed begins their disturbances.
+    /// Silent coils for a unit of this configuration. The coils `made` have waveforms; `random` starts their
+    /// disturbances.
     pub fn new(
         config: &UnitConfig,
         channel: &ChannelConfig,
@@ -76,7 +77,7 @@ impl Coils {
         self.made.contains(&coil)
     }
 
-    /// Sends the samples of the scan that ends now, and takes what they tell out of its input frame.
+    /// Sends the samples of the scan that ends now, and removes the values that they carry from its input frame.
     pub fn send(
         &mut self,
         now: Instant,

@@ -7,9 +7,9 @@ use protocol::message::Outputs;
 use crate::stimulus::DoorState;
 use crate::train::DoorData;
 
-/// Way at which an obstacle stops a door, share of the opening.
+/// Opening at which an obstacle stops a door, share of the full opening.
 const OBSTACLE: f64 = 0.2;
-/// Way within which a door is closed and its lock has still to fall, share of the opening.
+/// Opening within which a door counts as closed and is not yet locked, share of the full opening.
 const LOCKING: f64 = 0.05;
 /// Contacts that enable doors and order them to open, left and right.
 const SIDES: [Outputs; 2] = [
@@ -29,13 +29,13 @@ pub struct DoorGear {
 struct Drive {
     /// Share of the opening: 0 closed, 1 open.
     open: f64,
-    /// Closings that an obstacle stops.
+    /// Number of closings that an obstacle still stops.
     obstacles: u8,
     blocked: bool,
 }
 
 impl DoorGear {
-    /// Follows the unit from where the doors are, or leaves them to hands.
+    /// Lets the doors follow the unit from where they are, or leaves them to be set by hand.
     pub fn follow(&mut self, on: bool, doors: [DoorState; 2]) {
         self.follows = on;
         for (drive, state) in self.sides.iter_mut().zip(doors) {

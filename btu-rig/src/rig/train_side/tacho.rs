@@ -9,9 +9,9 @@ use crate::stimulus::TachoCondition;
 use super::motion::Motion;
 use crate::random::{normal, waiting_time_s};
 
-/// Where in its tooth space each channel starts, pulses: a quarter apart, and clear of an edge.
+/// Phase at which each channel starts, pulses: a quarter apart, and clear of an edge.
 const PHASES: [f64; 2] = [0.5, 0.75];
-/// Ages are sent in 16 bits.
+/// Greatest age of a pulse, µs: ages are sent in 16 bits.
 pub const MAX_AGE_US: f64 = u16::MAX as f64;
 /// Most spurious pulses in one scan; a counter input cannot count more.
 const MAX_NOISE_PER_SCAN: usize = 100;
@@ -29,7 +29,7 @@ pub struct Tacho {
     base_distance_m: f64,
     base_phase: f64,
     phase: f64,
-    /// Distance of each tooth of a turn from its place, pitches; none = all are in place.
+    /// Distance of each tooth of a turn from its place, pitches; empty = all teeth are in place.
     teeth: Vec<f64>,
     /// The last tooth that passed.
     passed: f64,

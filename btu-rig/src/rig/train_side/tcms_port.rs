@@ -6,13 +6,13 @@ use protocol::{CYCLE, Duration, Instant};
 use crate::stimulus::TcmsCondition;
 use crate::tcms::TcmsView;
 
-/// Age of the last moved alive counter at which TCMS does not count as sending.
+/// Time since the alive counter last moved after which TCMS counts as not sending.
 const SILENT: Duration = Duration::from_ms(500);
 
 /// State of the train that TCMS reads.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TrainSeen {
-    /// The service brake is applied.
+    /// The train brakes, by the service brake or any other.
     pub braking: bool,
     /// Doors are closed, by the contact of the door line.
     pub doors_closed: bool,

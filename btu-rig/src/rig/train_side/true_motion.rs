@@ -56,7 +56,7 @@ impl SpeedHistory {
         self.accel_before(0)
     }
 
-    /// Change of that mean in the last 200 ms, by time, m/s³.
+    /// Change of this mean acceleration over the last 200 ms, divided by that time, m/s³.
     pub fn jerk_mps3(&self) -> f64 {
         let scan_s = protocol::SCAN.as_secs();
         (self.accel_before(0) - self.accel_before(JERK_SCANS)) / (JERK_SCANS as f64 * scan_s)

@@ -216,7 +216,7 @@ impl Wheel {
         }
     }
 
-    /// The axle rolls as the train does; what it slid before stays between their distances.
+    /// The axle rolls as the train does; earlier slides stay as the difference of their distances.
     fn roll_axle_along(&mut self) {
         let slid_m = self.axle.distance_m - self.motion.distance_before_m;
         self.axle = self.motion.shifted(slid_m);
@@ -232,7 +232,7 @@ impl Wheel {
         self.speed_mps == 0.0 && self.settled()
     }
 
-    /// Size of its speed.
+    /// Speed at the rim, whatever the direction.
     pub fn speed(&self) -> Speed {
         Speed::from_mps(self.speed_mps)
     }

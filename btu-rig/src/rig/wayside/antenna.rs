@@ -36,7 +36,7 @@ pub struct Antenna {
 #[derive(Debug, Default)]
 struct Second {
     signal: CodeSignal,
-    /// The signal was sent, and its end was not.
+    /// The signal was sent to the unit, and its end was not.
     told: bool,
     due: Instant,
 }
@@ -55,7 +55,7 @@ impl Antenna {
         }
     }
 
-    /// Sets how what arrives differs from what is put in.
+    /// Sets how arriving signals differ from those that are put in.
     pub fn set_sensors(&mut self, sensors: Sensors) {
         self.sensors = sensors;
     }
@@ -71,7 +71,7 @@ impl Antenna {
         self.drift = (rate_hz_per_s, level_mv_per_s);
     }
 
-    /// Puts a second signal beside it; level 0 takes it away.
+    /// Puts a second signal beside the first; level 0 takes it away.
     pub fn set_second(&mut self, now: Instant, signal: CodeSignal) {
         self.second.signal = signal;
         self.second.due = now;
@@ -191,7 +191,7 @@ mod tests {
         assert_eq!(antenna.carrier_hz(), 0);
     }
 
-    /// Level and frequencies are off as the sensors say, noise has its spread, and nothing stays nothing.
+    /// Level and frequencies are off as the sensors say, noise has its spread, and no signal stays no signal.
     #[test]
     fn the_received_signal_is_off_its_nominal_value_and_noisy() {
         let mut antenna = Antenna::new(Random::new(3));

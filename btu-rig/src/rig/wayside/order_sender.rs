@@ -4,21 +4,21 @@ use protocol::message::{TrainOrder, TwcOrders};
 
 use crate::stimulus::OrderData;
 
-/// Orders in a row without a report after which the unit is taken for one that knows none: so few that refused frames are
-/// no event there.
+/// Orders in a row without a report after which the unit counts as one that knows no orders: so few that their refusal
+/// is no event in the unit.
 const GIVEN_UP_AFTER: u8 = 8;
 
-/// Orders in force at the wayside, and whether the unit reports to them.
+/// Orders in force at the wayside, and whether the unit answers orders with reports.
 #[derive(Debug, Default)]
 pub struct OrderSender {
     orders: Option<OrderData>,
     unanswered: u8,
-    /// Whether the unit reports to orders, once that is known.
+    /// Whether the unit answers orders with reports, once that is known.
     pub answered: Option<bool>,
 }
 
 impl OrderSender {
-    /// Sends these orders from now on, or none. A unit that reported to no order before is asked again.
+    /// Sends these orders from now on, or none. A unit that has answered no order is asked again.
     pub fn set(&mut self, orders: Option<OrderData>) {
         self.orders = orders;
         self.unanswered = 0;

@@ -9,8 +9,8 @@ pub struct StepProfile {
 }
 
 impl StepProfile {
-    /// A profile of values from positions on. Positions out of order are taken as they come: what
-    /// lies before the one before has no length.
+    /// A profile of values from positions on. A position before the one listed last is moved up to that one, whose
+    /// value then has no length.
     pub fn new(values: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut steps: Vec<(f64, f64, f64)> = Vec::new();
         for (at, value) in values {

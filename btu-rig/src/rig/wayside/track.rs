@@ -94,8 +94,7 @@ impl Track {
         neutral.any(|stretch| (stretch.from_m..stretch.to_m).contains(&at))
     }
 
-    /// Name of the speed code under a head at `position_m`; before the first code begins, the
-    /// first.
+    /// Name of the speed code under a head at `position_m`; the first code also counts before its own place.
     pub fn speed_code(&self, position_m: f64) -> Option<&str> {
         let at = self.in_section_m(position_m);
         let codes = &self.section.speed_codes;

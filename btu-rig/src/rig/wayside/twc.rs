@@ -13,7 +13,7 @@ use super::order_sender::OrderSender;
 pub const PERIOD: Duration = Duration::from_ms(250);
 /// Most bits flipped in a corrupt frame: so few that the check sequence finds each of them.
 const MAX_FLIPS: usize = 3;
-/// Fixed speed that stands for none.
+/// Value on the wire for no fixed speed.
 const NO_FIXED_SPEED: u8 = 255;
 
 /// The wayside equipment of one loop.
@@ -88,7 +88,7 @@ impl Wayside {
         }
     }
 
-    /// Takes one answer of the train; what it says is for the sample.
+    /// Counts one answer of the train; its content goes into the sample.
     pub fn on_answer(&mut self) {
         self.answers = self.answers.wrapping_add(1);
     }

@@ -16,13 +16,13 @@ use crate::tcms::holding_brake::HoldingInputs;
 use crate::tcms::mode::TcmsMode;
 
 impl Tcms {
-    /// The full-service-brake module. It hears of the controller at B7 one scan later.
+    /// The full-service-brake module. It learns one scan later that the controller is at B7.
     pub(super) fn full_service(
         &mut self,
         scan: &ScanContext<'_>,
         found: &EquipmentFailures,
     ) -> BrakeOutputs {
-        // The time begins with the mode: who takes the train over from ATO has to reach for it.
+        // The dead man's time begins with the mode: a driver who takes over from ATO has to reach for the handle.
         let released = !scan.mode.by_ato() && scan.cab.is_some_and(|cab| !cab.dead_man);
         let limit = Duration::from_secs(self.data.dead_man_s);
         self.dead_man_acts = self.dead_man.update(scan.now, released, limit);
@@ -71,7 +71,7 @@ impl Tcms {
         )
     }
 
-    /// Takes ATO's direction of travel while the train stands; whether it goes as ATO orders it.
+    /// Takes ATO's direction of travel while the train stands; returns whether direction and order agree.
     pub(super) fn turn(&mut self, scan: &ScanContext<'_>, speed_mps: f64) -> bool {
         let ordered = scan.mode.by_ato() && scan.order.backward;
         if speed_mps < STANDS_MPS {

@@ -32,7 +32,7 @@ pub struct CarsData {
     /// Doors of the train.
     #[serde(default)]
     pub doors: DoorData,
-    /// Times and thresholds of its TCMS.
+    /// Times and thresholds of the train's TCMS.
     pub tcms: TcmsData,
     /// The cars from the head.
     pub cars: Vec<CarData>,
@@ -44,16 +44,16 @@ pub struct CarsData {
 pub struct Traction {
     /// Force of the whole train at full power and full load, N [S3 eq. 1].
     pub full_load_n: f64,
-    /// Speed up to which it is there, km/h; constant power beyond (S3).
+    /// Speed up to which the full force is available, km/h; constant power beyond (S3).
     pub base_speed_kmh: f64,
-    /// Force at full load by speed, in order; in its place `base_speed_kmh` is not read. Constant power beyond the last.
+    /// Force at full load at rising speeds; then `base_speed_kmh` is not read. Constant power beyond the last speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub efforts: Option<Vec<EffortAt>>,
     /// Greatest change of powering and service braking effort, m/s³ (S1).
     pub jerk_mps3: f64,
-    /// Command to the inverters' first answer, s.
+    /// Time from a command to the inverters' first answer, s.
     pub dead_time_s: f64,
-    /// Time constant of their effort, s.
+    /// Time constant of the inverters' effort, s.
     pub lag_s: f64,
 }
 
@@ -68,7 +68,7 @@ pub struct EffortAt {
 }
 
 impl Traction {
-    /// Force there is at a speed, share of the greatest (S3: TE_v).
+    /// Force available at a speed, share of the greatest (S3: TE_v).
     pub fn share_at(&self, speed_mps: f64) -> f64 {
         let Some(efforts) = &self.efforts else {
             let base_mps = self.base_speed_kmh / 3.6;
@@ -92,13 +92,13 @@ impl Traction {
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ElectricBrake {
-    /// Greatest force of the brake over the car's weight [S3 eq. 6].
+    /// Greatest force of the brake divided by the car's weight [S3 eq. 6].
     pub adhesion_limit: f64,
-    /// Speed up to which it is there, km/h; constant power beyond.
+    /// Speed up to which the greatest force is available, km/h; constant power beyond.
     pub full_to_kmh: f64,
-    /// Speed below which it fades, km/h (S3).
+    /// Speed below which the brake fades, km/h (S3).
     pub fade_from_kmh: f64,
-    /// Speed at which nothing is left, km/h.
+    /// Speed at which no electric brake is left, km/h.
     pub fade_to_kmh: f64,
 }
 
@@ -110,7 +110,7 @@ pub struct AirBrake {
     pub kmh_per_s: f64,
     /// Holding brake, share of full service (S4).
     pub holding_share: f64,
-    /// Demand to the first force of air, s.
+    /// Time from a demand to the first force of air, s.
     pub dead_time_s: f64,
     /// Time constant while it builds up, s.
     pub build_up_s: f64,
@@ -128,7 +128,7 @@ pub struct AirBrake {
 pub struct EmergencyBrake {
     /// Deceleration, km/h/s.
     pub kmh_per_s: f64,
-    /// Opening of the loop to the first force, s.
+    /// Time from the opening of the brake loop to the first force, s.
     pub dead_time_s: f64,
     /// Time constant while it builds up, s.
     pub build_up_s: f64,
@@ -142,7 +142,7 @@ pub struct EmergencyBrake {
 pub struct Resistance {
     /// Resistance when starting from rest, kgf/t.
     pub starting_kgf_t: f64,
-    /// Speed up to which it counts, km/h.
+    /// Speed up to which the starting resistance counts, km/h.
     pub starting_kmh: f64,
     /// Rolling resistance, kgf/t.
     pub rolling_kgf_t: f64,
@@ -154,7 +154,7 @@ pub struct Resistance {
     pub tunnel_kgf_t: f64,
     /// Curve resistance times radius, kgf·m/t.
     pub curve_kgf_m_t: f64,
-    /// Davis formula in place of rolling and air resistance, which are 0 then.
+    /// Davis formula in place of rolling and air resistance, which are then 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub davis: Option<Davis>,
 }
@@ -175,13 +175,13 @@ pub struct Davis {
 #[derive(Clone, Debug, PartialEq, Deserialize, schemars::JsonSchema, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wheels {
-    /// Friction of a sliding wheel over adhesion.
+    /// Friction of a sliding wheel divided by the adhesion of a rolling one.
     pub sliding_share: f64,
     /// Difference to the train's speed at which effort is taken off, m/s.
     pub protection_mps: f64,
     /// Time in which all effort is taken off, s.
     pub release_s: f64,
-    /// Time in which all of it is given back, s.
+    /// Time in which all effort is given back, s.
     pub restore_s: f64,
 }
 
@@ -191,22 +191,22 @@ pub struct Wheels {
 pub struct CarData {
     /// Name, for instance `M1`.
     pub name: String,
-    /// Motored or not.
+    /// With motors or without.
     pub role: Role,
-    /// MT pair it belongs to, counted from 1. Cars of a pair share a demand: electric first, then air
+    /// MT pair of the car, counted from 1. Cars of a pair share a demand: electric first, then air
     /// on trailers, then on motor cars (S3).
     pub pair: usize,
     /// Length, m.
     pub length_m: f64,
     /// Empty mass, kg.
     pub empty_kg: f64,
-    /// Mass of the bogies within that, kg.
+    /// Mass of the bogies, which is part of the empty mass, kg.
     pub bogies_kg: f64,
-    /// Rotating parts as mass, kg.
+    /// Mass that stands for the inertia of rotating parts, kg.
     pub rotating_kg: f64,
     /// Greatest passenger load, kg.
     pub full_load_kg: f64,
-    /// Greatest force of its air brake in service, N.
+    /// Greatest force of the car's air brake in service, N.
     pub air_n: f64,
 }
 
@@ -216,7 +216,7 @@ impl CarData {
         self.empty_kg + share * self.full_load_kg
     }
 
-    /// Braking mass full, kg (S3).
+    /// Mass that is braked at full load, with rotating parts, kg (S3).
     pub fn full_inertia_kg(&self) -> f64 {
         self.empty_kg + self.rotating_kg + self.full_load_kg
     }
@@ -228,7 +228,7 @@ impl CarData {
 pub enum Role {
     /// With motors and electric brake.
     Motor,
-    /// Without.
+    /// Without motors.
     Trailer,
 }
 

@@ -46,18 +46,18 @@ pub struct IdealData {
     pub drag_per_s: f64,
     /// Acceleration at full power, km/h/s.
     pub power_kmh_per_s: f64,
-    /// Speed up to which it is there, km/h, constant power beyond; none = at all speeds.
+    /// Speed up to which full power is available, km/h, constant power beyond; none = at all speeds.
     #[serde(default)]
     pub base_speed_kmh: Option<f64>,
     /// Full service brake, km/h/s.
     pub service_kmh_per_s: f64,
     /// Emergency brake, km/h/s.
     pub emergency_kmh_per_s: f64,
-    /// Holding brake, share of full service (S4). The security brake is all of it.
+    /// Holding brake, share of full service (S4). The security brake is full service.
     pub holding_share: f64,
     /// Parking brake, share of full service.
     pub parking_share: f64,
-    /// Gradients act on it.
+    /// Gradients act on the train.
     pub gradients: bool,
     /// Doors of the train.
     #[serde(default)]
@@ -91,7 +91,7 @@ impl TrainData {
         }
     }
 
-    /// Passengers it can carry, kg.
+    /// Passengers that the train can carry, kg.
     pub fn full_load_kg(&self) -> f64 {
         match self {
             Self::Ideal(data) => data.full_load_kg,
@@ -163,8 +163,8 @@ mod tests {
 
     const LINE6: &str = include_str!("../../../../scripts/trains/line6.toml");
 
-    /// Against the sums S3 prints: empty, braking mass full, brake force at B7 full; it adds up
-    /// what it rounds afterwards.
+    /// Against the sums that S3 prints: empty mass, braking mass full, brake force at B7 full; S3 rounds after adding
+    /// up.
     #[test]
     fn line_6_adds_up_to_the_printed_sums() {
         let train = CarsData::line6();
@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn an_impossible_train_is_refused_and_the_key_is_named() {
         let cut = LINE6.find("[[cars]]").unwrap_or(LINE6.len());
-        // The train less the first car of a name.
+        // The train without the first car of this name.
         let without = |name: &str| {
             let named = format!("[[cars]]\nname = \"{name}\"");
             let from = LINE6.find(&named).unwrap_or(LINE6.len());

@@ -1,13 +1,15 @@
-//! A check that was made before in the same unit: what it shows again is no new evidence, and what it shows otherwise is.
+//! Likelihoods of a check that was made before in the same unit: a repeated outcome is no new evidence, a changed one
+//! is.
 
 use super::{Model, StepLikelihoods, mixed};
 use crate::cell::StepOutcome;
 use crate::observation::ObservedStep;
 
 impl Model<'_> {
-    /// Likelihoods of a check that was made before in the same unit. What lasts shows the same again for certain, and so
-    /// does a check that an effect does not act on: where it shows something else, it is nearly impossible under what lasts.
-    /// What comes and goes shows it again with the probability of the result. Values that were weighed before are no evidence.
+    /// Changes the likelihoods `ln` of a check that was made before in the same unit. A lasting fault repeats its
+    /// outcome for certain, and so does a check on which an effect does not act; another outcome is nearly impossible
+    /// there. An intermittent fault repeats it with the probability of the result. Values weighed before are no
+    /// evidence.
     pub fn given_before(
         &self,
         place: usize,

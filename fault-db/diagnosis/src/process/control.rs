@@ -10,17 +10,17 @@ const D2_OF_TWO: f64 = std::f64::consts::FRAC_2_SQRT_PI;
 /// Distance of the control limits from the mean, in standard deviations.
 pub(super) const CONTROL: f64 = 3.0;
 
-/// Consecutive values on one side of the mean that chance does not explain.
+/// Number of consecutive values on one side of the mean that chance does not explain.
 const ON_ONE_SIDE: usize = 9;
 
-/// Consecutive rising, or falling, values that chance does not explain.
+/// Number of consecutive rising, or falling, values that chance does not explain.
 const IN_A_ROW: usize = 6;
 
 /// A violation of a control rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Sign {
-    /// beyond_control (three standard deviations of a mean of as many values as it is of), nine_on_one_side
-    /// or six_in_a_row.
+    /// beyond_control (further from the mean than three standard deviations of an average of as many values),
+    /// nine_on_one_side or six_in_a_row.
     pub kind: &'static str,
     /// Number of violations.
     pub times: u32,

@@ -1,4 +1,4 @@
-//! The least-squares line through the samples, and the forecast of when it crosses a limit.
+//! The least-squares line through the samples, and the forecast of when the line crosses a limit.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use super::Sample;
 /// Microseconds of a day.
 const DAY_US: f64 = 86.4e9;
 
-/// Limit of a forecast, days.
+/// Longest forecast, days.
 const FORESEEN_DAYS: f64 = 3650.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -22,7 +22,7 @@ pub struct Line {
     middle: (f64, f64),
     #[serde(skip)]
     weight: f64,
-    /// 0.975 quantile of Student's t for its degrees of freedom.
+    /// 0.975 quantile of Student's t for the line's degrees of freedom.
     #[serde(skip)]
     likely: f64,
     #[serde(skip)]
@@ -33,11 +33,11 @@ pub struct Line {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Forecast {
     pub limit: f64,
-    /// When the line crosses it; before the last sample if it has done so already.
+    /// When the line crosses the limit, µs; before the last sample if it has crossed already.
     pub at_us: i64,
-    /// Start of the 95 % interval.
+    /// Start of the 95 % interval, µs.
     pub earliest_us: i64,
-    /// End of the 95 % interval; `None` if the crossing may never happen.
+    /// End of the 95 % interval, µs; `None` if the line may never cross the limit.
     pub latest_us: Option<i64>,
 }
 
@@ -76,7 +76,7 @@ impl Line {
         })
     }
 
-    /// Half the 95 % interval of the slope, in a day. The fewer samples, the more standard errors it has.
+    /// Half the 95 % interval of the slope, per day: the fewer samples, the more standard errors.
     pub fn slope_reach(&self) -> f64 {
         self.likely * self.slope_error
     }
@@ -96,7 +96,7 @@ impl Line {
         if days > FORESEEN_DAYS {
             return None;
         }
-        // (c - b u)² = k² (v + e² u²): where the band's edge is at the limit, u days from the middle.
+        // (c - b u)² = k² (v + e² u²): the edge of the band reaches the limit u days from the middle.
         let k2 = self.likely * self.likely;
         let square = b * b - k2 * self.slope_error.powi(2);
         let root = ((c * b).powi(2) - square * (c * c - k2 * self.weight))

@@ -13,12 +13,12 @@ pub use line::{Forecast, Line};
 /// One value, or the mean of several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// When, microseconds.
+    /// Time of the value, µs.
     pub at_us: i64,
     pub value: f64,
     /// Number of values.
     pub n: u32,
-    /// Sum of their squared distances from their mean; 0 for a single value.
+    /// Sum of the values' squared distances from their mean; 0 for a single value.
     pub scatter: f64,
 }
 
@@ -28,13 +28,13 @@ pub struct Process {
     /// Number of values.
     pub n: u32,
     pub mean: f64,
-    /// Short-term standard deviation: of single values from their moving range, of groups from their own
-    /// scatter. `None` for fewer than two.
+    /// Short-term standard deviation: of single values from their moving range, of groups from the scatter within each.
+    /// `None` for fewer than two values.
     pub sigma: Option<f64>,
     /// Standard deviation of all values about their mean, including drift.
     pub sigma_overall: Option<f64>,
-    /// Control limits. For means of groups of unequal size these are the limits for the average size; the
-    /// signs below use each group's own limits.
+    /// Control limits. For means of groups of unequal size these are the limits for the average size; `signs` uses each
+    /// group's own limits.
     pub control: Option<(f64, f64)>,
     /// Least-squares line through the values; `None` for fewer than three times.
     pub line: Option<Line>,
@@ -100,8 +100,8 @@ impl Process {
         Some(Capability { cp, cpk })
     }
 
-    /// When the limit that it drifts towards will be crossed; `None` if the drift is not significant, or not
-    /// towards a limit, or not within ten years.
+    /// When the values will cross the limit they drift towards; `None` if the drift is not significant, not towards a
+    /// limit, or crosses it later than in ten years.
     pub fn forecast(&self, low: Option<f64>, high: Option<f64>) -> Option<Forecast> {
         let line = self.line.as_ref()?;
         let limit = if line.slope_per_day > 0.0 { high } else { low }?;

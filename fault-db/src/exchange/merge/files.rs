@@ -1,4 +1,4 @@
-//! Import from a file, export to one, and what goes before a merge: the comparison of the chains of seals.
+//! Imports from a file and exports to one; before a merge, compares the chains of seals.
 
 use std::path::Path;
 
@@ -16,14 +16,14 @@ use crate::store::file::CACHE_KIB;
 use crate::store::open_options::OpenOptions;
 
 impl Store {
-    /// Adds all rows that the other file has and this one has not, in one transaction. Runs finished here
-    /// stay as they are, because they are sealed; those that differ in the other file are listed.
+    /// Adds all rows of the other file that this file lacks, in one transaction. Runs finished here are sealed and stay
+    /// as they are; those that differ in the other file are listed.
     pub fn import(&self, from: &Path) -> Result<MergeCounts, StoreError> {
         let same = |path: &Path| std::fs::canonicalize(path).ok();
         if same(from).is_some() && same(from) == same(self.path()) {
             return Err(StoreError::SameFile(from.to_path_buf()));
         }
-        // Opening checks that the schema version is ours, and restricts the file's own SQL.
+        // Opening checks the schema version, and restricts the SQL stored in the file.
         let other = Store::open_read_only(from)?;
         match other.foreign_objects()?.into_iter().next() {
             Some(what) => Err(StoreError::Altered {
@@ -47,7 +47,7 @@ impl Store {
         Ok(counts)
     }
 
-    /// Adds all rows that the other store has and this one has not, in one transaction.
+    /// Adds all rows of the other store that this store lacks, in one transaction.
     pub fn merge_from(&self, other: &Store) -> Result<MergeCounts, StoreError> {
         const DOING: &str = "merging";
         let theirs = other.file()?;
@@ -70,7 +70,7 @@ impl Store {
             })
         });
         let _ = theirs.execute_batch("COMMIT");
-        // The cache is reduced again; it would last as long as this store is open.
+        // Reduced again, as the setting lasts as long as this store is open.
         let _ = set_cache(-(CACHE_KIB as i32));
         merged
     }
@@ -78,14 +78,14 @@ impl Store {
     /// Compares the other file's chains of seals with the ones known here.
     ///
     /// # Errors
-    /// A chain was rewritten, or is not what was seen of it.
+    /// A chain was rewritten, or no longer has the entry that was known of it.
     fn copy_of(&self, other: &Store) -> Result<Option<CopyOf>, StoreError> {
         const DOING: &str = "comparing seals";
         let own = other.ask(DOING, own_file_id)?;
         let chains = other.ask(DOING, |theirs| compare_all_chains(theirs, &self.backend))?;
         let ours = self.ask(DOING, own_file_id)?;
         let known = self.ask(DOING, known_heads::seen_by)?;
-        // An older copy of this file may come back; that of another file was put back.
+        // An older copy of this file may be imported; of another file it shows that the file was replaced by a copy.
         let whole = own.filter(|own| Some(*own) != ours);
         let broken = other.ask(DOING, |theirs| known_heads::broken(theirs, &known, whole))?;
         if let Some((_, what)) = broken.into_iter().next() {
@@ -123,7 +123,7 @@ impl Store {
             return self.failed(DOING, error);
         };
         match error.sqlite_error_code() {
-            // A row of theirs without its parent.
+            // A row of the other file without its parent.
             Some(ErrorCode::ConstraintViolation) => StoreError::Corrupt {
                 path: other.path().to_path_buf(),
                 detail: error.to_string(),

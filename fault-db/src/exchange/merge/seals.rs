@@ -1,5 +1,5 @@
-//! Merges the chains of seals unchanged; whether a seal fits its row and its predecessor is checked by
-//! [`Store::check`](crate::Store::check).
+//! Merges the chains of seals unchanged; [`Store::check`](crate::Store::check) checks whether a seal matches its row
+//! and the seal before it.
 
 use rusqlite::params_from_iter;
 
@@ -12,18 +12,18 @@ use crate::id::Id;
 use crate::seal::chained;
 use crate::seal::covered::Covered;
 
-/// The last entry read of the other file's chains.
+/// The last entry that was read of a chain of the other file.
 struct Last {
     origin: Id,
     hash: Vec<u8>,
-    /// Whether its chain is left out from there on.
+    /// Whether the rest of the chain is left out.
     parted: bool,
 }
 
 impl Merge<'_> {
-    /// Adds the entries of the other file's chains. Where a copy of the file forked, the entries here stay
-    /// and those of the other file are left out from there on, because they would not fit. The same holds
-    /// from an entry on whose row was refused, or whose content differs from what is stored here.
+    /// Adds the entries of the other file's chains. If a copy of the file forked, the entries here stay, and the other
+    /// file's entries after the fork are left out, because they would not fit. So are all entries from one on whose row
+    /// was refused, or whose content differs from the row here.
     pub(super) fn seals(&mut self) -> SqlResult<()> {
         let mut insert = self
             .conn
@@ -82,7 +82,7 @@ impl Merge<'_> {
         })
     }
 
-    /// Whether an entry covers something else than what was stored here before the merge.
+    /// Whether an entry has another digest than the row that was stored here before the merge.
     fn is_different(&self, what: &str, id: Id, payload: &str, digest: &[u8]) -> SqlResult<bool> {
         let LastEntries { event, note } = self.applier.before;
         let (kind, last) = match Covered::of(what) {

@@ -1,5 +1,5 @@
-//! Acceptance of runs from a file to be merged: a run must match its seals, refer to existing rows, and equal the
-//! run here.
+//! Decides which runs of a file are merged: a run must match its seals, refer to existing rows, and equal the run of
+//! this id here.
 
 use std::collections::BTreeSet;
 
@@ -11,14 +11,14 @@ use crate::seal::covered::Covered;
 use crate::seal::run::{self, RunPayload};
 use crate::seal::{hex, trace};
 
-/// A run, event, note or trace of theirs, and the row number of its unit, fault or run.
+/// A run, event, note or trace of the other file, and the row number there of its unit, fault or run.
 pub(super) struct Entry {
     pub seq: i64,
     pub parent: i64,
     pub id: Vec<u8>,
 }
 
-/// Refuses rows of a file whose parent does not exist; the runs that such rows are part of, by their row numbers.
+/// Refuses rows of the other file whose parent does not exist; returns the row numbers of the runs with such rows.
 pub(super) fn runs_of_nothing(
     theirs: &Backend,
     refused: &mut Refusals,
@@ -52,14 +52,14 @@ pub(super) fn runs_of_nothing(
     Ok(runs.into_iter().collect())
 }
 
-/// Whether a run is only the remainder that a busy file could not take: ended without a seal, and not passed.
-/// Such a run is sealed as found in the file where it began.
+/// Whether a run is only the rest that a busy file could not take: ended without a seal, and not passed. The file where
+/// such a run began seals it as found.
 pub(super) fn is_unwritten_remainder(theirs: &Backend, run: &Entry) -> SqlResult<bool> {
     let rest = "SELECT 1 FROM run WHERE seq = ?1 AND verdict IN ('error', 'failed', 'aborted')";
     Ok(theirs.has(rest, &values![run.seq])? && seals(theirs, "run", &run.id)?.is_empty())
 }
 
-/// Difference between a run and its seals, if there is one.
+/// The difference between a run and its seals; `None` if it matches them.
 pub(super) fn seal_mismatch(theirs: &Backend, run: &Entry) -> SqlResult<Option<String>> {
     let sealed = seals(theirs, "run", &run.id)?;
     let reason = match (theirs.has(IS_OVER, &values![run.seq])?, sealed.is_empty()) {
@@ -80,8 +80,8 @@ fn changed(fits: bool) -> Option<String> {
     (!fits).then(|| CHANGED.to_owned())
 }
 
-/// Why an event, note or trace of theirs, or the recordings of a run, which come together, are not taken, if
-/// they do not fit a seal there.
+/// Why an event, note or trace of the other file, or the recordings of a run, which come together, are refused: they do
+/// not match a seal there. `None` if they match.
 pub(super) fn mismatch(theirs: &Backend, of: TableId, entry: &Entry) -> SqlResult<Option<String>> {
     let kind = match of {
         TableId::Event => Covered::Event,
@@ -133,7 +133,7 @@ fn recordings_mismatch(theirs: &Backend, run: &Entry) -> SqlResult<Option<String
     Ok(None)
 }
 
-/// Traces and recordings that the seals of a run list.
+/// The payloads of the seals of a run, which list its traces and recordings.
 fn payloads(theirs: &Backend, run: &[u8]) -> SqlResult<Vec<RunPayload>> {
     let sealed = seals(theirs, "run", run)?;
     let payloads = sealed
@@ -142,7 +142,7 @@ fn payloads(theirs: &Backend, run: &[u8]) -> SqlResult<Vec<RunPayload>> {
     Ok(payloads.collect())
 }
 
-/// A seal of a row. A run that came without one has one of each file that sealed it as found.
+/// A seal of a row. A run that came unsealed has one seal of each file that sealed it as found.
 #[derive(PartialEq, Eq)]
 struct Seal {
     payload: String,
@@ -166,14 +166,15 @@ fn fits_all(backend: &Backend, kind: Covered, row: i64, seals: &[Seal]) -> SqlRe
     Ok(true)
 }
 
-/// Whether a run that is finished here, under the number `here`, is the same in the other file. One copied
-/// while it was running may well hold less.
+/// Whether a run that is finished here (row `here`) is the same in the other file. A copy made while the run was under
+/// way may hold less.
 pub(super) fn is_same(ours: &Backend, here: i64, theirs: &Backend, run: &Entry) -> SqlResult<bool> {
     let mut sealed = seals(theirs, "run", &run.id)?;
     if sealed.is_empty() && !theirs.has(IS_OVER, &values![run.seq])? {
         return Ok(true);
     }
-    // Entries of an imported log may stand under different runs here and there; each side is held to its seal.
+    // An entry of an imported log may be stored with different runs here and there; each side is compared with its
+    // seal.
     let of_log = |seal: &Seal| seal.payload.contains("\"entries\"");
     if sealed.iter().any(of_log) {
         if !fits_all(theirs, Covered::Run, run.seq, &sealed)? {
@@ -182,7 +183,7 @@ pub(super) fn is_same(ours: &Backend, here: i64, theirs: &Backend, run: &Entry) 
     } else {
         match run::digest(theirs, run.seq, "") {
             Ok(theirs) if theirs == run::digest(ours, here, "")? => {}
-            // No text, or of another type.
+            // The value is no text, or of another type.
             Ok(_) | Err(SqlError::Value { .. }) => return Ok(false),
             Err(error) => return Err(error),
         }

@@ -16,13 +16,13 @@ pub(super) struct Entry {
     pub seq: i64,
     of: TableId,
     row: i64,
-    /// `None` if it was pruned since.
+    /// Id of the row; `None` if the row was pruned since.
     id: Option<Vec<u8>>,
     /// Digests of the seals of a run; checksum of a trace.
     digests: BTreeSet<Vec<u8>>,
 }
 
-/// The next outbox entries up to this one: traces, or all others.
+/// The next outbox entries after `after` and up to `until`: traces, or all others.
 pub(super) fn entries(
     file: &Backend,
     traces: bool,
@@ -64,14 +64,14 @@ pub(super) fn last(file: &Backend) -> SqlResult<i64> {
     Ok(file.first(last, &[], |row| row.get(0))?.unwrap_or_default())
 }
 
-/// Copy of a run or trace on the server.
+/// How a run or trace on the server compares with the file's.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ServerCopy {
     /// The server has the whole of it.
     Whole,
-    /// Part of it, or unknown.
+    /// The server may have a part of it.
     Perhaps,
-    /// A different one with the same id.
+    /// The server has another one with the same id.
     Difference,
 }
 
@@ -168,7 +168,7 @@ impl Batch {
         self.outcome.refused.add(what, reason);
     }
 
-    /// The outcome, when the server had this many new rows.
+    /// The outcome of the batch; `new` has the numbers of rows that were new to the server.
     pub fn outcome(mut self, new: &Counts) -> SyncOutcome {
         let new = |of: TableId| new[of as usize];
         for of in [TableId::Run, TableId::Event] {
@@ -187,7 +187,7 @@ impl Batch {
     }
 }
 
-/// Copies on the server of the entries' runs and traces. A sealed run was sent complete.
+/// How the server has the runs and traces of these entries. A sealed run was sent complete.
 fn known(server: &Server, entries: &[Entry]) -> SqlResult<BTreeMap<Vec<u8>, ServerCopy>> {
     let ours: BTreeMap<&[u8], &BTreeSet<Vec<u8>>> = (entries.iter())
         .filter(|entry| matches!(entry.of, TableId::Run | TableId::Trace))

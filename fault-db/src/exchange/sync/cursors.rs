@@ -1,7 +1,6 @@
-//! Replication cursors: how far a file and a server have exchanged their entries. Both sides store them, the
-//! server in the transaction that inserts the rows, the file right after. The smaller of both values is
-//! used. So after a crash, or with a file or server restored from a backup, entries are sent again, which
-//! changes nothing where they are known.
+//! Replication cursors: how far a file and a server have exchanged their entries. Both sides store them, the server in
+//! the transaction that inserts the rows, the file right after. The smaller value of both counts: so after a crash, or
+//! with a file or server restored from a backup, entries are sent again, which changes nothing if they are known.
 
 use super::outcome::SyncOptions;
 use crate::backend::{Backend, SqlResult, from_row, values};
@@ -17,7 +16,7 @@ pub(super) struct Cursors {
 
 /// The server's record of a file.
 pub(super) struct FileRecord {
-    /// The server's row number of it.
+    /// The server's row number of the file.
     pub seq: i64,
     pub cursors: Cursors,
     pub clock_offset_us: i64,
@@ -51,7 +50,7 @@ pub(super) fn register_laptop(
     })
 }
 
-/// The file's cursors for this server; zero if they never met.
+/// The file's cursors for this server; zero if file and server never met.
 pub(super) fn load(file: &Backend, server_id: Id) -> SqlResult<Cursors> {
     let found = file.first(
         "SELECT sent, sent_traces, received FROM sync_server WHERE id = ?1",
@@ -92,8 +91,8 @@ pub(super) fn save(
     Ok(())
 }
 
-/// Stores on the server what was sent, in the transaction that inserts the rows. `received` is only stored
-/// when everything was received: an interrupted sync receives all of it again.
+/// Stores the cursors on the server, in the transaction that inserts the rows. `received` is stored only when
+/// everything was received: after an interrupted sync all of it is received again.
 pub(super) fn save_on_server(backend: &Backend, laptop: i64, cursors: Cursors) -> SqlResult<()> {
     backend.execute(
         "SELECT note_sent(?1, ?2, ?3)",
@@ -103,7 +102,7 @@ pub(super) fn save_on_server(backend: &Backend, laptop: i64, cursors: Cursors) -
 }
 
 impl Cursors {
-    /// The position of traces, or of all but traces.
+    /// The cursor of traces sent, or of all other entries sent.
     pub fn of(&mut self, traces: bool) -> &mut i64 {
         match traces {
             true => &mut self.sent_traces,
@@ -111,7 +110,7 @@ impl Cursors {
         }
     }
 
-    /// Cursors of what both sides have stored.
+    /// The smaller of both sides' cursors, each.
     pub fn minimum(self, other: Self) -> Self {
         Self {
             sent: self.sent.min(other.sent),

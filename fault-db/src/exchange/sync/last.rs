@@ -1,4 +1,4 @@
-//! When a file was synced last, and with which server.
+//! A file's last sync with each server.
 
 use serde::Serialize;
 
@@ -11,9 +11,9 @@ use crate::store::Store;
 pub struct LastSync {
     /// The server's address as it was reached, without a password.
     pub server: String,
-    /// When, µs since 1970.
+    /// Time of the sync, µs since 1970.
     pub at_us: i64,
-    /// Entries of the file that it does not have yet, traces among them.
+    /// Number of the file's entries that the server does not have yet, including traces.
     pub waiting: u64,
 }
 

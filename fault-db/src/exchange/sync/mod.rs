@@ -2,9 +2,8 @@
 //! other laptops and users added to its faults. The file is complete at all times and works without a
 //! server.
 //!
-//! Each entry of the file's outbox is sent once, in batches of one transaction each, and rows on the server
-//! are only inserted. So an interrupted sync is continued by the next one, and a sync without new entries
-//! changes nothing.
+//! Each entry of the file's outbox is sent once, in batches of one transaction each, and rows are only inserted on the
+//! server. So the next sync continues an interrupted one, and a sync without new entries changes nothing.
 
 mod batch;
 mod cursors;
@@ -114,7 +113,7 @@ impl Sync<'_> {
             self.send_seals()?;
         }
         if !self.outcome.stopped && options.traces {
-            // Up to where all runs were sent.
+            // Traces are sent only up to the entry up to which all runs were sent.
             self.send(SyncPhase::SendingTraces, Some(reach), options)?;
         }
         if !self.outcome.stopped {
@@ -126,7 +125,7 @@ impl Sync<'_> {
         Ok(())
     }
 
-    /// Sends traces, or all but traces, up to an outbox entry or to the end; the last entry that was covered.
+    /// Sends traces, or all but traces, up to the outbox entry `until` or to the end; returns the last entry covered.
     /// Each batch is read and sent in one transaction of the server, together with its cursor.
     fn send(
         &mut self,
@@ -138,7 +137,7 @@ impl Sync<'_> {
         let total = self.entries_waiting(traces)?;
         let mut done = 0;
         loop {
-            // Read first: an entry recorded from now on may be a trace whose run was not sent.
+            // Read before sending: an entry recorded from now on may be a trace whose run was not sent.
             let reach = match until {
                 Some(reach) => reach,
                 None => self.file.ask(SENDING, batch::last)?,
@@ -234,7 +233,8 @@ impl Sync<'_> {
         self.save(options)
     }
 
-    /// Receives where the chains of all laptops end. A chain there that is not what this file has seen of it is named.
+    /// Receives the ends of all laptops' chains. A chain on the server that lacks an entry which this file has seen is
+    /// listed in the outcome.
     fn receive_heads(&mut self, now_us: i64) -> Result<(), StoreError> {
         let known = self.file.ask(RECEIVING, known_heads::of_file)?;
         let broken = |server: &Backend| known_heads::broken(server, &known, None);
@@ -301,7 +301,7 @@ impl Sync<'_> {
         Ok(self.entries_waiting(false)? + self.entries_waiting(true)?)
     }
 
-    /// Traces, or all but traces, that are to be sent.
+    /// Number of entries still to be sent: traces, or all but traces.
     fn entries_waiting(&self, traces: bool) -> Result<u64, StoreError> {
         let sql = "SELECT count(*) FROM outbox WHERE seq > ?1 AND (what = 'trace') = ?2";
         let after = *{ self.cursors }.of(traces);

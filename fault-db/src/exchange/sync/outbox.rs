@@ -1,12 +1,12 @@
-//! Fills the outbox with what no trigger enters: runs that never finished, and rows recorded before the file
-//! had an outbox.
+//! Puts into the outbox what no trigger puts there: runs that never finished, and rows recorded before the file had an
+//! outbox.
 
 use super::cursors;
 use crate::backend::{Backend, SqlResult, values};
 use crate::id::Id;
 use crate::store::Store;
 
-/// Enters the runs of dead programs with their traces: they never finish by themselves.
+/// Puts the runs of dead programs, with their traces, into the outbox: such runs never finish.
 pub(super) fn enqueue_interrupted_runs(store: &Store) -> SqlResult<()> {
     let file = &store.backend;
     let unfinished = file.select(
@@ -30,7 +30,7 @@ pub(super) fn enqueue_interrupted_runs(store: &Store) -> SqlResult<()> {
     Ok(())
 }
 
-/// Before a file's first sync: enters what was recorded before the file had an outbox.
+/// Before a file's first sync, puts into the outbox what was recorded before the file had one.
 pub(super) fn enqueue_rows_before_outbox(file: &Backend) -> SqlResult<()> {
     if cursors::has_met_a_server(file)? {
         return Ok(());

@@ -12,8 +12,8 @@ pub struct SyncOptions<'a> {
     pub laptop: &'a str,
     /// Whether traces are sent, too; otherwise a later sync sends them.
     pub traces: bool,
-    /// The file is a copy, or was restored from a backup: it gets an id of its own if the server knows more
-    /// of its chain, or other entries.
+    /// The file is a copy, or was restored from a backup: it gets an id of its own if the server has more entries of
+    /// its chain, or other ones.
     pub as_copy: bool,
     /// The laptop's clock, µs since 1970, UTC.
     pub now_us: &'a dyn Fn() -> i64,
@@ -60,7 +60,7 @@ pub struct SyncOutcome {
     pub already_there: u64,
     /// Events received.
     pub events_received: u64,
-    /// Faults of the file that they changed.
+    /// Faults of the file that the received events changed.
     pub faults_changed: u64,
     /// Approximate bytes transferred, both ways.
     pub bytes: u64,
@@ -72,8 +72,7 @@ pub struct SyncOutcome {
     pub different: Vec<Difference>,
     /// Traces of the file that do not match their checksum; they were not sent.
     pub damaged_traces: Vec<Id>,
-    /// Rows on either side outside their columns' domain: they were left where they are, and all others were
-    /// processed.
+    /// Rows on either side outside their columns' domain: they stay where they are, and all other rows were processed.
     pub refused: Refusals,
     /// Faults of the file in conflict.
     pub conflicts: Vec<StateConflict>,
@@ -81,7 +80,7 @@ pub struct SyncOutcome {
     pub stopped: bool,
 }
 
-/// Something with different content on both sides.
+/// A run, trace or chain with different content on both sides.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Difference {
     /// run, trace or chain.
@@ -91,7 +90,7 @@ pub struct Difference {
 }
 
 impl SyncOutcome {
-    /// A larger difference is not explained by a slow network, µs.
+    /// Clock offset, µs, above which a slow network no longer explains it.
     pub const CLOCK_TOLERANCE_US: i64 = 3_000_000;
 
     /// Whether the clocks differ by more than the tolerance.

@@ -16,16 +16,16 @@ use crate::seal::BY_SYNC;
 pub(super) struct PullScope {
     /// The server's row number of the laptop.
     pub laptop: i64,
-    /// The last event when the pull began. Writers exclude each other, so no event appears later with a
-    /// smaller number.
+    /// Row number of the server's last event when receiving began. Writers exclude each other, so no event appears
+    /// later with a smaller number.
     pub until: i64,
-    /// Only of faults that are new to the laptop, however old the event.
+    /// Receive only events of faults that are new to the laptop, however old the events.
     pub fresh: bool,
-    /// Rows that the laptop sent itself are received, too: its file was restored from a backup.
+    /// Receive also events that the laptop sent itself: its file was restored from a backup.
     pub own_events: bool,
 }
 
-/// The last event on the server.
+/// Row number of the last event on the server.
 pub(super) fn last(backend: &Backend) -> SqlResult<i64> {
     let last = "SELECT coalesce(max(seq), 0) FROM fault_event";
     Ok(backend
@@ -37,11 +37,11 @@ pub(super) struct Events {
     pub set: ChangeSet,
     /// Events outside their columns' domain, accepted by an early version of the server.
     pub refused: Refusals,
-    /// Where the next batch begins; `None` after the last.
+    /// Row number of the event after which the next batch begins; `None` after the last batch.
     pub next: Option<i64>,
 }
 
-/// The next events after this one.
+/// The next batch of events after row `after`.
 pub(super) fn events(backend: &Backend, scope: PullScope, after: i64) -> SqlResult<Events> {
     let fresh = if scope.fresh { "AND k.fresh > 0" } else { "" };
     let own_events = if scope.own_events {
@@ -56,7 +56,7 @@ pub(super) fn events(backend: &Backend, scope: PullScope, after: i64) -> SqlResu
             _ => format!("e.{}", column.name),
         })
         .collect();
-    // Two faults of the file may have been merged on the server: the later one is returned.
+    // Two faults of the file may have been merged on the server: then the later one is returned.
     let sql = format!(
         "SELECT DISTINCT ON (e.seq) {}, e.seq
          FROM fault_event e JOIN laptop_fault k ON k.fault = e.fault AND k.laptop = ?1 {fresh}
@@ -93,9 +93,9 @@ pub(super) fn add(file: &Backend, conn: &Connection, set: &ChangeSet) -> SqlResu
     // The file may have been restored from a backup.
     applier.is_older = true;
     applier.apply(set)?;
-    // As they came: the server compares these seals with its own events.
+    // Sealed unchanged: the server compares these seals with its own events.
     applier.seal_the_rest(BY_SYNC)?;
-    // Occurrences on other laptops are not known in this file.
+    // An event cannot know more occurrences than this file has: those on other laptops are not in it.
     file.execute(
         "UPDATE fault_event SET seen = min(seen, (SELECT occurrences FROM fault f
             WHERE f.seq = fault_event.fault)) WHERE seq > ?1",
@@ -116,7 +116,7 @@ pub(super) fn add(file: &Backend, conn: &Connection, set: &ChangeSet) -> SqlResu
     Ok(outcome)
 }
 
-/// A fault that is new to a laptop, and how often it became so.
+/// A fault that is new to a laptop, with the number of times that it became new.
 pub(super) struct NewFault {
     fault: i64,
     times: i64,

@@ -13,15 +13,15 @@ use crate::id::Id;
 use crate::seal::divergence::{ChainComparison, compare_all_chains, compare_chains};
 use crate::seal::{CopiedPayload, copied_from, head_of, start_chain_of_copy};
 
-/// Most seals of a batch.
+/// Greatest number of seals in a batch.
 const MOST_SEALS: i64 = 2_000;
 
 /// A chain with entries to be sent.
 pub(super) struct Chain {
     origin: Id,
-    /// Entries on the server.
+    /// Number of entries on the server.
     sent: i64,
-    /// Entries in the file when the sync began: the rows they cover are sent before them.
+    /// Number of entries in the file when the sync began: the rows that they cover are sent before them.
     until: i64,
 }
 
@@ -31,7 +31,7 @@ pub(super) struct Chains {
     pub chains: Vec<Chain>,
     /// The file's own chain, if it does not continue the one on the server.
     pub refused: Option<ChainComparison>,
-    /// Chains of other files that have forked.
+    /// Chains of other files that have forked or were rewritten.
     pub different: Vec<Difference>,
 }
 
@@ -102,7 +102,7 @@ pub(super) fn rename_copy(
     Ok(Some(minted))
 }
 
-/// Sends the next seals of a chain in the caller's transaction; the number of bytes, or `None` at the end.
+/// Sends the next seals of a chain, in the caller's transaction; returns the number of bytes, or `None` at the end.
 pub(super) fn send(
     file: &Backend,
     server: &ServerApplier<'_>,

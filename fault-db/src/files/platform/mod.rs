@@ -1,5 +1,5 @@
-//! Functions that differ by operating system, under one name for all: rights and identity of a file, and the places
-//! of libpq's files.
+//! Functions that differ by operating system, under the same names for each: rights and identity of a file, and the
+//! places of libpq's files.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ pub(crate) use system::{
     special_kind,
 };
 
-/// Identity of a file, whatever its name.
+/// Identity of a file, independent of its names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Identity {
     device: u64,
@@ -27,8 +27,7 @@ pub(crate) struct Identity {
 }
 
 impl Identity {
-    /// Identity of the file that a name leads to; none if there is no such file, or the system does not
-    /// number files.
+    /// Identity of the file at a path; `None` if there is no such file, or if the system does not number files.
     pub(crate) fn at(path: &Path) -> Option<Self> {
         system::identity(&std::fs::metadata(path).ok()?)
     }

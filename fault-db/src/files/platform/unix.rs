@@ -1,4 +1,4 @@
-//! Linux, and macOS by reading only.
+//! Linux; the macOS part follows its documentation and was never tried.
 
 use std::ffi::OsString;
 use std::fs::{File, FileType, Metadata, OpenOptions};
@@ -11,13 +11,13 @@ use postgres::config::Host;
 
 use super::Identity;
 
-/// The variable with the name of who is logged in.
+/// Environment variable with the name of the user who is logged in.
 pub(crate) const LOGGED_IN: &str = "USER";
 
-/// Whether a lock keeps those from a file who do not ask for it.
+/// Whether a lock on a file also stops programs that do not ask for the lock.
 pub(crate) const LOCKS_BIND_ALL: bool = false;
 
-/// A file that is made is for its owner alone.
+/// Lets only its owner read and write a new file.
 pub(crate) fn for_owner(options: &mut OpenOptions) {
     options.mode(0o600);
 }
@@ -46,7 +46,7 @@ pub(crate) fn is_open_to_others(about: &Metadata) -> bool {
     about.permissions().mode() & 0o077 != 0
 }
 
-/// Kind of a file that is neither regular nor a folder.
+/// Kind of a file that is neither regular nor a folder; `None` for another kind.
 pub(crate) fn special_kind(kind: FileType) -> Option<&'static str> {
     let kinds = [
         (kind.is_fifo(), "a pipe"),

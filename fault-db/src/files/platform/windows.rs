@@ -1,4 +1,4 @@
-//! Windows. What is made in a user's folders is closed to other users by the rights of those folders.
+//! Windows. The rights of a user's folders keep other users from the files in them.
 
 use std::ffi::OsString;
 use std::fs::{File, FileType, Metadata, OpenOptions};
@@ -8,16 +8,16 @@ use postgres::config::Host;
 
 use super::Identity;
 
-/// The variable with the name of who is logged in.
+/// Environment variable with the name of the user who is logged in.
 pub(crate) const LOGGED_IN: &str = "USERNAME";
 
-/// Whether a lock keeps those from a file who do not ask for it.
+/// Whether a lock on a file also stops programs that do not ask for the lock.
 pub(crate) const LOCKS_BIND_ALL: bool = true;
 
-/// Leaves it to the folder who may read a file that is made.
+/// Does nothing: the folder's rights decide who may read a new file.
 pub(crate) fn for_owner(_: &mut OpenOptions) {}
 
-/// Leaves it to the folder who may read a file.
+/// Does nothing: the folder's rights decide who may read a file.
 ///
 /// # Errors
 /// Never.
@@ -26,17 +26,17 @@ pub(crate) fn for_all(_: &File) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Windows tells no identity here: an open file can be neither removed nor replaced.
+/// Always `None`; none is needed, as Windows does not let an open file be removed or replaced.
 pub(crate) fn identity(_: &Metadata) -> Option<Identity> {
     None
 }
 
-/// Rights are not looked at: they are lists on Windows. libpq does not look at them either.
+/// Always false: on Windows rights are lists, which are not read here. libpq does not read them either.
 pub(crate) fn is_open_to_others(_: &Metadata) -> bool {
     false
 }
 
-/// Kind of a file that is neither regular nor a folder: Windows does not say.
+/// Kind of a file that is neither regular nor a folder; always `None`, as Windows does not say.
 pub(crate) fn special_kind(_: FileType) -> Option<&'static str> {
     None
 }
@@ -49,7 +49,7 @@ pub(crate) fn password_file(environment: &dyn Fn(&str) -> Option<OsString>) -> O
 /// The name of a host.
 ///
 /// # Errors
-/// A folder is named; it holds no socket here.
+/// The name is a folder, which holds no socket on Windows.
 pub(crate) fn host(Host::Tcp(name): &Host) -> Result<String, &'static str> {
     match name.starts_with('/') {
         true => Err("on Windows a server is reached by host name, not by a folder"),

@@ -19,13 +19,13 @@ use crate::signature::{SIGNATURE, read_signature};
 /// Data collected while the chains are read.
 #[derive(Default)]
 struct ChainSummary {
-    /// Seals of runs.
+    /// Number of seals of runs.
     runs: u32,
-    /// Runs, events and notes sealed as found, since they came without a seal.
+    /// Number of runs, events and notes that were sealed as found, because they came without a seal.
     found: u32,
-    /// Traces and recordings named in a run's seal that do not exist, and whether another file made the seal.
+    /// Missing traces and recordings that the seal of a run names, and whether another file made that seal.
     missing: BTreeMap<(Id, Option<i64>), bool>,
-    /// Traces and recordings deleted by a prune.
+    /// Traces and recordings that were pruned, as a seal says.
     pruned: BTreeSet<(Id, Option<i64>)>,
     /// Whether the file's own chain has its first entry.
     is_begun: bool,
@@ -33,7 +33,7 @@ struct ChainSummary {
     keys: KeyUses,
 }
 
-/// Checks all chains; the number of runs checked, and who signed.
+/// Checks all chains; returns the number of runs checked, and the keys that signed.
 pub(super) fn check(
     backend: &Backend,
     mut found: Findings<'_>,
@@ -157,7 +157,7 @@ fn check_statement(
         RECOUNTED => {
             if let Ok(payload) = serde_json::from_str::<RecountedPayload>(&seal.payload) {
                 let recounted = Damage::Recounted(payload.at_us, payload.differed);
-                // What another file has counted again is a finding there.
+                // A recount of another file is a finding when that file is checked.
                 match own == Some(seal.origin) {
                     true => found.add(recounted),
                     false => remarks.push(recounted.to_string()),

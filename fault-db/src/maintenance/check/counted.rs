@@ -14,7 +14,7 @@ use crate::schema::{DERIVED, WORDS};
 use crate::seal::{RECOUNTED, RecountedPayload, append_statement};
 use crate::store::Store;
 
-/// The derived tables, and the columns to index for a join with itself.
+/// The derived tables, each with the columns to index for a join with its copy.
 const TABLES: [(&str, Option<&str>); 4] = [
     ("repair", None),
     ("measured_day", Some("name, day")),
@@ -68,7 +68,7 @@ const DIFFERENCES: [(Derived, &str); 6] = [
     ),
 ];
 
-/// Compares the tables with a recount.
+/// Compares the derived tables with a recount.
 pub(super) fn check(conn: &Connection, mut found: Findings<'_>) -> SqlResult<()> {
     in_snapshot(conn, || Ok(compare(conn, |detail| found.add(detail))?))
 }
@@ -82,7 +82,7 @@ pub(super) fn in_snapshot(
         conn.execute_batch("BEGIN")?;
         let done = work();
         let ended = conn.execute_batch("ROLLBACK");
-        // SQLite rolls back by itself where a statement is interrupted: the error of the work is the one to tell.
+        // If a statement is interrupted SQLite rolls back by itself: the error of the work is the one to return.
         done.and(ended.map_err(SqlError::from))
     })
 }
@@ -108,7 +108,7 @@ fn compare(conn: &Connection, mut found: impl FnMut(Damage)) -> rusqlite::Result
     Ok(())
 }
 
-/// Recounts everything; what differed.
+/// Recomputes all derived rows; returns what differed.
 pub(super) fn rebuild(store: &Store, at_us: i64) -> Result<Vec<String>, StoreError> {
     const DOING: &str = "filling the derived tables again";
     let conn = store.file()?;

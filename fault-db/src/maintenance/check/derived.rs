@@ -1,13 +1,13 @@
-//! Checks the rows of faults and units against the occurrences, events and runs they are derived from.
+//! Checks the rows of faults and units against the occurrences, events and runs from which they are derived.
 
 use super::{Advice, Damage, Findings, Problem, ProblemKind};
 use crate::backend::{Backend, SqlResult};
 use crate::history::graph_sql::RECOMPUTE_FAULT;
 
-/// Damage of the row with an id.
+/// Makes the damage for a row, given the row's id or name.
 type Contradiction = fn(String) -> Damage;
 
-/// Queries for contradictions that no sequence of operations explains.
+/// SQL that finds contradictions which no sequence of operations can cause.
 const CONTRADICTS: [(Contradiction, &str); 4] = [
     (Damage::FaultNamed, "SELECT lower(hex(f.id)) FROM fault f WHERE EXISTS (SELECT 1 FROM fault_occurrence o WHERE o.fault = f.seq)
         AND NOT EXISTS (SELECT 1 FROM fault_occurrence o WHERE o.fault = f.seq
@@ -34,8 +34,8 @@ pub(super) fn check(file: &Backend, problems: &mut Vec<Problem>) -> SqlResult<()
     faults_that_differ(file, |_, id| found.add(Damage::FaultDerived(id)))
 }
 
-/// Passes the row number and id of each fault whose derived columns are wrong. An unqualified name means the temporary
-/// table: the file itself is only read.
+/// Calls `take` with the row number and id of each fault whose derived columns are wrong. The file itself is only read:
+/// an unqualified name means a temporary table.
 pub(super) fn faults_that_differ(
     file: &Backend,
     mut take: impl FnMut(i64, String),

@@ -31,13 +31,13 @@ pub struct CheckReport {
     pub traces: u32,
     /// Recordings that were decompressed and read.
     pub recordings: u32,
-    /// Problems found; empty is good.
+    /// Problems found; empty if the file or server is sound.
     pub problems: Vec<Problem>,
-    /// Remarks that are no problems: what was sealed as found, and what was recounted.
+    /// Remarks that are no problems: rows sealed as found, recounts of other files, clocks that went backward.
     pub remarks: Vec<String>,
     /// The last entry of the file's chain of seals, for comparison with values known elsewhere.
     pub head: Option<SealHead>,
-    /// Keys that signed what the file holds.
+    /// Keys that signed entries of the file.
     pub signed: Vec<KeyUse>,
 }
 
@@ -47,15 +47,15 @@ type Remarks = Vec<String>;
 /// One problem.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Problem {
-    /// The part of the history that has it.
+    /// The part of the history with the problem.
     pub kind: ProblemKind,
-    /// Where it is, and what is wrong.
+    /// What is wrong, and where.
     pub detail: Damage,
-    /// The next move.
+    /// What to do next.
     pub advice: Advice,
 }
 
-/// Problems listed of each kind; SQLite's own check stops there, too.
+/// Greatest number of problems listed of each kind; SQLite's own check stops there, too.
 const MAX_FINDINGS: u32 = 100;
 
 /// Collects problems of one kind, up to the limit.
@@ -129,7 +129,7 @@ impl Store {
         let is_damaged = !report.problems.is_empty();
         match self.check_rows(&mut report) {
             Err(StoreError::Stopped) => return Err(StoreError::Stopped),
-            // SQLite's findings are worth more than the place where reading failed.
+            // If the file is damaged, SQLite's findings say more than the place where reading failed.
             Err(error) if is_damaged => report.problems.push(Problem {
                 kind: ProblemKind::Integrity,
                 detail: Damage::Rest(Arc::new(error)),
@@ -191,9 +191,8 @@ impl Store {
     }
 
     /// Recomputes everything that follows from other rows: repairs, packed faults, sums of measured values, search
-    /// words of notes, and derived columns of faults. Runs, faults, events and traces stay as
-    /// they are, and so do their seals, even if wrong or missing. What differed is sealed with this time, and
-    /// returned.
+    /// words of notes, and derived columns of faults. Runs, faults, events, traces and their seals stay as they are,
+    /// even if wrong or missing. What differed is sealed with the time `at_us`, and returned.
     pub fn rebuild(&self, at_us: i64) -> Result<Vec<String>, StoreError> {
         counted::rebuild(self, at_us)
     }

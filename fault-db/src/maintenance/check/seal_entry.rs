@@ -20,7 +20,7 @@ pub(super) struct Seal {
     pub row: Option<i64>,
 }
 
-/// The error in a seal's position or hash, if any; `before` is the seal before it in the same chain.
+/// The error in a seal's number or hash, if any; `before` is the seal before it in the chain.
 pub(super) fn position_error(seal: &Seal, before: Option<&Seal>) -> Option<Damage> {
     let expected = before.map_or(1, |before| before.ordinal + 1);
     if seal.ordinal != expected {
@@ -36,11 +36,11 @@ pub(super) fn position_error(seal: &Seal, before: Option<&Seal>) -> Option<Damag
     (hash != seal.hash[..]).then(|| Damage::Unchained(seal.place(), seal.what.clone(), seal.id))
 }
 
-/// Tolerance between times of one clock and the order in which they are sealed, µs.
+/// Tolerance, µs, of times of one clock against the order of their seals.
 const IN_ORDER_US: i64 = 60_000_000;
 
-/// Error of a clock that went backward between a run or note and the one sealed before it in the same chain. Entries
-/// sealed as found, and entries of a unit's log, have times of another clock.
+/// The remark on a clock that went backward between a run or note and the one sealed before it in the chain. Entries
+/// sealed as found, and entries of a unit's log, have times of another clock and are left out.
 pub(super) fn clock_error(
     backend: &Backend,
     origin: Id,

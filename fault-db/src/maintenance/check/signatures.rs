@@ -1,4 +1,4 @@
-//! Counts what each key has signed.
+//! Counts the entries that each key has signed.
 
 use std::collections::BTreeMap;
 
@@ -11,21 +11,21 @@ use crate::signature::Statement;
 pub struct KeyUse {
     /// The public key.
     pub key: String,
-    /// Name that the key's signatures give.
+    /// Name of the owner, as the key's signatures give it.
     pub who: String,
     /// Kind of the key's owner: technician or bench.
     pub kind: String,
-    /// Runs that it signed.
+    /// Number of runs that the key signed.
     pub runs: u32,
-    /// Events of faults, notes and instruments that it signed.
+    /// Number of fault events, notes and instruments that the key signed.
     pub others: u32,
-    /// The first time, and the last.
+    /// Time of the first thing signed, µs since 1970.
     pub first_at_us: i64,
-    /// The last time.
+    /// Time of the last thing signed, µs since 1970.
     pub last_at_us: i64,
 }
 
-/// Uses by public key, name and kind: the same key under another name is another one.
+/// Uses by public key, name and kind: a key that signs under two names is listed twice.
 #[derive(Default)]
 pub(super) struct KeyUses(BTreeMap<[String; 3], KeyUse>);
 

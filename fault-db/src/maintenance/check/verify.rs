@@ -12,22 +12,22 @@ use crate::seal::{RunSealed, chained, hash_of, hex, run, samples, sealed_as, sta
 use crate::signature::{SIGNATURE, Statement, changed_places, read_signature, signatures_of};
 use crate::store::Store;
 
-/// Result of looking at a run's seals and signatures.
+/// Result of checking a run against its seals and signatures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verification {
     /// The run.
     pub run: Id,
     /// Seal of the run; `None` before its end.
     pub seal: Option<RunSealed>,
-    /// Signatures of the run, of notes on it and of events of its faults, each of which holds.
+    /// Valid signatures of the run, of its notes and of the events of its faults.
     pub signatures: Vec<Statement>,
-    /// Changes that were found, with their places.
+    /// Changes that were found, with their places, as sentences.
     pub changes: Vec<String>,
     /// Traces and recordings that were pruned.
     pub pruned: Vec<String>,
-    /// Notes on it that nobody has signed, and in whose name they are.
+    /// Notes on the run without a signature, each with the name of its author.
     pub unsigned_notes: Vec<(Id, String)>,
-    /// Remarks besides, such as a clock that went backward.
+    /// Remarks that are no changes, such as a clock that went backward.
     pub remarks: Vec<String>,
 }
 
@@ -38,15 +38,15 @@ impl Verification {
     }
 }
 
-/// Entries before a run's seal that are followed back to the first event that the run made.
+/// Greatest number of entries checked before a run's seal, back to the first event of its faults.
 const MOST_ENTRIES_BACK: i64 = 20_000;
 
 impl Store {
-    /// Holds a run with its steps, values, faults, traces, recordings and notes against its seal and its signatures, and
+    /// Compares a run, its steps, values, faults, traces, recordings and notes with its seal and its signatures, and
     /// names what was changed.
     ///
     /// # Errors
-    /// There is no such run, or it cannot be read.
+    /// There is no such run, or the database cannot be read.
     pub fn verify_run(&self, id: Id) -> Result<Verification, StoreError> {
         const DOING: &str = "verifying a run";
         let run = self.run_seq(DOING, id)?;
@@ -57,7 +57,7 @@ impl Store {
         })
     }
 
-    /// Signatures of a run and of the notes on it that hold, as they are stored: signed documents.
+    /// Valid signatures of a run and of its notes, as the signed documents that are stored.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -108,7 +108,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Reads the signatures of a group, and looks whether what they sign is there.
+    /// Reads the signatures stored with `group`, and checks that what they sign is there.
     fn signatures(&mut self, group: Id) -> SqlResult<()> {
         for seal in seals_of(self.backend, SIGNATURE, group)? {
             self.link(&seal)?;
@@ -132,7 +132,7 @@ impl<'a> Look<'a> {
         Ok(())
     }
 
-    /// The run's own row, steps, values and occurrences; its traces and recordings by their digests.
+    /// Checks the run's own row, steps, values and occurrences, and the digests of its traces and recordings.
     fn content(&mut self) -> SqlResult<()> {
         for seal in seals_of(self.backend, "run", self.id)? {
             self.link(&seal)?;
@@ -164,7 +164,7 @@ impl<'a> Look<'a> {
         Ok(())
     }
 
-    /// Where a run differs from what was signed.
+    /// Finds out where the run differs from what was signed.
     fn locate(&mut self, seal: &Seal) -> SqlResult<()> {
         let digest = hex(&seal.digest);
         let signed = self.found.of_run().find(|signed| signed.digest == digest);
@@ -197,7 +197,7 @@ impl<'a> Look<'a> {
         Ok(())
     }
 
-    /// Events of the faults that it saw: repairs, states, notes.
+    /// Checks the events of the faults that the run saw: repairs, states, notes.
     fn events(&mut self) -> SqlResult<()> {
         let groups = self.backend.select(
             "SELECT f.id FROM fault f WHERE f.seq IN (SELECT o.fault FROM fault_occurrence o WHERE o.run = ?1)
@@ -220,7 +220,7 @@ impl<'a> Look<'a> {
         Ok(())
     }
 
-    /// The chain from the first event that the run made to the seal of the run, which a signature covers.
+    /// Checks the chain from the first event of the run's faults to the seal of the run, which a signature covers.
     fn chain(&mut self) -> SqlResult<()> {
         let Some(seal) = self.found.seal.clone() else {
             return Ok(());
@@ -258,7 +258,7 @@ impl<'a> Look<'a> {
         Ok(())
     }
 
-    /// Holds a row against its seals, of which it has to have one.
+    /// Compares a row with its seals, of which a file must have at least one.
     fn hold(&mut self, kind: Covered, id: Id, row: i64) -> SqlResult<()> {
         let what = kind.word();
         let sealed = seals_of(self.backend, what, id)?;

@@ -1,4 +1,4 @@
-//! A query on a file, on a connection of its own that can only read.
+//! Queries on a file, on a separate connection that can only read.
 
 use rusqlite::fallible_iterator::FallibleIterator;
 use rusqlite::hooks::{AuthAction, AuthContext, Authorization};
@@ -9,14 +9,14 @@ use super::{QueryBounds, QueryResult, SqlValue, exceeds, refused};
 use crate::error::{MOST_RESULT_BYTES, QueryLimit, StoreError};
 use crate::store::Store;
 
-/// Runs one query; of a long result the first rows.
+/// Runs one query; of a long result only the first rows are returned.
 pub(super) fn answer(
     store: &Store,
     sql: &str,
     bounds: QueryBounds,
     mut goes_on: impl FnMut() -> bool + Send + 'static,
 ) -> Result<QueryResult, StoreError> {
-    // A connection of its own: the authorizer would bind this one's writer, too.
+    // A separate connection: the authorizer would restrict this store's writer, too.
     let reader = Store::open_read_only(store.path())?;
     let conn = reader.file()?;
     let most = match bounds.memory_bytes {
@@ -50,7 +50,7 @@ pub(super) fn answer(
     })
 }
 
-/// Errors of the file keep their kind; all others are attributed to the query.
+/// The error of a query: errors of the file keep their kind, all others are attributed to the query.
 fn failed_query(store: &Store, error: rusqlite::Error) -> StoreError {
     if let Some(limit) = limit_of(&error) {
         return exceeds(limit);
@@ -61,7 +61,7 @@ fn failed_query(store: &Store, error: rusqlite::Error) -> StoreError {
     }
 }
 
-/// Steps of SQLite between two looks at whether it may go on: well below a millisecond.
+/// Steps of SQLite's engine between two questions whether the query may go on: well below a millisecond.
 const STEPS_AT_ONCE: i32 = 5_000;
 
 fn limit_of(error: &rusqlite::Error) -> Option<QueryLimit> {
@@ -88,14 +88,14 @@ fn prepare_single<'a>(conn: &'a Connection, sql: &str) -> Result<Statement<'a>, 
     if !statement.readonly() {
         return Err(refused("it would do more than read"));
     }
-    // A second statement counts as one even when it makes no sense.
+    // Text after the first statement is refused even if it is no SQL.
     match batch.next() {
         Ok(None) => Ok(statement),
         _ => Err(refused("there is a second statement")),
     }
 }
 
-/// The rows, and whether there are more; nothing if already the first is too long.
+/// The rows, and whether there are more; `None` if already the first row is too long.
 fn read(
     statement: &mut Statement<'_>,
     max_rows: usize,
@@ -105,8 +105,7 @@ fn read(
     let mut bytes = 0;
     let mut rows = statement.query([])?;
     while let Some(row) = rows.next()? {
-        // The length is read before the value is copied: one value may be as long as memory is
-        // large.
+        // The length is read before the value is copied: a single value may fill the memory.
         let lengths = (0..width).map(|column| row.get_ref(column).map(length));
         bytes += lengths.sum::<rusqlite::Result<usize>>()?;
         if bytes > MOST_RESULT_BYTES && found.is_empty() {
@@ -121,7 +120,7 @@ fn read(
     Ok(Some((found, false)))
 }
 
-/// Bytes of a value as text.
+/// Length of a value's text, bytes; 0 for NULL and numbers.
 fn length(value: ValueRef<'_>) -> usize {
     match value {
         ValueRef::Null | ValueRef::Integer(_) | ValueRef::Real(_) => 0,

@@ -21,12 +21,12 @@ pub enum SqlValue {
     Integer(i64),
     /// A floating-point number.
     Real(f64),
-    /// Text; an id is its hyphenated form, other bytes are hex.
+    /// Text. Bytes are text, too: an id in its hyphenated form, any others in hex.
     Text(String),
 }
 
 impl SqlValue {
-    /// An id as it is printed, other bytes as hex.
+    /// The text for bytes: an id as it is printed, any others in hex.
     pub(crate) fn of_bytes(bytes: &[u8]) -> Self {
         Self::Text(match <[u8; 16]>::try_from(bytes) {
             Ok(id) => Id::from_bytes(id).to_string(),
@@ -34,7 +34,7 @@ impl SqlValue {
         })
     }
 
-    /// Bytes of its text.
+    /// Length of the value's text, bytes.
     pub(crate) fn bytes(&self) -> usize {
         match self {
             Self::Text(text) => text.len(),
@@ -50,14 +50,14 @@ pub struct QueryResult {
     pub columns: Vec<String>,
     /// The rows.
     pub rows: Vec<Vec<SqlValue>>,
-    /// There were more rows than asked for.
+    /// Whether there are more rows than were asked for.
     pub truncated: bool,
 }
 
 /// Limits of a query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct QueryBounds {
-    /// Rows that are read.
+    /// Greatest number of rows that are read.
     pub rows: usize,
     /// Memory of the database engine, bytes. The limit holds for the whole process from then on and cannot be
     /// raised again, which suits a program that asks once and ends. A server has a limit of its own.
@@ -81,7 +81,7 @@ impl Store {
     /// frequently, but not within one SQL function. Sorting and intermediate tables use the disk.
     ///
     /// # Errors
-    /// [`StoreError::QueryExceeds`] if a limit is exceeded; of the query, the file or the server.
+    /// [`StoreError::QueryExceeds`] if a limit is exceeded; or an error of the query, the file or the server.
     pub fn query_within(
         &self,
         sql: &str,
@@ -102,7 +102,7 @@ fn exceeds(limit: QueryLimit) -> StoreError {
     StoreError::QueryExceeds(limit)
 }
 
-/// The error for a statement that does more than read.
+/// The error for SQL that does more than read.
 fn refused(reason: &str) -> StoreError {
     StoreError::QueryRefused(reason.to_owned())
 }

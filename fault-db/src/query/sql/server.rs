@@ -10,11 +10,11 @@ use crate::error::{MOST_RESULT_BYTES, QueryLimit, StoreError};
 
 const DOING: &str = "answering a query";
 
-/// Most rows fetched at once: first one, then twice as many each time, because a fetch arrives whole however
-/// long its rows are.
+/// Greatest number of rows fetched at once. The first fetch gets one row, each later one twice as many as before,
+/// because a fetch arrives whole however long its rows are.
 const ROWS_AT_ONCE: i32 = 200;
 
-/// Runs one query; of a long result the first rows.
+/// Runs one query; of a long result only the first rows are returned.
 pub(super) fn answer(
     server: &Server,
     path: &Path,
@@ -98,7 +98,7 @@ fn values(
     (0..columns.len()).map(field).collect()
 }
 
-/// Errors of the server keep their kind; all others are attributed to the query.
+/// The error of a query: errors of the server keep their kind, all others are attributed to the query.
 fn classify(path: &Path, error: postgres::Error) -> StoreError {
     if error.code() == Some(&SqlState::READ_ONLY_SQL_TRANSACTION) {
         return refused("it would do more than read");

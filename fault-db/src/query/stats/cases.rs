@@ -1,24 +1,24 @@
-//! Cases as they are counted: a fault with its repairs, or several faults of a unit that one part explains.
+//! Cases in statistics: a fault with its repairs, or several faults of a unit that one part explains.
 
 use super::StatQuery;
 use super::counts::Counts;
 use crate::schema::sql_functions::DAY_US;
 
-/// A fault, or the faults of a unit that come from one part and were not closed at the same time.
+/// A fault, or faults of a unit that come from one part and whose times from first sight to closing overlap.
 #[derive(Clone, Debug)]
 pub(super) struct Case {
-    /// Where its key is counted.
+    /// Index of the counts of the case's key.
     pub place: usize,
     pub unit: i64,
     pub first_us: i64,
     pub last_us: i64,
-    /// `None` while a fault of it is not closed.
+    /// Time of closing, µs since 1970; `None` while a fault of the case is not closed.
     pub closed_us: Option<i64>,
     pub is_repaired: bool,
     pub repairs: Vec<CaseRepair>,
 }
 
-/// A repair of a case, once for all its faults.
+/// A repair of a case: one for all faults of the case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct CaseRepair {
     pub at_us: i64,
@@ -26,12 +26,12 @@ pub(super) struct CaseRepair {
     pub back_us: Option<i64>,
 }
 
-/// When a repair is judged.
+/// Times by which repairs are judged.
 #[derive(Clone, Copy)]
 pub(super) struct RepairTimes {
-    /// A fault seen again within this time is back.
+    /// A repair did not hold if the fault is seen again within this time, µs.
     pub within_us: i64,
-    /// From then on a repair is too recent.
+    /// A repair from this time on, µs since 1970, is too recent to be judged.
     pub young_us: i64,
 }
 
@@ -46,7 +46,7 @@ impl RepairTimes {
 }
 
 impl Case {
-    /// Counts its opening, its end and its repairs; `add` changes the counts at a time, if they are asked for.
+    /// Counts the opening, the end and the repairs of the case: calls `add` with the time and the change of the counts.
     pub fn count(&self, times: RepairTimes, mut add: impl FnMut(i64, &dyn Fn(&mut Counts))) {
         add(self.first_us, &|counts| counts.opened += 1);
         match self.closed_us {
@@ -69,7 +69,7 @@ impl Case {
         }
     }
 
-    /// Takes in another fault of the case. A repair made for several of its faults is one.
+    /// Adds another fault of the case. A repair made for several faults of the case counts once.
     fn take(&mut self, other: Self) {
         self.last_us = self.last_us.max(other.last_us);
         self.closed_us = self.closed_us.zip(other.closed_us).map(|(a, b)| a.max(b));
@@ -90,7 +90,7 @@ impl Case {
     }
 }
 
-/// Faults that are attributed to a part, as cases.
+/// Joins faults that are attributed to a part into cases.
 pub(super) fn cases_of(mut attributed: Vec<Case>) -> Vec<Case> {
     attributed.sort_by_key(|fault| (fault.place, fault.unit, fault.first_us));
     let mut cases: Vec<Case> = Vec::new();

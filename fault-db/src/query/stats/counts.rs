@@ -13,9 +13,9 @@ const HOUR_US: f64 = 3.6e9;
 pub enum StatKey {
     /// The fault's number.
     Code,
-    /// The part it points at.
+    /// The part that the fault points at.
     Lru,
-    /// The part it comes from; what one part explains is one case, and counted once.
+    /// The part that the fault comes from; the faults of a unit that one part explains are counted once, as a case.
     Cause,
     /// The unit that had it.
     Unit,
@@ -70,7 +70,7 @@ impl Counts {
         }
     }
 
-    /// Adds the counts of another key that has none of the same faults.
+    /// Adds the counts of another key; the two must share no fault.
     pub fn add_key(&mut self, other: &Self) {
         self.occurrences += other.occurrences;
         self.opened += other.opened;
@@ -90,7 +90,7 @@ impl Counts {
         self.repairs.us += other.repairs.us;
     }
 
-    /// Takes the numbers of cases from those of all causes; the rest stays.
+    /// Replaces the numbers of faults by the numbers of cases of all causes; the rest stays.
     pub fn take_cases(&mut self, by_cause: &CountsByKey) {
         let mut all = Self::default();
         by_cause.values().for_each(|of_cause| all.add_key(of_cause));
@@ -101,7 +101,7 @@ impl Counts {
         self.repairs = all.repairs;
     }
 
-    /// Records an occurrence at this time, for the latest one.
+    /// Keeps the time of the latest occurrence.
     pub fn seen_at(&mut self, at_us: i64) {
         self.last_at_us = self.last_at_us.max(Some(at_us));
     }
@@ -112,7 +112,7 @@ impl Counts {
 pub(crate) struct Repairs {
     pub all: u32,
     pub back: u32,
-    /// Have held so far, but are too recent to be judged.
+    /// Repairs that have held so far, but are too recent to be judged.
     pub young: u32,
     /// Sum of the times from a fault's opening to its repair, µs.
     pub us: i64,
@@ -125,7 +125,7 @@ impl Repairs {
     }
 }
 
-/// The units of a key: a bit for each row number, or, of a server, only how many they are.
+/// The units of a key: a bit for each row number, or, from a server, only how many there are.
 #[derive(Clone, Debug)]
 pub(crate) enum Units {
     Set(Vec<u64>),
@@ -170,7 +170,7 @@ impl Units {
     }
 }
 
-/// A span divided into days or months (UTC); days if there are few.
+/// A span divided into days, or into months if it is long (UTC).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Bins {
     pub by_day: bool,
@@ -178,10 +178,10 @@ pub(crate) struct Bins {
     last: i64,
 }
 
-/// Most days of a table of bins: a hundred years.
+/// Greatest number of days in the table of bins: a hundred years.
 const MOST_DAYS_OF_TABLE: i64 = 36_600;
 
-/// Longest span shown by day, days.
+/// Greatest span that is divided into days, days.
 const MOST_DAYS: i64 = 62;
 
 impl Bins {

@@ -1,4 +1,4 @@
-//! Observation time of units, from a unit's first run, within a span.
+//! Time for which units were observed, each from its first run on, within a span.
 
 use super::super::fault_filter::Resolved;
 use super::counts::{Bins, Key, StatKey};
@@ -7,7 +7,7 @@ use crate::error::StoreError;
 use crate::schema::sql_functions::DAY_US;
 use crate::store::Store;
 
-/// The units that match a filter, and when they were observed first.
+/// The units that match a filter, with the time of each unit's first run.
 pub(crate) struct Observed {
     units: Vec<ObservedUnit>,
     /// The first run of any unit; `None` without runs.
@@ -71,7 +71,7 @@ impl Observed {
         })
     }
 
-    /// The part of a span until now.
+    /// The observation within a span, up to now.
     pub fn within(&self, since_us: Option<i64>, until_us: Option<i64>) -> Exposure<'_> {
         Exposure {
             observed: self,
@@ -82,14 +82,14 @@ impl Observed {
 }
 
 impl Exposure<'_> {
-    /// The span divided into days or months; one without a start begins with the history.
+    /// The span divided into days or months; a span without a start begins with the first run of any unit.
     pub fn bins(&self) -> Bins {
         let first_us = self.observed.first_us.unwrap_or(self.until_us);
         let since_us = self.since_us.map_or(first_us, |since| since.max(first_us));
         Bins::of(since_us, self.until_us)
     }
 
-    /// Observed days of all units that belong to a key.
+    /// Observed days, added over all units of a key; over all units if the key is neither a unit nor a line.
     pub fn days(&self, by: StatKey, key: &Key) -> f64 {
         let is_meant = |observed: &&ObservedUnit| match (by, key) {
             (StatKey::Unit, Key::Number(unit)) => observed.unit == *unit,

@@ -1,4 +1,4 @@
-//! Counts in a file: all faults with their occurrences and repairs are gone through in the table `packed`.
+//! Counts in a file, by reading all packed faults with their occurrences and repairs (table `packed`).
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -47,16 +47,16 @@ struct Counting<'a> {
     unit: Option<i64>,
     codes: Option<&'a [i64]>,
     lrus: Option<&'a [String]>,
-    /// Faults with the words and the part's serial number asked for.
+    /// Faults with the words, or the part's serial number, that the filter has; `None` if it has neither.
     faults: Option<HashSet<i64>>,
-    /// Runs of the train asked for, or the one run.
+    /// Runs of the train, or the one run, that the filter has; `None` if it has neither.
     runs: Option<HashSet<i64>>,
     by: StatKey,
     times: RepairTimes,
     spans: Vec<Span>,
-    /// Where the counts of each key begin.
+    /// Index of each key's first entry in `counts`.
     places: HashMap<Key, usize>,
-    /// Counts of each key in each span.
+    /// Counts by key and span.
     counts: Vec<Counts>,
     /// Faults that are attributed to a part, if cases are counted.
     attributed: Vec<Case>,
@@ -89,11 +89,11 @@ impl Span {
     }
 }
 
-/// Texts of a block that are asked for, and the places where the keys among them are counted; by code in
-/// their column.
+/// Which texts of a block's columns the filter selects, and the indexes in `counts` for those that are keys; by the
+/// texts' codes.
 struct Texts {
     lru: Vec<bool>,
-    /// Texts of causes, placed as `cause_places` says.
+    /// Texts of causes, and of parts where no cause is known; as in `cause_places`.
     cause: [Vec<bool>; 2],
     severity: Vec<bool>,
     state: Vec<bool>,
@@ -101,7 +101,7 @@ struct Texts {
     line: Vec<bool>,
     procedure: Vec<bool>,
     lru_places: Vec<usize>,
-    /// Places by the code of the cause; by the code of the part where no cause is known.
+    /// Indexes by the code of the cause, and by the code of the part where no cause is known.
     cause_places: [Vec<usize>; 2],
     fault_line_places: Vec<usize>,
     line_places: Vec<usize>,
@@ -186,7 +186,7 @@ impl Counting<'_> {
         }
     }
 
-    /// Where the texts of a column are counted; empty if they are no keys.
+    /// Indexes in `counts` for the texts of a column; empty if these are not the keys.
     fn text_places(&mut self, by: StatKey, column: &Column<'_>) -> Vec<usize> {
         if self.by != by {
             return Vec::new();
@@ -230,14 +230,14 @@ impl Counting<'_> {
                 .is_none_or(|faults| faults.contains(&seq))
     }
 
-    /// Whether an occurrence is of the procedure and the runs asked for.
+    /// Whether an occurrence is of the procedure and the runs that the filter has.
     fn is_of_run(&self, occurrences: &Occurrences<'_>, row: usize, texts: &Texts) -> bool {
         let [.., procedure, run] = &occurrences.columns;
         let is_in = |runs: &HashSet<i64>| run.number(row).is_some_and(|run| runs.contains(&run));
         texts.procedure[procedure.code(row)] && self.runs.as_ref().is_none_or(is_in)
     }
 
-    /// Where the counts of a fault's key begin.
+    /// Index in `counts` of a fault's key.
     fn place(&mut self, faults: &Faults<'_>, fault: usize, texts: &Texts) -> usize {
         let [_, unit, code, lru, line, .., cause] = &faults.columns;
         let number = |column: &Column<'_>| Key::Number(column.number(fault).unwrap_or_default());
@@ -343,20 +343,20 @@ fn case(
     }
 }
 
-/// The span of a time.
+/// The span that a time lies in.
 fn span_of(spans: &[Span], at_us: i64) -> Option<usize> {
     let span = spans.partition_point(|span| span.last_us < at_us);
     let first_us = spans.get(span)?.first_us;
     (at_us >= first_us).then_some(span)
 }
 
-/// The rows of a fault in a column sorted by fault, from `from` on.
+/// The rows of a fault in a column sorted by fault; the search begins at row `from`.
 fn rows_of(fault: i64, column: &Column<'_>, rows: usize, from: usize) -> Range<usize> {
     let is_of = |row: &usize| column.number(*row) == Some(fault);
     from..from + (from..rows).take_while(is_of).count()
 }
 
-/// A property of each text of a column, by its code; `null` that of NULL.
+/// For each code of a column, whether its text has a property; `null` is the answer for NULL.
 fn of_texts(column: &Column<'_>, null: bool, of: impl Fn(&str) -> bool) -> Vec<bool> {
     let texts = column.texts.iter().map(|text| of(text));
     std::iter::once(null).chain(texts).collect()

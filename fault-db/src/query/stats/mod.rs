@@ -1,8 +1,8 @@
 //! Fault statistics: frequency, mean time between faults, mean time to repair, and repairs that held.
 //!
-//! A file counts its packed faults, for every filter and for several spans at once (`in_file`); a server is asked in SQL
-//! (`on_server`), because it groups its rows faster than it returns them. SQLite does not: it took 0.8 to 1.5 s to group
-//! 375 000 occurrences by key and month, where a million may take 0.3 s.
+//! In a file, packed faults are counted for every filter and for several spans at once (`in_file`); a server is asked
+//! in SQL (`on_server`), because it groups its rows faster than it returns them. SQLite does not: it took 0.8 to 1.5 s
+//! to group 375 000 occurrences by key and month, where a million may take 0.3 s.
 
 mod cases;
 mod counts;
@@ -25,7 +25,7 @@ use crate::store::Store;
 /// Selects the faults to count.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatQuery {
-    /// The key.
+    /// Key by which the faults are grouped.
     pub by: StatKey,
     /// Filter of the faults, and the span of time.
     pub filter: FaultFilter,
@@ -35,30 +35,30 @@ pub struct StatQuery {
     pub back_within_days: u32,
 }
 
-/// The faults of one code, part, unit or line in a span of time; of a cause its cases.
+/// Counts of the faults of one code, part, unit or line in a span of time; of a cause, of its cases.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FaultStat {
-    /// Depending on the key: the number as text, the part, the serial number, the line.
+    /// The code's number as text, the part, the unit's serial number or the line, depending on the key.
     pub key: String,
-    /// The fault's name; empty for all but a code.
+    /// The fault's name if the key is a code; else empty.
     pub name: String,
-    /// Faults, of a cause cases, first seen; closed ones too.
+    /// Faults (of a cause: cases) first seen in the span, including closed ones.
     pub faults: u32,
-    /// Faults last seen that are not closed now.
+    /// Faults last seen in the span that are not closed now.
     pub not_closed: u32,
     /// Number of occurrences.
     pub occurrences: u64,
     /// Number of units affected.
     pub units: u32,
-    /// Last occurrence; `None` without any.
+    /// Time of the last occurrence, µs since 1970; `None` without any.
     pub last_at_us: Option<i64>,
-    /// Faults closed.
+    /// Faults closed in the span.
     pub closed: u32,
     /// Faults closed without a repair (no fault found).
     pub no_fault_found: u32,
     /// Number of repairs.
     pub repairs: u32,
-    /// Repairs old enough to be judged, and younger ones that have failed already.
+    /// Repairs that are old enough to be judged, and younger ones that have already failed.
     pub repairs_judged: u32,
     /// Repairs that did not hold.
     pub repairs_back: u32,
@@ -141,7 +141,7 @@ impl Store {
         Ok(in_spans.collect())
     }
 
-    /// The counts of each key, and those of all together if they are wanted.
+    /// The counts of each key; with `with_total` also the counts of all keys together.
     fn count_and_total(
         &self,
         query: &StatQuery,

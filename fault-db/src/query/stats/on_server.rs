@@ -7,7 +7,7 @@ use super::counts::{Bins, Counts, CountsByKey, Key, Repairs, Units};
 use super::{StatKey, StatQuery};
 use crate::backend::{Backend, Row, SqlResult, from_row};
 
-/// Counts what the filter selects, in its span of time.
+/// Counts what the filter selects, in the filter's span of time.
 pub(super) fn count(
     backend: &Backend,
     resolved: &Resolved<'_>,
@@ -26,12 +26,12 @@ pub(super) fn count(
 }
 
 impl StatKey {
-    /// The key of faults, occurrences and repairs called `x`.
+    /// SQL: the key in rows `x` of faults, occurrences or repairs.
     fn column(self) -> &'static str {
         match self {
             Self::Code => "x.code",
             Self::Lru => "x.lru",
-            // Cause of an occurrence; a fault's own row is not asked by cause.
+            // The cause of an occurrence; faults themselves are never grouped by cause here.
             Self::Cause => "(SELECT coalesce(f.cause, f.lru) FROM fault f WHERE f.seq = x.fault)",
             Self::Unit => "x.unit",
             Self::Line => "x.line",
@@ -72,7 +72,7 @@ fn occurrences(
     Ok(counted)
 }
 
-/// Adds what `add` takes from the columns asked for of each key, from column 1 on.
+/// Reads one row for each key (column 0) and lets `add` count the other columns.
 fn by_key(
     backend: &Backend,
     by: StatKey,
@@ -89,7 +89,7 @@ fn by_key(
     })
 }
 
-/// Adds the faults first seen, those closed, and those last seen that are not closed.
+/// Counts the faults first seen, the closed ones, and those last seen that are not closed.
 fn add_faults(
     backend: &Backend,
     resolved: &Resolved<'_>,
@@ -126,7 +126,7 @@ fn add_faults(
     )
 }
 
-/// Adds the repairs, and how many of them are too recent to be judged.
+/// Counts the repairs, and those too recent to be judged.
 fn add_repairs(
     backend: &Backend,
     resolved: &Resolved<'_>,
@@ -152,7 +152,7 @@ fn add_repairs(
     })
 }
 
-/// Adds the cases of each cause.
+/// Counts the cases of each cause.
 fn add_cases(
     backend: &Backend,
     resolved: &Resolved<'_>,
@@ -188,8 +188,8 @@ fn add_cases(
     Ok(())
 }
 
-/// The faults that the filter selects, at any time, with their repairs: the part each counts for, and whether it is
-/// attributed to it.
+/// The faults that the filter selects, at any time, with their repairs: the part that each counts for, and whether the
+/// fault is attributed to that part.
 fn read(backend: &Backend, resolved: &Resolved<'_>) -> SqlResult<Vec<(Key, bool, Case)>> {
     let conditions = resolved.conditions_at_any_time(backend, FilteredTable::Faults);
     let sql = format!(

@@ -21,18 +21,18 @@ pub struct ServoConfig {
     pub psm4_mps: f64,
     /// Pull toward the profile's own position, 1/s.
     pub position_gain_per_s: f64,
-    /// Greatest pull: this share of the profile's speed …
+    /// Greatest pull toward the profile: this share of the profile's speed, plus `pull_mps`.
     pub pull_share: f64,
-    /// … and this much more, m/s.
+    /// Part of the greatest pull that does not depend on speed, m/s.
     pub pull_mps: f64,
-    /// Greatest difference of what is asked for from the profile's own acceleration, m/s².
+    /// Greatest difference between the acceleration asked for and the profile's own, m/s².
     pub correction_mps2: f64,
-    /// Share of the brake that is there which the run from PSM2 to PSM4 may ask for.
+    /// Share of the available brake that the run from PSM2 to PSM4 may ask for.
     pub brake_share: f64,
-    /// Speed by which a train that was braked too much may be below the profile before the profile
-    /// restarts from the train's speed, m/s.
+    /// A train that was braked too much may be slower than the profile by this, m/s; beyond that, the profile restarts
+    /// from the train's speed.
     pub left_behind_mps: f64,
-    /// Rate at which the last of the speed is taken away at least, m/s².
+    /// Least deceleration in the last 0.1 m before the stop point, m/s².
     pub rest_mps2: f64,
 }
 
@@ -42,15 +42,15 @@ pub struct ServoConfig {
 pub struct ObserverConfig {
     /// How fast an error of the model is taken away, 1/s.
     pub pole_per_s: f64,
-    /// Greatest error taken for one of the model when wheels turn faster than a braked train by it, or
-    /// slower than a powered one, m/s.
+    /// Greatest speed error put down to the model, m/s, when wheels turn faster than the model of a braked train, or
+    /// slower than the model of a powered one.
     pub against_mps: f64,
-    /// Greatest error taken for one of the model, m/s, when wheels turn slower than a braked train or
-    /// faster than a powered one: wheels that slide or slip.
+    /// Greatest speed error put down to the model, m/s, when wheels turn slower than the model of a braked train, or
+    /// faster than the model of a powered one: wheels that slide or slip.
     pub along_mps: f64,
     /// Greatest acceleration the model may lack, m/s².
     pub missing_mps2: f64,
-    /// Speed below the model's at which a braked wheel slides, m/s.
+    /// Speed by which a braked wheel is slower than the model when it slides, m/s.
     pub slide_mps: f64,
     /// Longest slide, s.
     pub slide_s: f64,
@@ -69,7 +69,7 @@ pub struct ProfileConfig {
     /// Speed by which the profile may run ahead of a train that cannot follow it, km/h.
     pub lead_kmh: f64,
     /// The profile's acceleration is asked for in every ramp, not only in the station stop. The
-    /// printed laws work on the speed error alone, and follow a ramp with a large one.
+    /// printed laws work on the speed error alone, and follow a ramp with a large error.
     pub feed_forward: bool,
 }
 
@@ -81,9 +81,9 @@ pub struct PiConfig {
     pub proportional_n: f64,
     /// Integral gain, N/s per unit of speed [S1: 2 000].
     pub integral_n_per_s: f64,
-    /// The unit of speed the gains are for, which S1 does not print: `mps` or `kmh`.
+    /// Unit of speed that the gains are for, which S1 does not print: `mps` or `kmh`.
     pub speed_unit: GainUnit,
-    /// Mass the gains are for, kg [S1: 432 000]; they scale with the load.
+    /// Mass that the gains are for, kg [S1: 432 000]; the gains scale with the load.
     pub mass_kg: f64,
 }
 
@@ -98,7 +98,7 @@ pub enum GainUnit {
 }
 
 /// Mamdani controller (S1). Places of the sets are not printed; isosceles triangles that overlap by
-/// half lie evenly, so the outermost peak fixes all of a variable.
+/// half lie evenly, so the outermost peak fixes all sets of a variable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FuzzyConfig {
@@ -108,7 +108,7 @@ pub struct FuzzyConfig {
     pub change_mps2: f64,
     /// Force at which `nvh`/`pvh` peak at `mass_kg`, N [S1: 400 kN]; `nh`/`ph` at half of it.
     pub force_n: f64,
-    /// Mass it is for, kg [S1: 432 000]; it scales with the load.
+    /// Mass that `force_n` is for, kg [S1: 432 000]; the force scales with the load.
     pub mass_kg: f64,
 }
 
@@ -130,7 +130,7 @@ pub struct PssConfig {
     pub full_effort_error_kmh: f64,
     /// Share of the error taken away per second by the integral part.
     pub integral_per_s: f64,
-    /// Speed below which it rests, km/h: too few tachometer pulses.
+    /// Speed below which the integral part rests, km/h: too few tachometer pulses.
     pub integral_above_kmh: f64,
 }
 

@@ -75,7 +75,7 @@ fn loaded(train: &str, mass_kg: f64, load_kg: f64) -> [Fact; 2] {
 
 type Of = fn(&Conditions) -> f64;
 
-/// Train and day of a run. What is nominal is not named but for train and load.
+/// Train and day of a run. Nominal conditions are left out; train and load are always named.
 pub fn conditions(case: &Case) -> Vec<Fact> {
     let plan = &case.plan;
     let nominal = Conditions::default();

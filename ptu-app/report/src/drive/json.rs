@@ -34,7 +34,7 @@ pub fn json(results: &Results) -> Value {
     }
 }
 
-/// The objects' keys in one, in order.
+/// One object with the keys of all objects in `parts`, in order.
 fn object(parts: impl IntoIterator<Item = Value>) -> Value {
     let maps = parts.into_iter().filter_map(|part| match part {
         Value::Object(map) => Some(map),

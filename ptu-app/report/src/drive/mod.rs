@@ -23,7 +23,7 @@ use ptu_runs::failure::{Asked, Failure};
 /// Drives, and their form in JSON.
 pub struct Results {
     pub outcomes: Outcomes,
-    /// Several were asked for, so that there is a list even of one.
+    /// Several runs were asked for: JSON has a list, even of one run.
     pub list: bool,
     /// Command that made the report, and time; the window says neither.
     pub made: Option<String>,

@@ -8,11 +8,11 @@ use crate::plot::{AxisMark, Plot, Series, Style};
 use ptu_runs::drive::Driven;
 use ptu_runs::drive::monte_carlo::MonteCarlo;
 
-/// Way before the stop point that is shown larger, m.
+/// Length of track before the stop point that is shown enlarged, m.
 const LAST_M: f64 = 12.0;
 /// Share of an axis shown beyond the end of the run, so that the stop can be seen.
 const BEYOND: f64 = 0.01;
-/// Way past the stop point, m.
+/// Least length of track past the stop point that is shown enlarged, m.
 const PAST_M: f64 = 1.0;
 /// Bars of the histogram.
 const BARS: usize = 60;
@@ -102,7 +102,7 @@ fn slides(rows: &[Row], x: Of) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// The unavoidable jerk of the standstill itself is left out, as in the figures.
+/// Jerk of the moving train: the unavoidable jerk of the standstill itself is left out, as in the figures.
 fn moving_jerk(row: &Row) -> f64 {
     if row.speed_kmh == 0.0 && row.t_s > 0.0 {
         f64::NAN
@@ -158,7 +158,7 @@ fn forces(run: &Driven) -> Plot {
     }
 }
 
-/// The last metres larger: speed by the way that is left, true and as the unit sees it.
+/// Plot of the last metres: true speed over the distance from the stop point, with PSM4 and the places of the stops.
 fn last_metres(runs: &[Driven]) -> Option<Plot> {
     let section = &runs.first()?.case.plan.section;
     let stop_m = section.stop_m;
@@ -190,7 +190,7 @@ fn last_metres(runs: &[Driven]) -> Option<Plot> {
     })
 }
 
-/// From the first row of any run to its last, and a little beyond.
+/// Range from the least value in the first rows of all runs to the greatest in their last rows, and a little beyond.
 fn range(runs: &[Driven], x: Of) -> (f64, f64) {
     let rows = |run: &Driven| Some((x(run.outcome.rows.first()?), x(run.outcome.rows.last()?)));
     let ends = runs.iter().filter_map(rows);
@@ -199,7 +199,7 @@ fn range(runs: &[Driven], x: Of) -> (f64, f64) {
     (low, high + (high - low) * BEYOND)
 }
 
-/// Markers and stop point: by place, or by the time of the only run.
+/// Markers and stop point: by place, or by time if there is one run alone.
 fn places(runs: &[Driven], by_time: bool) -> Vec<AxisMark> {
     let Some(run) = runs.first() else {
         return Vec::new();
@@ -226,7 +226,7 @@ fn places(runs: &[Driven], by_time: bool) -> Vec<AxisMark> {
 
 /// Plots of the stop errors, and of values that go with them.
 pub fn plots_of_many(many: &MonteCarlo) -> Vec<Plot> {
-    /// A number of what is drawn.
+    /// A number that is drawn for each run.
     type Drawn = fn(&ScatterDraw) -> f64;
     let drawn: [(&str, Drawn); 7] = [
         ("passengers, t", |d| d.load_kg / 1000.0),
@@ -243,7 +243,7 @@ pub fn plots_of_many(many: &MonteCarlo) -> Vec<Plot> {
             d.conditions.marker_offsets_m[3] * 100.0
         }),
     ];
-    // What is held fixed, or does not act on the train, was not drawn.
+    // A number that is the same in all runs was held fixed, or does not act on the train.
     let differs = |of: Drawn| {
         let mut pairs = many.trials.windows(2);
         pairs.any(|pair| of(&pair[0].drawn) != of(&pair[1].drawn))

@@ -11,13 +11,13 @@ use ptu_runs::table;
 
 /// Percentiles that are shown.
 const PERCENTILES: [f64; 5] = [0.1, 2.5, 50.0, 97.5, 99.9];
-/// Letters for which a printed column has room at least.
+/// Least width of a printed column, in letters.
 const SHORTEST: usize = 8;
 /// Sign in place of an unknown value.
 const UNKNOWN: &str = "–";
 
 pub struct Table {
-    /// Headings in text, and on a page; where all of a page are empty it has no line of headings.
+    /// Heading of each column, in text and on a page; a page on which all are empty has no line of headings.
     headings: Vec<(String, String)>,
     rows: Vec<Vec<String>>,
     /// Columns of words on a page; all others are numbers.

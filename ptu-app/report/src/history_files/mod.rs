@@ -30,24 +30,24 @@ const KNOWN: &str = "export.json";
 const PART: &str = "part.parquet";
 /// Folder of the partition of a month.
 const MONTH: &str = "month=";
-/// The month of a view without rows, whose file has its columns.
+/// Month of a view without rows: its file has the columns alone.
 const NO_MONTH: &str = "none";
 /// Rows asked for at once.
 const ROWS: usize = 50_000;
-/// Months are counted so far.
+/// Most months of a view that are read.
 const MOST_MONTHS: usize = 10_000;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Exported {
     /// Partitions written.
     pub written: usize,
-    /// Partitions that were so already.
+    /// Partitions that were up to date and stay as they are.
     pub unchanged: usize,
     /// Partitions that have no rows any more.
     pub removed: usize,
 }
 
-/// Rows of views that never change once they are there, by view and month.
+/// For views whose rows never change: by view and month, the text of `months` for the rows that were exported.
 #[derive(Default, Deserialize, PartialEq, Serialize)]
 struct Known(BTreeMap<String, BTreeMap<String, String>>);
 
@@ -184,14 +184,14 @@ fn remove_others(folder: &Path, months: &BTreeSet<String>) -> std::io::Result<us
                 std::fs::remove_file(file)?;
                 removed += 1;
             }
-            // What else lies there is not ours.
+            // A folder with other files, which are not ours, stays.
             let _ = std::fs::remove_dir(entry.path());
         }
     }
     Ok(removed)
 }
 
-/// The views for DuckDB, started in the folder.
+/// SQL that makes the views in DuckDB, started in the folder.
 fn views_sql() -> String {
     let mut sql = String::from("-- In this folder: duckdb -init views.sql\n");
     for view in VIEWS {

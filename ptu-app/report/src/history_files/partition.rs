@@ -91,7 +91,7 @@ fn failed(view: &View, error: &ParquetError) -> Failure {
     ))
 }
 
-/// Writes the values of a column, as `of` has them; returns the first value that is of another type.
+/// Writes the values of a column, converted by `of`; returns the first value of another type.
 fn put_values<'v, T: DataType>(
     column: &mut SerializedColumnWriter<'_>,
     values: &[&'v SqlValue],

@@ -4,7 +4,7 @@ pub(super) struct View {
     pub name: &'static str,
     /// Column of the time as text, of which the month is taken; absent where the rows have no time.
     pub time: Option<&'static str>,
-    /// Order of its rows, complete; the first column tells the rows of one history from those of another.
+    /// Columns that order the rows, without ties; the values of the first column differ from one history to another.
     pub order: &'static str,
     /// Rows are added to the view, and a row never changes.
     pub is_final: bool,
@@ -129,7 +129,7 @@ mod tests {
 
     use super::*;
 
-    /// Goal: a column or view that comes to the page of the views comes to the files, too.
+    /// Goal: each column and each view that `fault-db/VIEWS.md` describes is exported.
     #[test]
     fn all_views_and_columns_of_the_page_are_exported() {
         let mut told = BTreeSet::new();

@@ -43,7 +43,7 @@ pub enum Anchor {
 }
 
 impl Anchor {
-    /// The part of the text before it.
+    /// Share of the text's width that lies before the anchor.
     pub fn share(self) -> f32 {
         match self {
             Self::Start => 0.0,
@@ -59,9 +59,9 @@ pub enum Mark {
     /// A text on a line.
     Text {
         role: Role,
-        /// Where, on the base line.
+        /// Place of the anchor, on the base line.
         at: (f64, f64),
-        /// Point of the text that lies there.
+        /// Point of the text that lies at `at`.
         anchor: Anchor,
         /// Runs upwards.
         turned: bool,
@@ -69,7 +69,7 @@ pub enum Mark {
     },
     Line {
         role: Role,
-        /// The points of each of its pieces.
+        /// Points of each piece of the line.
         pieces: Vec<Vec<(f64, f64)>>,
     },
     Area {

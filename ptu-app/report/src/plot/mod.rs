@@ -15,7 +15,7 @@ pub use raster::{Raster, colour};
 use mark::room;
 use scale::Scale;
 
-/// Size of the drawing in a page, in its own units.
+/// Size of the drawing on a page, in units of the drawing.
 const WIDTH: f64 = 1000.0;
 const HEIGHT: f64 = 300.0;
 /// Width left beside the plot for labels.
@@ -23,15 +23,15 @@ const LEFT: f64 = 62.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 46.0;
 const BOTTOM: f64 = 42.0;
-/// Rows above the plot for names of places.
+/// Height of a row of place names above the plot.
 const ROW: f64 = 12.0;
-/// Share of an axis left free beyond what is shown.
+/// Share of an axis left free at each end.
 const FREE: f64 = 0.04;
-/// Width of the thinnest stretch that can be seen.
+/// Least width of a shaded stretch.
 const THINNEST: f64 = 1.0;
-/// From the left edge of the drawing to the longest value at the vertical axis.
+/// Width left of the plot beside the longest name at the vertical axis.
 const BESIDE_TICKS: f64 = 26.0;
-/// Line in the legend, and what is free around it.
+/// Length of the line before a name in the legend, and the width that this line and the gaps take.
 const SAMPLE: f64 = 20.0;
 const SAMPLE_ROOM: f64 = 34.0;
 
@@ -69,9 +69,9 @@ pub struct Plot {
     pub x_label: String,
     /// Vertical axis with its unit.
     pub y_label: String,
-    /// The horizontal axis reaches from here to there; none = as far as the points.
+    /// Ends of the horizontal axis; `None` = as far as the points.
     pub x_range: Option<(f64, f64)>,
-    /// The vertical axis reaches at least so far.
+    /// Range that the vertical axis covers at least.
     pub y_reach: Option<(f64, f64)>,
     /// Cells behind the curves; pages of paper do not have them.
     pub raster: Option<Raster>,
@@ -80,10 +80,10 @@ pub struct Plot {
     pub places: Vec<AxisMark>,
     /// Stretches of the horizontal axis that are shaded, each from its first end to its second.
     pub shaded: Vec<(f64, f64)>,
-    /// Names at the vertical axis instead of values, each where it stands.
+    /// Names at the vertical axis instead of numbers, each with its place on that axis.
     pub names: Vec<(f64, String)>,
     pub notes: Vec<Note>,
-    /// Room left of the plot at least, so that plots below each other begin at the same place.
+    /// Least width left of the plot, so that plots below each other begin at the same place.
     pub beside: Option<f64>,
     /// Height, in units of the drawing; none = 300.
     pub height: Option<f64>,
@@ -167,7 +167,7 @@ impl Plot {
         extent(seen.chain(reach.into_iter().flatten()))
     }
 
-    /// From the right edge, in the order of the curves; one entry a name.
+    /// Legend from the right edge, in the order of the curves; one entry for each name.
     fn legend(&self, edges: &Edges) -> Vec<Mark> {
         let mut entries: Vec<&Series> = Vec::new();
         for series in &self.series {
@@ -205,7 +205,7 @@ impl Plot {
         .collect()
     }
 
-    /// Names stand in the first row above the plot in which there is room.
+    /// Lines at the places of the axis. A name stands in the first row above the plot that has room for it.
     fn named_places(&self, x: &Scale, edges: &Edges, width: f64) -> Vec<Mark> {
         let mut ends = [f64::NEG_INFINITY; 2];
         let mut marks = Vec::new();
@@ -213,7 +213,7 @@ impl Plot {
             let at = x.at(place.x);
             marks.push(line(Role::AxisMark, (at, edges.top), (at, edges.bottom)));
             let long = room(&place.name) + 4.0;
-            // Within the drawing, also where a long name belongs to its edge.
+            // A name at the edge stays within the drawing, however long it is.
             let begin = (at - long / 2.0).min(width - long).max(edges.left);
             if let Some(row) = ends.iter().position(|end| begin > *end) {
                 ends[row] = begin + long;
@@ -288,7 +288,7 @@ fn line(role: Role, from: (f64, f64), to: (f64, f64)) -> Mark {
     }
 }
 
-/// Least and greatest of what is a number; 0 to 1 of nothing.
+/// Least and greatest finite value; 0 and 1 if there is none.
 fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let known = values.filter(|value| value.is_finite());
     let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {

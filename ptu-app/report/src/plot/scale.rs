@@ -2,7 +2,7 @@
 
 use crate::ticks::{Ticks, round_step};
 
-/// Marks an axis has at least, about.
+/// Least number of ticks of an axis, about.
 const MARKS: f64 = 6.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -15,8 +15,8 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// An axis over `extent`, drawn from one coordinate to another, with that share of it left free
-    /// at its ends, but not where it ends at 0.
+    /// An axis over `extent`, drawn from one coordinate to another, with the share `free` of `extent` left free
+    /// at each end, but not at an end at 0.
     pub fn new(extent: (f64, f64), (from, to): (f64, f64), free: f64) -> Self {
         let (mut low, mut high) = extent;
         // All values alike, or too near each other to be told apart.
@@ -25,7 +25,7 @@ impl Scale {
         }
         let step = round_step((high - low) / MARKS);
         let room = (high - low) * free;
-        // What is hardly below 0 is rounding, or the last of a holding brake.
+        // An end close to 0 becomes 0: a value hardly below 0 is rounding, or the last of a holding brake.
         low = if low.abs() < room { 0.0 } else { low - room };
         high = if high.abs() < room { 0.0 } else { high + room };
         Self {
@@ -52,7 +52,7 @@ impl Scale {
         value.clamp(self.low, self.high)
     }
 
-    /// Values at which it is marked, and how they are written.
+    /// Values of the ticks, and how they are written.
     pub fn ticks(&self) -> Vec<(f64, String)> {
         let ticks = Ticks::with_step(self.step, (self.low, self.high));
         let written = ticks.values().map(|value| (value, ticks.written(value)));

@@ -22,7 +22,7 @@ pub enum Block {
     /// Head of the sheet and what stands below it.
     Title(String, String),
     Heading(String),
-    /// A part of a section, and what stands at its end.
+    /// Heading of a part of a section, and the words beside the heading.
     Subheading(String, String),
     /// The verdict, and what stands beside it.
     Verdict(Tone, String, String),
@@ -94,7 +94,7 @@ pub struct Gauge {
 }
 
 impl Gauge {
-    /// The bar; none without a value or without any limit. Where there is no limit the band has no end.
+    /// The gauge; `None` without a value or without any limit. On a side without a limit the band fills the bar.
     pub fn of(value: Option<f64>, low: Option<f64>, high: Option<f64>, good: bool) -> Option<Self> {
         let (value, from, to) = places(value, low, high)?;
         let from = low.map_or(0.0, |_| from);
@@ -137,7 +137,7 @@ impl Column {
     }
 }
 
-/// A wording as it stands by itself: its first letter large.
+/// A wording as a sentence of its own, with a capital at its beginning.
 pub fn sentence(wording: &str) -> String {
     let mut letters = wording.chars();
     let first = letters.next().map(|first| first.to_uppercase());

@@ -51,7 +51,7 @@ pub fn body(sheet: &Sheet, words: &Words) -> Vec<Block> {
     blocks
 }
 
-/// The verdict in words and how good news it is.
+/// Tone and words of the verdict on a run.
 pub fn verdict(run: &RunSummary, words: &Words) -> (Tone, &'static str) {
     match (run.verdict, run.state) {
         (Some(verdict), _) => (tone(verdict), words.common.stored_verdict(verdict)),

@@ -15,7 +15,7 @@ const LEAST_NAMED: f64 = 0.01;
 /// The blocks of the diagnosis, or why there is none.
 pub(super) fn diagnosis(sheet: &Sheet, words: &Words) -> Vec<Block> {
     let report = &words.report;
-    // A run that passed by steps of no dictionary, as before service, has no question open.
+    // A run that passed with steps that are in no dictionary, as before service, has no question open.
     if let Ok(answer) = &sheet.diagnosis
         && answer.run.run.verdict == Some(Verdict::Passed)
         && matches!(

@@ -10,7 +10,7 @@ use ptu_runs::failure::Failure;
 use ptu_runs::run_diagnosis::diagnose_run;
 
 impl Sheet {
-    /// Reads all a run's sheet says. Without a fault dictionary there is no diagnosis, and the sheet
+    /// Reads all that the sheet of a run says. Without a fault dictionary there is no diagnosis, and the sheet
     /// says why.
     ///
     /// # Errors

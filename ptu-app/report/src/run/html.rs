@@ -7,7 +7,7 @@ use super::block::{Align, Block, Cell, Column, Gauge, Row, RowKind, Table, Tone}
 use crate::page_text;
 use crate::words::Words;
 
-/// The page.
+/// The sheet as an HTML page.
 pub fn html(sheet: &impl Printed, words: &Words) -> String {
     let paper = sheet.paper(words);
     let page = markup! {

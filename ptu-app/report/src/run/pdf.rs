@@ -20,9 +20,9 @@ use crate::words::Words;
 use ptu_runs::clock;
 use ptu_runs::failure::{Failure, FileTrouble, Why};
 
-/// Weight is a thin line around letters, in sizes of the letters: only one weight is shipped.
+/// Width of the line around bold letters, as a share of their size: the shipped font has one weight alone.
 const WEIGHT: f32 = 0.035;
-/// Part of a radius at which the curve of a quarter circle is pulled.
+/// Distance of a curve's control point from the end of a quarter circle, as a share of the radius.
 const QUARTER: f32 = 0.5523;
 
 /// The document, and the letters that stand in it as codes because the shipped font lacks them.
@@ -52,7 +52,7 @@ pub fn pdf(sheet: &impl Printed, words: &Words) -> Result<(Vec<u8>, BTreeSet<cha
     Ok((document, coded))
 }
 
-/// Times and number of what is told, so that the document is the same each time it is made.
+/// Metadata with the time and number of the content, so that the document is the same each time it is made.
 fn metadata(paper: &Paper, words: &Words) -> Metadata {
     let (year, of_year) = clock::utc_fields(paper.at_us);
     let [month, day, hour, minute, second] = of_year;
@@ -94,7 +94,7 @@ fn draw(item: &Item, surface: &mut Surface<'_>, font: &Font, letters: &FontMetri
             surface.set_fill(Some(fill(*ink)));
             put(surface, disc(*x, *y, *radius));
         }
-        // What has cells is looked at on a screen.
+        // A drawing is made up of the items after it; cells are for a screen alone.
         Item::Drawing(..) | Item::Cells(..) => {}
     }
 }

@@ -7,14 +7,14 @@ use fault_db::{Channel, ChannelKind, TraceData};
 use crate::plot::{AxisMark, Note, Plot, Series, Style};
 use crate::words::Words;
 
-/// Speeds, as they are recorded, each with its colour; what is not known all the time is left out.
+/// Recorded speed signals, each with its colour; a speed that is not known in any row is left out.
 const SPEEDS: [(&str, usize, Style); 4] = [
     ("limit", 1, Style::Dashed),
     ("target", 2, Style::Dashed),
     ("train_speed", 4, Style::Line),
     ("speed", 0, Style::Line),
 ];
-/// Switched signals drawn below each other, at most.
+/// Most switched signals that are drawn below each other.
 const LANES: usize = 8;
 /// Reach of a close-up on each side of the trigger, and its greatest number of lanes.
 const CLOSE_US: i64 = 2_000_000;
@@ -24,12 +24,12 @@ const LANE: f64 = 26.0;
 const AROUND: f64 = 96.0;
 /// Height of a switched signal in its lane.
 const SWING: f64 = 0.62;
-/// Height of words in a lane, as a share of that.
+/// Height of the base line of words in a lane, as a share of `SWING`.
 const WORDS: f64 = 0.24;
 /// Room for names of signals.
 const BESIDE: f64 = 120.0;
 
-/// The trace with the channels that are drawn, and those only.
+/// The trace with those of its channels alone that are drawn.
 pub fn drawn_channels(trace: TraceData) -> TraceData {
     with_lanes(trace, LANES)
 }
@@ -87,7 +87,7 @@ fn nearest_change(column: &[f64], trigger: usize) -> Option<usize> {
         .min()
 }
 
-/// The trace over time from its trigger.
+/// Plots of the trace over the time from its trigger.
 pub fn plots(trace: &TraceData, words: &Words) -> Vec<Plot> {
     let report = &words.report;
     let rows = trace.rows();
@@ -134,7 +134,7 @@ pub fn plots(trace: &TraceData, words: &Words) -> Vec<Plot> {
         }
         all.push(drawing);
     }
-    // Below each other, on the same time.
+    // The plots stand below each other, with the same time at the same place.
     let left = all.iter().map(Plot::left).fold(BESIDE, f64::max);
     for plot in &mut all {
         plot.beside = Some(left);
@@ -219,7 +219,7 @@ fn lane(
 fn stretches(column: &[f64]) -> Vec<(usize, usize, f64)> {
     let mut all = Vec::new();
     let mut row = 0;
-    // By their bits: two values that are not known are no change.
+    // Compared by their bits: from NaN (unknown) to NaN is no change.
     for same in column.chunk_by(|a, b| a.to_bits() == b.to_bits()) {
         all.push((row, row + same.len() - 1, same[0]));
         row += same.len();

@@ -1,4 +1,4 @@
-//! Where the limits of a run come from: numbered, so that a row has room for it.
+//! Sources of a run's limits, numbered, so that a row has room for the number of a source.
 
 use btu_rig::procedure::origin::{SEPARATOR, SourceKind};
 use fault_db::StepRecord;

@@ -127,7 +127,7 @@ fn instruments(evidence: Option<&Evidence>, words: &Words) -> String {
     }
 }
 
-/// Signature of the run, by which `ptu verify` can be held against a list of keys.
+/// Signature of the run: who, key and time, to be compared with what `ptu verify` says.
 fn signed_by(sheet: &Sheet, words: &Words) -> String {
     let report = &words.report;
     let Some(signed) = &sheet.run.signature else {

@@ -13,7 +13,7 @@ pub const NAME: &str = "ptu.trace";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TraceInfo {
     pub trace_id: String,
-    /// The run it was recorded in.
+    /// The run in which the trace was recorded.
     pub run_id: String,
     pub unit_serial: String,
     /// UTC of the first row, for people.
@@ -27,7 +27,7 @@ pub struct TraceInfo {
     pub rows: usize,
     /// Row of the trigger, which has the time 0; the trigger may be before or after all rows of a part.
     pub trigger_row: Option<i64>,
-    /// The trace ends before its window did.
+    /// The trace was cut short: it ends before its window.
     pub partial: bool,
     /// Some samples are missing.
     pub gaps: bool,
@@ -39,7 +39,7 @@ pub struct TraceInfo {
 }
 
 impl TraceInfo {
-    /// Head of a part of a trace: `rows` rows from `first` on.
+    /// Description of a part of a trace: `rows` rows from `first` on.
     pub fn part(head: &TraceHead, channels: Vec<Channel>, first: usize, rows: usize) -> Self {
         let later_us = (first as i64).saturating_mul(head.period_us);
         let t0_us = head.t0_us.saturating_add(later_us);
@@ -65,7 +65,7 @@ impl TraceInfo {
         (row as i64 - self.trigger_row.unwrap_or(0)).saturating_mul(self.period_us)
     }
 
-    /// Head of the trace as one line of JSON.
+    /// The description as one line of JSON.
     pub fn json(&self) -> String {
         // Texts, whole numbers and finite steps: there is nothing JSON cannot say.
         serde_json::to_string(self).unwrap_or_default()

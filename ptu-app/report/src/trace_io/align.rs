@@ -11,7 +11,7 @@ use ptu_runs::failure::{Asked, Failure};
 /// Greatest rounding of a sample's time to before or after its row, µs.
 const ROUNDING_US: i64 = 1;
 
-/// A file's signals at a trace's rows, and the trace with nothing known where the file says nothing.
+/// A file's signals at a trace's rows, and the trace, whose samples are unknown where the file has none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aligned {
     pub trace: TraceData,
@@ -73,7 +73,7 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
         first = first.min(held.rows.start);
         end = end.max(held.rows.end);
         is_row_by_row &= held.is_row_by_row;
-        // Each column goes as soon as it is aligned: a large file is in memory once.
+        // Each column is freed as soon as it is aligned: a large file is in memory once.
         for (channel, column) in table.channels.into_iter().zip(table.columns) {
             let is_first = names.insert(channel.name.clone());
             if known.contains(channel.name.as_str()) {
@@ -106,10 +106,10 @@ pub fn align(import: Import, mut trace: TraceData, shift_us: i64) -> Result<Alig
     })
 }
 
-/// Row of a table that stands at each row of a trace.
+/// For each row of a trace, the row of the file's table whose samples count there.
 struct RowAlignment {
     places: Vec<Option<usize>>,
-    /// Rows of the trace from the first to the last that has one.
+    /// Rows of the trace from the first to the last with a row of the table.
     rows: Range<usize>,
     is_row_by_row: bool,
 }
@@ -147,7 +147,7 @@ impl RowAlignment {
             .iter()
             .rposition(Option::is_some)
             .map_or(0, |last| last + 1);
-        // Every sample must have found its row, too.
+        // Nor do more rows have a sample than there are samples.
         is_row_by_row &= end.saturating_sub(first) <= times.len();
         Self {
             places,

@@ -21,7 +21,7 @@ pub fn column_name(channel: &Channel) -> String {
     }
 }
 
-/// The word for a sample of an enumeration; what has no word is a number still.
+/// The word for a sample of an enumeration; `None` for a sample without a word, which stays a number.
 pub fn word(channel: &Channel, sample: f64) -> Option<&str> {
     let ChannelKind::Enum { labels } = &channel.kind else {
         return None;

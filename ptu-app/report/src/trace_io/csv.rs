@@ -38,8 +38,8 @@ pub fn put_headings<'a>(
     out.write_all(b"\n")
 }
 
-/// Writes a row: its time, µs from the trigger, in whole milliseconds where all rows of this period are; the way, m, if it
-/// is written; a sample of each signal.
+/// Writes a row: its time, µs from the trigger, in seconds to the millisecond if the period is of whole milliseconds;
+/// the distance, m, if there is one; a sample of each signal.
 ///
 /// # Errors
 /// `out` fails.
@@ -71,7 +71,7 @@ pub(super) fn beside(file: &Path) -> PathBuf {
     name.into()
 }
 
-/// The document that stands beside a file of the name `file`.
+/// The description that stands beside a file with the name `file`.
 pub(super) fn description(file: &str, about: &TraceInfo) -> Value {
     let column = |channel: &Channel| {
         let datatype = match channel.kind {

@@ -21,11 +21,11 @@ use ptu_runs::whole_file::LONGEST_FILE;
 
 /// Longest line of a table, bytes. A line may be longer by what the CSV library reads at once.
 const MAX_LINE: u64 = 1 << 20;
-/// Lines before the first row of a table: what a recorder says of itself.
+/// Most lines before the first row of a table, in which a recorder describes itself.
 const MOST_BEFORE: usize = 1_000;
-/// Cells among which a column of times is looked for that was named wrong.
+/// Most cells kept for a suggestion where no column has the name that a person gave for the times.
 const MAX_SEEN: usize = 500;
-/// Lines by which the separator is found.
+/// Number of lines from which the separator is found.
 const LOOKED_AT: usize = 50;
 
 /// Reads a file: what a recorder says of itself, headings, perhaps units, then a row a line; separated by comma, semicolon or tab.
@@ -72,7 +72,7 @@ struct Records<'f, R> {
     since: Rc<Cell<u64>>,
     record: ByteRecord,
     cells: Vec<String>,
-    /// Where the last record began that was read.
+    /// Line at which the record that was read last began.
     line: u64,
     separator: u8,
 }
@@ -120,7 +120,7 @@ impl<'f, R: BufRead> Records<'f, R> {
         })
     }
 
-    /// The next record that has something in it; bytes that are no UTF-8 are Latin-1.
+    /// Reads the next record that is not empty, false at the end of the file; bytes that are not UTF-8 are Latin-1.
     fn next(&mut self) -> Result<bool, Failure> {
         loop {
             self.since.set(0);
@@ -169,7 +169,7 @@ impl<'f, R: BufRead> Records<'f, R> {
     }
 }
 
-/// Headings above the rows, of which the first has been read.
+/// Headings above the rows of a table, whose first row has been read.
 struct Above {
     headings: Vec<String>,
     time: usize,
@@ -181,8 +181,8 @@ fn above<R: BufRead>(
     known: &KnownSignals,
     asked: &Columns,
 ) -> Result<Above, Failure> {
-    // Headings by which a column of times is known, then the unit below; else the line before the first that begins with a
-    // time.
+    // The headings are the last line with a known name for a column of times, whose unit may stand below. Without such
+    // a name they are the line before the first that begins with a time.
     let (mut named, mut before): (Option<Above>, Option<Vec<String>>) = (None, None);
     let (mut is_last, mut seen) = (false, Vec::new());
     for _ in 0..MOST_BEFORE {
@@ -266,7 +266,7 @@ fn read_table(
         time,
         unit,
     } = above(&mut records, known, asked)?;
-    // What ends each line with a separator has a heading of nothing.
+    // A program that ends each line with a separator leaves an empty heading.
     while headings.len() > 2 && headings.last().is_some_and(String::is_empty) {
         headings.pop();
     }
@@ -306,7 +306,7 @@ fn read_table(
             let sample = signal.sample(&cells[*place], comma);
             column.push(match sample {
                 Ok(sample) => sample,
-                // What no trace has is left out; its texts say nothing here.
+                // A column that is no signal of a trace may hold texts: such a sample is unknown.
                 Err(_) if !signal.is_of_a_trace => f64::NAN,
                 Err(what) => return Err(records.wrong_cell(*place, &headings[*place], &what)),
             });

@@ -35,8 +35,8 @@ impl Format {
     }
 }
 
-/// Writes what was chosen to a file, in the format of its ending. A file that is there is left as it is,
-/// unless `force` is said; one that breaks off leaves nothing behind.
+/// Writes the chosen part to a file, in the format of its ending. A file that exists is left as it is unless `force`
+/// is true; an export that fails leaves no file behind.
 ///
 /// # Errors
 /// The file cannot be written, or the trace cannot be read.

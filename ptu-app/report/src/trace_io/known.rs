@@ -8,7 +8,7 @@ use super::column::column_name;
 use super::series::plain;
 use super::times::number;
 
-/// A longer text is no word of a signal, bytes.
+/// Longest word of a signal, bytes.
 const MAX_WORD: usize = 1024;
 
 /// Stands behind the name of a column where a person named another column for the signal of this name.
@@ -19,7 +19,7 @@ pub(super) const OWN: &str = " (own column)";
 pub(super) struct Known {
     pub channel: Channel,
     words: HashMap<String, f64>,
-    /// Whether a trace has the signal; else it is a number with the name of a column.
+    /// Whether traces have the signal; else the signal is a number with the name of a column.
     pub is_of_a_trace: bool,
 }
 
@@ -75,8 +75,8 @@ impl Known {
 }
 
 impl KnownSignals {
-    /// Signals of these lists, in which the first signal of a name counts; `called` has what a file calls a
-    /// signal.
+    /// Signals of these lists; of several with one name the first counts. `called` has headings of a file and the
+    /// signals that they stand for.
     pub fn of(lists: &[&[Channel]], called: &[(String, String)]) -> Self {
         let mut all = Self::default();
         for channel in lists.iter().copied().flatten() {

@@ -18,9 +18,9 @@ use super::series::{Import, Table, check_size, in_order, plain, wrong};
 use super::times::Columns;
 use ptu_runs::failure::{Failure, FileTrouble};
 
-/// A longer record, or piece of compressed messages, is refused instead of being held in memory.
+/// Longest record, or chunk of compressed messages, bytes: a longer one is refused instead of being held in memory.
 const MAX_RECORD: usize = 32 << 20;
-/// All records together, unpacked: several times what the samples allowed take as text.
+/// Greatest length of all records unpacked, bytes: several times what the permitted samples take as text.
 const MAX_BYTES: usize = 512 << 20;
 /// Bytes of a record beside its content.
 const RECORD: usize = 64;
@@ -30,7 +30,7 @@ const MAX_MESSAGE: usize = 1 << 20;
 const MAX_NAME: usize = 256;
 /// Longest description that this program writes, bytes; a longer one is passed over.
 const MAX_ABOUT: usize = 4 << 20;
-/// Encodings that are named, where none of a file is read.
+/// Most encodings that are named in the error on a file without a message that can be read.
 const MAX_ENCODINGS: usize = 8;
 /// Fields within fields are looked at this deep.
 const MAX_DEPTH: usize = 8;
@@ -39,7 +39,7 @@ const MAX_DEPTH: usize = 8;
 struct Topic {
     name: String,
     table: Table,
-    /// Place of a field's column, by its path.
+    /// Index of the column of a field, by the field's path.
     places: BTreeMap<String, usize>,
     /// Number of signal names known to be short enough.
     checked: usize,
@@ -54,8 +54,8 @@ fn check_name(file: &Path, name: &str) -> Result<(), Failure> {
     Err(wrong(file, &what))
 }
 
-/// Reads a file. Each number, bit or null in a message is a sample of the signal its field names; what is
-/// not JSON is passed over.
+/// Reads a file. Each number, bit, null or word of a signal in a message is a sample of the signal that its field
+/// names; messages in another encoding than JSON are passed over.
 pub(super) fn read(file: &Path, known: &[Channel], asked: &Columns) -> Result<Import, Failure> {
     let cannot = |error: std::io::Error| Failure::usage(FileTrouble::unread(file, error));
     let mut input = open_regular_file(file).map_err(cannot)?;
@@ -108,8 +108,8 @@ pub(super) fn read(file: &Path, known: &[Channel], asked: &Columns) -> Result<Im
     reading.finish()
 }
 
-/// Whether the texts of a record are as long as they say: the library takes memory for what they say, up to 4 GB, before
-/// it reads them.
+/// Whether each text of a record is as long as its length field says: the library allocates that length, up to 4 GB,
+/// before it reads the text.
 fn texts_fit(opcode: u8, data: &[u8]) -> bool {
     let (numbers, texts) = match opcode {
         op::CHANNEL => (4, 2),
@@ -137,7 +137,7 @@ fn text(data: &[u8]) -> Option<(&[u8], &[u8])> {
     rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)
 }
 
-/// Sentence on an error, with the reason of its cause.
+/// Message on an error, with its cause.
 fn told(error: &McapError) -> String {
     match error {
         McapError::UnsupportedCompression(name) => {
@@ -220,7 +220,7 @@ impl Reading<'_> {
     }
 
     fn finish(self) -> Result<Import, Failure> {
-        // The events of a recorded run count what its rows have as a signal.
+        // In a recorded run, the events repeat what its rows hold as signals.
         let is_run = self.topics.values().any(|topic| topic.name == SIGNALS);
         let read = (self.topics.into_values()).filter(|topic| !is_run || topic.name != EVENTS);
         let mut tables: Vec<Table> = read.map(|topic| topic.table).collect();
@@ -332,8 +332,8 @@ impl Topic {
     }
 }
 
-/// The signal of a field: the signal with the name of the field, with the name of the topic if the field is the topic's only
-/// value, or with both names joined.
+/// The signal of a field: the signal with the name of the field; or with the name of the topic, if the field is `value`
+/// or `data` or the whole message; or with both names joined.
 fn signal<'a>(topic: &str, path: &str, known: &'a KnownSignals) -> Option<&'a Known> {
     let is_value = matches!(path, "" | "value" | "data");
     let of_topic = || is_value.then(|| known.named(topic)).flatten();

@@ -56,7 +56,7 @@ pub(super) fn put(
     Ok(())
 }
 
-/// Messages of JSON in a file, and how many they are so far.
+/// A topic of JSON messages in a file, and the number of its messages so far.
 pub(super) struct Topic {
     channel: u16,
     count: u32,
@@ -74,7 +74,7 @@ impl Topic {
         Ok(Self { channel, count: 0 })
     }
 
-    /// Adds a message of this time, µs since 1970; nothing was recorded before.
+    /// Adds a message of this time, µs since 1970; an earlier time counts as 1970.
     pub fn put<W: Write + Seek>(
         &mut self,
         file: &mut Writer<W>,
@@ -126,7 +126,7 @@ pub(super) fn put_row(
     Ok(())
 }
 
-/// A whole number without its point, an unknown or endless one as null.
+/// A sample as JSON: a whole number without a point, an unknown or infinite sample as null.
 fn number(sample: f64) -> Value {
     if sample.fract() == 0.0 && sample.abs() < 1e15 {
         Value::from(sample as i64)
@@ -157,7 +157,7 @@ fn property(channel: &Channel) -> Value {
         ChannelKind::Bit => json!({"type": ["integer", "null"], "minimum": 0, "maximum": 1}),
         ChannelKind::Enum { labels } => {
             let words: Vec<_> = labels.values().collect();
-            // What has no word is a number.
+            // A value without a word is a number.
             json!({"anyOf": [{"enum": words}, {"type": ["number", "null"]}]})
         }
     }

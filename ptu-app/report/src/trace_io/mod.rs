@@ -3,9 +3,9 @@
 //! * [`export`]: a stored trace, or a part of it, as CSV, Parquet or MCAP, a piece at a time, so that an
 //!   hour of all signals takes no more memory than a second of one;
 //! * [`RunMcap`]: a whole run while it goes on, every row of every signal and every event;
-//! * [`TraceInfo`]: what a trace is, kept in every format: whose, when, and each signal's unit, kind and words;
+//! * [`TraceInfo`]: the description of a trace in every format: unit, times, and each signal's unit, kind and words;
 //! * [`import`]: signals of a CSV, Parquet or MCAP file, ours or another program's;
-//! * [`align()`]: these signals at the times of a stored trace's rows, to be compared with it.
+//! * [`align()`]: the signals of a file at the times of a stored trace's rows, to be compared with the trace.
 
 mod about;
 mod align;

@@ -1,7 +1,7 @@
 //! Traces as Apache Parquet: a column of times, then one column per signal.
 //!
-//! Columns are called as [`column_name`] says. Numbers are doubles, bits booleans, enums their words; an unknown sample is null. The file's metadata
-//! has [`TraceInfo`](super::TraceInfo) under its name.
+//! Columns are called as [`column_name`] says. Numbers are doubles, bits booleans, enumerations their words; an unknown
+//! sample is null. The file's metadata has [`TraceInfo`](super::TraceInfo) under its name.
 
 use std::io::Write;
 use std::path::Path;

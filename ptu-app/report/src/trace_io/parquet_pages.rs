@@ -1,4 +1,4 @@
-//! Unpacked pages of a Parquet file, by their headers: a page is unpacked at once, however long it says it is.
+//! Checks the unpacked length of each page of a Parquet file, by the page's header, before the library unpacks it.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek as _, SeekFrom};
@@ -11,19 +11,19 @@ const MAX_PAGE: u64 = 96 << 20;
 const MAX_REPEATING: u64 = 4 << 20;
 /// Bytes of a page beside its content.
 const PAGE: u64 = 64;
-/// Longest description of a file.
+/// Longest footer, which describes a file, bytes.
 const MAX_FOOTER: u32 = 4 << 20;
-/// Structures within structures.
+/// Greatest depth of structures within structures.
 const DEPTH: u32 = 4;
 
-/// Pages' headers have these kinds of page and encoding.
+/// Numbers in pages' headers: a kind of page, and an encoding.
 const DICTIONARY: i64 = 2;
 const DELTA_BYTE_ARRAY: i64 = 7;
 
 /// Sentence that says why a file is not read.
 type Refused = String;
 
-/// Refuses a description that takes more memory than a trace's.
+/// Refuses a footer that takes more memory than that of a trace.
 pub(super) fn check_footer(file: &mut File) -> Result<(), Refused> {
     let mut footer = [0; 8];
     let read = file
@@ -31,7 +31,7 @@ pub(super) fn check_footer(file: &mut File) -> Result<(), Refused> {
         .and_then(|_| file.read_exact(&mut footer));
     read.map_err(|error| format!("damaged, or no Parquet file: {error}"))?;
     let [a, b, c, d, magic @ ..] = footer;
-    // What is no Parquet file has no description: its reader says so.
+    // A file that is no Parquet file has no footer: the library's reader says so.
     match &magic == b"PAR1" && u32::from_le_bytes([a, b, c, d]) > MAX_FOOTER {
         true => Err(format!("its description is longer than {MAX_FOOTER} bytes")),
         false => Ok(()),
@@ -94,8 +94,8 @@ struct Header {
 }
 
 impl Header {
-    /// A whole number in it, by the number of its field, in the structure of that number: 5 is the header of a data
-    /// page, 7 of a dictionary, 8 of a data page of the second version.
+    /// Keeps a whole number of the header, by the number of its field and of the structure with this field: 5 is the
+    /// header of a data page, 7 of a dictionary, 8 of a data page of the second version.
     fn take(&mut self, within: Option<i64>, field: i64, number: i64) {
         match (within, field) {
             (None, 1) => self.kind = number,

@@ -22,12 +22,12 @@ use super::series::{Import, Table, check_size, in_order, wrong};
 use super::times::{Columns, TimeUnit};
 use ptu_runs::failure::{Failure, FileTrouble};
 
-/// All pages that are read, unpacked.
+/// Greatest length of all pages that are read, unpacked, bytes.
 const MAX_UNPACKED: u64 = 512 << 20;
-/// Rows that are held as they come from the file: a text may be as long as a page.
+/// Rows that are read from the file at once: each may hold a text as long as a page.
 const AT_ONCE: usize = 16;
 
-/// A column that is a signal, or would be.
+/// A column of the file that is a signal, or would be a signal if its values could be read.
 struct Signal {
     place: usize,
     known: Known,
@@ -229,7 +229,7 @@ fn samples(
                     .sample(word, false)
                     .or_else(|what| match known.is_of_a_trace {
                         true => Err(what),
-                        // What no trace has is left out; its texts say nothing here.
+                        // A column that is no signal of a trace may hold texts: such a sample is unknown.
                         false => Ok(f64::NAN),
                     })
             })

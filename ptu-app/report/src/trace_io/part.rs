@@ -53,7 +53,7 @@ impl Seconds {
     pub fn rows(&self, head: &TraceHead) -> Result<Range<usize>, Failure> {
         let trigger = i64::from(head.trigger_row.unwrap_or(0));
         let period_s = head.period_us as f64 / 1e6;
-        // A thousandth of a row, so that a time that is a row's is that row's.
+        // A thousandth of a row: a row at an end of the span belongs to the span in spite of rounding.
         let crumb = 1e-3;
         let first = self.from.map_or(0.0, |from| {
             (from / period_s - crumb).ceil() + trigger as f64
@@ -83,7 +83,7 @@ pub struct TracePart<'s> {
 }
 
 impl<'s> TracePart<'s> {
-    /// The rows in the span of these signals, or of all signals where none is named.
+    /// The rows of the span with these signals, or with all signals where none is named.
     ///
     /// # Errors
     /// There is no such signal, or no row.
@@ -119,7 +119,7 @@ impl<'s> TracePart<'s> {
         Ok(trace.columns.pop().unwrap_or_default())
     }
 
-    /// Hands over the rows in order, some at a time: the first one's number, and the columns.
+    /// Calls `take` for some rows at a time, in order: with the number of the first of them, and with the columns.
     pub(super) fn each_block(
         &self,
         mut take: impl FnMut(usize, &[Vec<f64>]) -> Result<(), Failure>,

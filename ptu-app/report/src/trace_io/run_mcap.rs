@@ -1,8 +1,8 @@
 //! A whole run as MCAP, written while it goes on: rows of all signals under the topic `signals`, and the events of
 //! `docs/commands.md` under `events`.
 //!
-//! A message's time is that of the run's beginning and the bench time since, so that procedures whose units were switched
-//! on one after the other follow each other.
+//! A message's time is the time at which the run began plus the bench time since, so that procedures whose units were
+//! switched on one after the other follow each other.
 
 use std::io::{Seek, Write};
 
@@ -16,7 +16,7 @@ use super::mcap_write::{Topic, keys, options, put_row, schema};
 use crate::event_lines::{EventLines, SCHEMA};
 use ptu_runs::run::{Outcome, SessionEvent, channel, in_steps};
 
-/// Topics of its rows and its events.
+/// Topics of the run's rows and events.
 pub(super) const SIGNALS: &str = "signals";
 pub(super) const EVENTS: &str = "events";
 

@@ -25,7 +25,7 @@ pub struct Table {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
-    /// Signals, by what they were sampled with.
+    /// Signals, one table for those that were sampled together.
     pub tables: Vec<Table>,
     /// Times are since 1970, UTC; otherwise from the trigger.
     pub is_utc: bool,
@@ -45,8 +45,8 @@ fn ending(file: &Path) -> String {
     ending.unwrap_or_default()
 }
 
-/// Reads a CSV, Parquet or MCAP file; signals that are among `known` are of their kind. What was `asked` of a table's columns
-/// stands before their headings.
+/// Reads a CSV, Parquet or MCAP file; signals with a name in `known` are of the kind they have there. `asked`, what a
+/// person says of a table's columns, counts before the headings.
 ///
 /// # Errors
 /// The file cannot be read, or is not what its ending says: with the place where.
@@ -84,7 +84,7 @@ pub(super) fn check_size(file: &Path, signals: usize, samples: usize) -> Result<
     ))
 }
 
-/// Puts rows into the order of their times: rows and messages need not be.
+/// Sorts rows by time: the rows of a table, and messages, may come in any order.
 pub(super) fn in_order(table: &mut Table) {
     if table.times_us.is_sorted() {
         return;

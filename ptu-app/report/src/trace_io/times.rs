@@ -10,7 +10,7 @@ use ptu_runs::failure::did_you_mean;
 pub struct Columns {
     /// Headings, and the signals that they stand for.
     pub names: Vec<(String, String)>,
-    /// Heading of the times.
+    /// Heading of the column of times; `None` = found by its name.
     pub time: Option<String>,
     /// Unit of the times; `None` = as their heading says.
     pub unit: Option<TimeUnit>,
@@ -52,8 +52,8 @@ const HEADINGS: [&str; 9] = [
 const DATES: [&str; 2] = ["%Y-%m-%dT%H:%M:%S%.f", "%Y-%m-%d %H:%M:%S%.f"];
 
 impl Columns {
-    /// Place of the times among headings: the heading that a person named, else the first one that is a name of times and of no
-    /// signal.
+    /// Index of the column of times: of the heading that a person named, else of the first heading that is a name of
+    /// times and of no signal.
     pub(super) fn time<'a>(
         &self,
         mut headings: impl Iterator<Item = &'a str>,
@@ -71,7 +71,7 @@ impl Columns {
         format!("no column is called \"{time}\"{near}")
     }
 
-    /// The unit of times below a heading, or below the unit that stands under it.
+    /// Unit of a column of times, as a person said, else the cell `below` the heading, else the heading; else seconds.
     pub(super) fn unit(&self, heading: &str, below: Option<&str>) -> TimeUnit {
         let told = |text: &str| words(text).last().and_then(|word| word.parse().ok());
         let unit = self.unit.or_else(|| below.and_then(told));
@@ -126,7 +126,7 @@ impl FromStr for TimeUnit {
     }
 }
 
-/// A number; with a decimal comma where a comma separates no cells.
+/// A number; with a decimal comma if `comma` permits one.
 pub(super) fn number(cell: &str, comma: bool) -> Option<f64> {
     let with_point = || cell.replacen(',', ".", 1).parse().ok();
     cell.parse()

@@ -4,7 +4,7 @@ use fault_db::TraceData;
 
 use super::Window;
 
-/// Signals with the place of the train, m, the true place before the place that the unit reports.
+/// Signals with the position of the train, m: the true position counts before the one that the unit reports.
 const POSITIONS: [&str; 2] = ["train_position", "position"];
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,9 +28,9 @@ pub enum Axis {
         period_us: i64,
         rows: usize,
     },
-    /// Metres in the direction the train went over all.
+    /// Metres in the direction in which the train moved on the whole.
     Distance {
-        /// Per row: the farthest point reached until then.
+        /// For each row, the farthest point reached so far, m.
         at_m: Vec<f64>,
         /// Rows at which the train was behind the farthest point: they lie at that point.
         rows_back: usize,
@@ -42,9 +42,9 @@ pub enum Axis {
 /// The first row of each column of pixels.
 #[derive(Clone, Debug, Default)]
 pub struct Edges {
-    /// One more than there are columns.
+    /// First rows of the columns, and one entry more for the end of the last column.
     pub rows: Vec<usize>,
-    /// From this column on the trace is over.
+    /// First column after the end of the trace.
     pub end: usize,
 }
 
@@ -70,7 +70,7 @@ impl Axis {
         let (mut farthest, mut rows_back, mut back_m) = (first * sign, 0, 0.0_f64);
         let mut at_m: Vec<f64> = Vec::with_capacity(column.len());
         for m in column {
-            // Where the place is not known the train stays where it was.
+            // In a row without a known position the train counts as standing.
             if *m * sign > farthest {
                 farthest = *m * sign;
             } else if *m * sign < farthest {
@@ -122,7 +122,7 @@ impl Axis {
         }
     }
 
-    /// Where a row lies; one beyond the end lies at the end.
+    /// Place of a row on the axis; by distance, a row beyond the end lies at the end.
     pub fn at(&self, row: usize) -> f64 {
         match self {
             Self::Time {
@@ -137,7 +137,7 @@ impl Axis {
     /// The whole axis, with the time for which the last row holds.
     pub fn whole(&self) -> Window {
         let (from, to) = (self.at(0), self.at(self.rows()));
-        // A train that stands still has run no way.
+        // A train that stands still covers no distance: the axis gets a length of 1 m.
         let to = if to > from { to } else { from + 1.0 };
         Window { from, to }
     }
@@ -169,7 +169,7 @@ impl Axis {
         }
     }
 
-    /// Distance below which two places are one.
+    /// Places closer together than this count as one.
     fn crumb(&self) -> f64 {
         match self {
             Self::Time { period_us, .. } => *period_us as f64 * 1e-9,

@@ -12,7 +12,7 @@ const ALWAYS: [&str; 7] = [
     "doors",
     "eb_cause",
 ];
-/// Signals shown at first.
+/// Number of signals shown at first.
 const FIRST: usize = 9;
 /// Time before and after the trigger in which changes count, s.
 const AROUND_S: f64 = 2.0;
@@ -35,7 +35,7 @@ pub fn usual(view: &TraceView) -> Vec<String> {
     others.sort_by(|a, b| b.1.total_cmp(&a.1));
     let room = FIRST.saturating_sub(chosen.len());
     chosen.extend(others.into_iter().take(room).map(|(place, _)| place));
-    // Equal ones keep their order.
+    // Signals of the same activity keep their order.
     chosen.sort_by(|a, b| activity(view, *b).total_cmp(&activity(view, *a)));
     chosen
         .into_iter()

@@ -15,7 +15,7 @@ impl Column {
         high: f32::NAN,
     };
 
-    /// Something is known.
+    /// Whether any value in the column of pixels is known.
     pub fn is_known(self) -> bool {
         !self.low.is_nan()
     }
@@ -30,7 +30,7 @@ impl Column {
     pub fn add(&mut self, value: f64) {
         let value = value as f32;
         if value.is_finite() {
-            // `min` and `max` prefer what is a number.
+            // `min` and `max` pass over NaN.
             self.low = self.low.min(value);
             self.high = self.high.max(value);
         }

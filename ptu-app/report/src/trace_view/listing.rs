@@ -8,10 +8,10 @@ use crate::words::Language;
 use ptu_runs::clock;
 use ptu_runs::failure::{Asked, Failure};
 
-/// Runs looked through, the newest.
+/// Number of the newest runs whose traces are listed.
 pub const RUNS: u32 = 500;
 
-/// Times from row to row that make sense: up to a minute.
+/// Permitted times from row to row, µs: up to a minute.
 const PERIODS_US: std::ops::RangeInclusive<i64> = 1..=60_000_000;
 
 /// A run with its traces.
@@ -35,9 +35,9 @@ pub struct ListedTrace {
     pub id: Id,
     /// Length of the trace, s.
     pub length_s: f64,
-    /// Faults it shows, each once.
+    /// Faults that the trace shows, each once.
     pub faults: Vec<ListedFault>,
-    /// Text in which a filter looks, in small letters.
+    /// Text in which a filter searches, in lower case.
     text: String,
 }
 
@@ -159,7 +159,7 @@ fn text(run: &RunSummary, began: &str, trace: Id, faults: &[ListedFault]) -> Str
 }
 
 impl ListedTrace {
-    /// Whether each word of the filter occurs in it.
+    /// Whether each word of the filter occurs in the text of the trace.
     pub fn fits(&self, filter: &str) -> bool {
         let filter = filter.to_lowercase();
         filter
@@ -168,7 +168,7 @@ impl ListedTrace {
     }
 }
 
-/// Reads a trace of this run; where no run is named, of the one its recording names.
+/// Reads a trace; its run is `run`, or else the run that the trace's recording names.
 ///
 /// # Errors
 /// The trace is gone or damaged, or the database fails.

@@ -38,7 +38,8 @@ impl MinMaxIndex {
     pub fn range(&self, samples: &[f64], from: usize, to: usize) -> Column {
         let mut all = Column::EMPTY;
         let (mut from, mut to) = (from, to.min(samples.len()));
-        // Rows up to whole stretches at both ends, then the same one level up.
+        // At both ends the rows outside whole stretches, then on each level the stretches that do not fill a stretch
+        // of the next level.
         while from < to && !from.is_multiple_of(FAN) {
             all.add(samples[from]);
             from += 1;

@@ -5,10 +5,10 @@
 //! * [`samples`]: columns and spans of a live plot, whose samples come one by one;
 //! * [`TraceView`]: a trace with every signal summarised once ([`MinMaxIndex`], [`Runs`]);
 //! * [`Axis`]: time or distance; [`VisibleRange`]: the part of it in view;
-//! * [`statistics`], [`value`], [`csv`](mod@csv): what is said and written of it;
+//! * [`statistics`], [`value`], [`csv`](mod@csv): statistics of a trace, its values as text, and its file;
 //! * [`choose`]: the signals to show first;
 //! * [`listing`]: which traces there are, and one read from the database with what happened in it;
-//! * [`Overlay`]: another trace or the good twin behind it;
+//! * [`Overlay`]: another trace or the good twin behind a trace;
 //! * [`TracePlot`]: all of this as one picture: lanes, view, cursors, the trace behind.
 
 mod axis;
@@ -56,7 +56,7 @@ impl Window {
         (value - self.from) / self.length()
     }
 
-    /// The value at a share of its length.
+    /// The value at a share of the window's length.
     pub fn at(self, share: f64) -> f64 {
         self.from + share * self.length()
     }

@@ -58,7 +58,7 @@ impl OverlayTrace {
         behind
     }
 
-    /// Counts time or distance; of a trace without distance no row is in view.
+    /// Sets the axis to time or distance; by distance, no row of a trace without distance is in view.
     pub fn set_axis(&mut self, kind: Kind) {
         let axis = Axis::of(kind, self.overlay.view.data(), self.shift_rows);
         self.axis = axis.unwrap_or_else(|| Axis::places(Vec::new()));
@@ -68,7 +68,7 @@ impl OverlayTrace {
 /// The first difference between a trace and the trace behind, which may be shifted by some rows.
 #[derive(Debug)]
 pub struct FirstDifference {
-    /// Rows by which the other one is laid later.
+    /// Rows by which the trace behind is shifted to later times.
     pub shift_rows: i64,
     /// Rows of the trace that differ, by signal.
     pub stretches: BTreeMap<String, Vec<Range<usize>>>,
@@ -79,7 +79,7 @@ pub struct FirstDifference {
 }
 
 impl Overlay {
-    /// Reads or makes what the trace `id` is to be laid against.
+    /// Reads or makes the trace that is laid behind the trace `id`.
     ///
     /// # Errors
     /// The other trace is gone, this one has no recording, what its bench was made of is gone, or the file cannot be read or has
@@ -118,7 +118,7 @@ impl Overlay {
         let beside;
         let came = match &self.has {
             None => came.data(),
-            // What a part of a trace leaves out does not differ.
+            // Rows that the trace behind leaves out do not differ.
             Some(has) => {
                 beside = only(came.data(), has, shift_rows);
                 &beside

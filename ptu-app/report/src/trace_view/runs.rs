@@ -10,7 +10,7 @@ use super::spans::{self, Span};
 /// Runs of equal samples, in order; samples that are not known are runs of NaN.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Runs {
-    /// First row and value of each.
+    /// First row and value of each run.
     runs: Vec<(u32, f64)>,
     rows: usize,
 }
@@ -32,7 +32,7 @@ impl Runs {
         }
     }
 
-    /// First row of a run, or the end of all.
+    /// First row of a run; after the last run, the end of the rows.
     fn start(&self, run: usize) -> usize {
         self.runs
             .get(run)

@@ -10,10 +10,10 @@ pub enum SpanKind {
     Busy,
 }
 
-/// A stretch of pixels; where none is, nothing is known.
+/// A stretch of pixels; between stretches nothing is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// Left edge, pixels from the window's.
+    /// Left edge, pixels from the left edge of the window.
     pub from: f32,
     /// Right edge.
     pub to: f32,

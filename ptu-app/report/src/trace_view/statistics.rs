@@ -21,7 +21,7 @@ pub enum Statistics {
     States {
         /// Changes from one known value to another.
         changes: usize,
-        /// Share of the known rows per value, the longest first, 0 to 1.
+        /// Values, each with its share of the known rows, 0 to 1; the greatest share first.
         shares: Vec<(f64, f64)>,
     },
     /// No row has a known value.

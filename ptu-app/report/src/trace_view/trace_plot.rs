@@ -66,7 +66,7 @@ pub struct TracePlot {
     pub behind: Option<OverlayTrace>,
     /// Views before each zoom, the latest last.
     before: Vec<Window>,
-    /// Rows, and their statistics by lane; empty until somebody asks for statistics.
+    /// Rows of the statistics, and the statistics by lane; empty until somebody asks for statistics.
     said: (Range<usize>, Vec<Option<Statistics>>),
 }
 
@@ -97,7 +97,7 @@ impl TracePlot {
         self.camera.window()
     }
 
-    /// Counts time or distance; false when the trace tells no distance. The same rows stay in view.
+    /// Sets the axis to time or distance; false if the trace tells no distance. The same rows stay in view.
     pub fn set_axis(&mut self, kind: Kind) -> bool {
         if self.axis.kind() == kind {
             return true;
@@ -163,7 +163,7 @@ impl TracePlot {
         lane > 0 && unit(lane).is_some() && unit(lane) == unit(lane - 1)
     }
 
-    /// The signals that are drawn in one lane each, from top to bottom.
+    /// Ranges of `lanes` that are drawn together in one lane, from top to bottom.
     pub fn groups(&self) -> Vec<Range<usize>> {
         let mut groups: Vec<Range<usize>> = Vec::new();
         for (place, lane) in self.lanes.iter().enumerate() {
@@ -214,8 +214,8 @@ impl TracePlot {
         }
     }
 
-    /// From the least to the greatest value of a lane's quantity, of the trace behind too, with room:
-    /// over the whole trace, or over what is in view.
+    /// Scale of a quantity: its least and greatest value, also in the trace behind, with some room. With `close` the
+    /// values in view count, else all values of the trace.
     pub fn range(&self, place: usize) -> (f64, f64) {
         let extent = |view: &TraceView, place, axis: &Axis| {
             if self.close {
@@ -246,7 +246,7 @@ impl TracePlot {
         self.cursors[cursor as usize]
     }
 
-    /// Puts a cursor on the last row at or before a place; before the first row there is none.
+    /// Puts a cursor on the last row at or before a place on the axis; does nothing before the first row.
     pub fn put(&mut self, cursor: Cursor, place: f64) {
         if let Some(row) = self.axis.row_at(place) {
             self.cursors[cursor as usize] = Some(row);
@@ -280,7 +280,7 @@ impl TracePlot {
         Some(self.value(place, Cursor::B)? - self.value(place, Cursor::A)?)
     }
 
-    /// Rows that statistics are of: between the cursors, both included, or in view.
+    /// Rows for the statistics, and whether they are those between the cursors, both included; else they are in view.
     pub fn stretch_rows(&self) -> (Range<usize>, bool) {
         match self.cursors {
             [Some(a), Some(b)] => (a.min(b)..a.max(b) + 1, true),

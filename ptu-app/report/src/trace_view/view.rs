@@ -16,7 +16,7 @@ pub struct TraceView {
     summaries: Vec<Summary>,
 }
 
-/// Kind of a signal, and its samples in short.
+/// Kind of a signal, with a summary of its samples.
 #[derive(Debug)]
 pub enum Summary {
     /// A number that is measured or counted.

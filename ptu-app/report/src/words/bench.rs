@@ -19,7 +19,7 @@ wordings! {
         not_armed: "The unit is not armed: hold Arm down first", "시험 허가 상태가 아닙니다. 먼저 시험 허가를 1초 동안 누르십시오";
         key_off: "The maintenance key is off", "정비 키가 꺼져 있습니다";
 
-        // What every value can be.
+        // States of any value.
         not_known: "not known", "알 수 없음";
         on: "on", "켜짐";
         off: "off", "꺼짐";

@@ -1,11 +1,11 @@
-//! The care of the history: exchange with a server, import, backup, check.
+//! Maintenance of the history: exchange with a server, import, backup, check.
 
 use fault_db::SyncPhase;
 
 use super::wordings;
 
 wordings! {
-    /// The care of the history: exchange with a server, import, backup, check.
+    /// Maintenance of the history: exchange with a server, import, backup, check.
     HistoryMaintenance {
         title: "History", "이력 관리";
         file: "history file", "이력 파일";

@@ -82,7 +82,7 @@ impl Common {
         self.verdict(from_stored(verdict))
     }
 
-    /// Where something failed that is no step.
+    /// Name of the place outside steps at which something failed.
     pub fn outside(&self, place: Outside) -> &'static str {
         match place {
             Outside::BringUp => self.bring_up,

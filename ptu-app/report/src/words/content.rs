@@ -16,7 +16,7 @@ use serde::Deserialize;
 
 /// The file of texts that are built in.
 const KOREAN: &str = include_str!("../../../../scripts/korean.toml");
-/// Between texts that were found together.
+/// Separator of texts that stand in one message and are looked up one by one.
 const JOINED: &str = "; ";
 
 static CONTENT: LazyLock<Content> =
@@ -93,7 +93,7 @@ pub(super) fn measurement(name: &str) -> Option<String> {
 #[serde(default, deny_unknown_fields)]
 struct File {
     steps: BTreeMap<String, String>,
-    /// Apart from the others: `released` is a state, too.
+    /// Apart from the other texts: `released` is the name of a measurement, and a state, too.
     measurements: BTreeMap<String, String>,
     modes: BTreeMap<String, String>,
     signals: BTreeMap<String, String>,

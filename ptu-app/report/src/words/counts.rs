@@ -92,7 +92,7 @@ impl Words {
 }
 
 impl Counts {
-    /// Text of a sign in a process that chance does not explain.
+    /// Text of a sign that a process varies by more than chance.
     pub fn sign(&self, kind: &str) -> &'static str {
         match kind {
             "beyond_control" => self.beyond_control,

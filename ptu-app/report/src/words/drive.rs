@@ -27,7 +27,7 @@ wordings! {
         drive: "Start the run", "주행 시작";
         cannot_list: "Lines and trains cannot be listed", "노선과 열차 목록을 읽을 수 없습니다";
 
-        // Under way, and what it came to.
+        // Progress and result.
         driving: "driven: {done} of {of}", "주행: {of}건 중 {done}건";
         stopped: "Stopped: {done} of {of} were driven.", "정지함: {of}건 중 {done}건을 주행했습니다.";
         cannot_drive: "It cannot be driven", "주행할 수 없습니다";

@@ -25,7 +25,7 @@ impl Language {
         self.choose(["English", "한국어"])
     }
 
-    /// The English or the Korean one.
+    /// Of an English and a Korean item, the one in this language.
     pub fn choose<T>(self, [english, korean]: [T; 2]) -> T {
         match self {
             Self::English => english,
@@ -49,7 +49,7 @@ impl Language {
         })
     }
 
-    /// Sets what the user prefers, before anything is shown.
+    /// Sets this language as the one that the user prefers, before anything is shown.
     pub fn prefer(self) {
         let _ = PREFERRED.set(self);
     }
@@ -83,7 +83,7 @@ fn asked(words: &[OsString]) -> Option<Language> {
     })
 }
 
-/// The language of messages by the system's locale (POSIX 8.2): the first variable that says something counts.
+/// The language of messages by the system's locale (POSIX 8.2): the first variable that is not empty counts.
 fn of_locale() -> Language {
     let variables = ["LC_ALL", "LC_MESSAGES", "LANG"];
     let mut said = variables.iter().filter_map(std::env::var_os);

@@ -46,7 +46,7 @@ impl Life {
         }
     }
 
-    /// Where it was, or what was in it.
+    /// Heading of the stays: trains of a unit, units of a train, or units of a part.
     pub fn stays(&self, of: LifeOf) -> &'static str {
         match of {
             LifeOf::Unit => self.trains,

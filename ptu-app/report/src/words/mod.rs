@@ -116,9 +116,9 @@ catalogue! {
     faults: faults::Faults,
     /// Statistics of the fault history.
     statistics: statistics::Statistics,
-    /// The care of the history.
+    /// Maintenance of the fault history.
     care: care::HistoryMaintenance,
-    /// Life by serial number.
+    /// Life of units, trains and parts by serial number.
     life: life::Life,
     /// Stored memory of a unit.
     memory: memory::Memory,
@@ -139,7 +139,7 @@ catalogue! {
 }
 
 impl Words {
-    /// The text in this language, of the English and the Korean one.
+    /// Of an English and a Korean text, the one in this language.
     pub(crate) fn choose<T>(&self, both: [T; 2]) -> T {
         self.style(false).choose(both)
     }
@@ -153,7 +153,7 @@ impl Words {
         }
     }
 
-    /// A text as it is written in English; in Korean what is said in its place, if there is anything.
+    /// The English text, or in Korean the wording that `korean` returns, if it returns one.
     fn or_korean<'a>(
         &self,
         text: &'a str,
@@ -178,7 +178,7 @@ impl Words {
         self.or_korean(name, || Signal::from_name(name).map(say::condition::name))
     }
 
-    /// Name of a part of the catalogue.
+    /// Name of a line-replaceable part, by its identifier.
     pub fn part<'a>(&self, id: &'a str) -> &'a str {
         self.choose(names::part(id))
     }
@@ -199,7 +199,7 @@ impl Words {
         }
     }
 
-    /// Name of a measurement, which scripts give, but for those of the unit's self-test.
+    /// Name of a measurement: an item of the unit's self-test, or else as a script calls the measurement.
     pub fn measurement<'a>(&self, name: &'a str) -> Cow<'a, str> {
         match self.bench.self_test_item(name) {
             Some(item) => Cow::Owned(item),
@@ -212,7 +212,7 @@ impl Words {
 mod tests {
     use super::*;
 
-    /// Parts that tell readers of a command line what to type. Of `verify`, sheets take some that do not.
+    /// Parts that tell readers of a command line what to type. Sheets use only the wordings of `verify` that do not.
     const OF_TERMINAL: [&str; 4] = ["terminal", "counts", "doctor", "verify"];
 
     /// All wordings of the catalogue, and those of refusals.
@@ -265,7 +265,7 @@ mod tests {
                     && word.chars().any(|c| c.is_ascii_uppercase())
             })
         };
-        // Written so for their weight alone, or as the headings of columns.
+        // These wordings have words in capitals for emphasis, or as headings of columns.
         let otherwise = "armed|changed|not_verified|wrong|back_is|course_is|rate_is|stand_out";
         let is_otherwise = |key: &str| otherwise.split('|').any(|of| key.starts_with(of));
         let named = all_told()

@@ -16,7 +16,7 @@ pub(super) fn part(id: &str) -> [&str; 2] {
     known.map_or([id; 2], |part| [&part.name, &part.name_ko])
 }
 
-/// A text without the capital it begins with, unless that is of a word in capitals.
+/// The text with a small first letter, unless its first word is in capitals.
 pub(super) fn within_a_sentence(text: &str) -> String {
     let mut letters = text.chars();
     match (letters.next(), letters.clone().next()) {

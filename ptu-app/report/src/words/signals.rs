@@ -11,7 +11,7 @@ wordings! {
         length: "length", "길이";
         full_scale: "full scale", "최대 눈금";
 
-        // What was heard.
+        // Signals that were detected.
         heard: "What was heard", "수신 결과";
         nothing: "No code, no TWC and no marker.", "속도 코드, TWC, 마커가 없습니다.";
         channel: "channel", "채널";
@@ -43,7 +43,7 @@ wordings! {
         many_channels: "{n} channels: only the first {most} are read", "채널 {n}개 중 처음 {most}개만 읽습니다";
         broken: "the file is cut off or damaged from here on ({why})", "여기서부터 파일이 잘렸거나 손상되었습니다 ({why})";
 
-        // How it looks.
+        // Plots.
         of_channel: "Channel {n}", "채널 {n}";
         waveform: "Waveform", "파형";
         spectrogram: "Spectrum over time, lighter is stronger: {low} to {high} dB over 1 mV", "시간별 스펙트럼, 밝을수록 강함: 1 mV 기준 {low} ~ {high} dB";

@@ -65,7 +65,7 @@ wordings! {
 }
 
 impl Statistics {
-    /// Text of a sign in a process that chance does not explain.
+    /// Text of a sign that a process varies by more than chance.
     pub fn sign(&self, kind: &str) -> &'static str {
         match kind {
             "nine_on_one_side" => self.nine_on_one_side,

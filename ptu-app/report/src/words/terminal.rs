@@ -163,7 +163,7 @@ impl Words {
         }
     }
 
-    /// The verdict of a stored run, or its state while there is none, in the same words.
+    /// The verdict of a stored run, or else its state; in English by its name in files and filters.
     pub fn run_verdict(&self, run: &RunSummary) -> &'static str {
         match (run.verdict, self.language, run.state) {
             (Some(verdict), ..) => self.verdict_name(from_stored(verdict)),
@@ -200,7 +200,7 @@ impl Words {
         }
     }
 
-    /// All of one place in the same words.
+    /// Findings in one place, in tables of a terminal: in English by the names in scripts.
     pub fn short_findings(&self, all: &Findings) -> String {
         match self.language {
             Language::English => all.to_string(),
@@ -208,7 +208,7 @@ impl Words {
         }
     }
 
-    /// Condition that an action waits for, in the same words.
+    /// Condition that an action waits for, in tables of a terminal: in English by the names in scripts.
     pub fn awaited_briefly(&self, action: &Action) -> String {
         match self.language {
             Language::English => action.to_string(),
@@ -216,7 +216,7 @@ impl Words {
         }
     }
 
-    /// One finding in the same words.
+    /// One finding, in tables of a terminal: in English by the names in scripts.
     pub fn short_finding(&self, one: &Finding) -> String {
         match self.language {
             Language::English => one.to_string(),

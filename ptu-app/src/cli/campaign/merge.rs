@@ -11,11 +11,11 @@ use ptu_runs::new_file::kind;
 use ptu_runs::stdio;
 use ptu_runs::whole_file::write;
 
-/// Put the runs of shards together, of a campaign or of `ptu drive --monte-carlo`
+/// Merge the runs of the shards of a campaign, or of `ptu drive --monte-carlo`
 ///
-/// The order of the files makes no difference, nor does a file that is named twice: the result is, byte for byte,
-/// the file of one process that made all runs. The command of the shards, without --shard and with --runs FILE,
-/// then gives the result of all.
+/// The order of the files makes no difference, nor does a file that is named twice: the result is, byte for byte, the
+/// file of one process that made all runs. Then give the shards' command without --shard and with --runs FILE: it
+/// prints the result of all runs.
 ///
 /// Examples:
 ///   ptu campaign merge shard-*.zst --out runs.zst
@@ -26,13 +26,13 @@ pub struct MergeArguments {
     /// Files of runs
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// File to write; it may be one of those
+    /// File to write; it may be one of the files to merge
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
 
 impl MergeArguments {
-    /// Merges.
+    /// Merges the files, and says how many runs there are and are missing.
     pub fn run(self) -> Result<Exit, Failure> {
         let merged = merge(&self.files)?;
         write(&self.out, kind::RUNS, &merged.bytes)?;

@@ -1,4 +1,4 @@
-//! `ptu campaign missing`: what is to be run again.
+//! `ptu campaign missing`: lists the shards that have to be run again.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use ptu_runs::failure::{Exit, Failure};
 
 /// List the shards that lack runs, of a campaign or of `ptu drive --monte-carlo`
 ///
-/// Exit code 0 when no run is missing, 1 when some are.
+/// Exit codes: 0 no run is missing, 1 some are missing.
 ///
 /// Examples:
 ///   ptu campaign missing shard-*.zst
@@ -21,7 +21,7 @@ pub struct MissingArguments {
     /// Files of runs
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Number of shards [default: that of the files]
+    /// Number of shards [default: the number in the files]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     shards: Option<u32>,
     #[command(flatten)]
@@ -29,7 +29,6 @@ pub struct MissingArguments {
 }
 
 impl MissingArguments {
-    /// Lists.
     pub fn run(self) -> Result<Exit, Failure> {
         let missing = missing(&self.files, self.shards)?;
         let told = self.json.answer(|| &missing, || text(&missing));

@@ -31,14 +31,14 @@ pub(super) fn check(database: &Database, json: Json) -> Result<Exit, Failure> {
     answered(told, exit)
 }
 
-/// Whether it is a file of an earlier version, which is read once it is brought up to date.
+/// Whether the database is a file of an earlier version, which can be read only once it is brought up to date.
 fn has_older_schema(database: &Database) -> bool {
     let opened = database.file().map(|path| Store::open_read_only(&path));
     matches!(opened, Ok(Err(StoreError::OlderSchema { .. })))
 }
 
-/// Checks a copy that is brought up to date; the file stays as it is. Bringing it up to date changes nothing that
-/// its seals cover.
+/// Brings a copy of the file up to date and checks the copy; the file is not changed. Bringing up to date changes
+/// nothing that the seals cover.
 fn check_updated_copy(database: &Database, failure: Failure) -> Result<CheckReport, Failure> {
     let path = database.file()?;
     let cannot = |error: std::io::Error| {
@@ -66,7 +66,7 @@ fn check_updated_copy(database: &Database, failure: Failure) -> Result<CheckRepo
     Ok(report)
 }
 
-/// Remarks of the check, and where the chain of seals ends.
+/// Text below the result: remarks of the check, and the last entry of the chain of seals.
 fn besides(report: &CheckReport) -> String {
     let remarks = report.remarks.iter().map(|remark| format!("\n{remark}"));
     let head = report
@@ -78,7 +78,7 @@ fn besides(report: &CheckReport) -> String {
         .collect()
 }
 
-/// All problems, and once for each kind what to do about it.
+/// Table of all problems, with advice once for each kind of problem.
 fn text(report: &CheckReport) -> String {
     let words = Words::shown();
     let mut table = Table::headed(&[words.terminal.kind, words.report.what]);

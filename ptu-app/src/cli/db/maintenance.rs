@@ -17,30 +17,30 @@ use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure, FileTrouble, Trouble, Why, in_place_of};
 use ptu_runs::stdio;
 
-/// Which traces may be deleted; those of faults that are not closed never are.
+/// Options that say which traces may be deleted; traces of a fault that is not closed are never deleted.
 #[derive(Debug, Args)]
 pub(super) struct PruneArguments {
-    /// Older than: 90d, 2026-03, 2026-03-21
+    /// Delete traces older than: 90d, 2026-03, 2026-03-21
     #[arg(long, value_name = "TIME", value_parser = since_argument, allow_hyphen_values = true,
         required_unless_present_any = ["passed_only", "max_size"])]
     older_than: Option<i64>,
-    /// Of runs that passed only
+    /// Delete only traces of runs that passed
     #[arg(long)]
     passed_only: bool,
-    /// The oldest, until the file is no larger than: 2GB, 500MB
+    /// Delete the oldest traces until the file is no larger than: 2GB, 500MB
     #[arg(long, value_name = "SIZE", value_parser = size_argument)]
     max_size: Option<u64>,
-    /// Also those that wait for `db sync`
+    /// Delete also traces that wait for `db sync`
     #[arg(long)]
     unsent_too: bool,
-    /// Count only
+    /// Only count what would be deleted
     #[arg(long)]
     dry_run: bool,
 }
 
 pub(super) fn backup(database: &Database, to: &Path) -> Result<Exit, Failure> {
     database.open_read_only()?.backup(only_file(to)?)?;
-    // Head of the copy: another process may have recorded more into the file meanwhile.
+    // The copy's last seal, not the file's: another process may have recorded more into the file meanwhile.
     let head = fault_db::Store::open_read_only(to)?.head()?;
     let words = Words::shown();
     let mut said = fill(words.care.backed_up, &[("file", &to.display())]);
@@ -55,7 +55,7 @@ pub(super) fn import(database: &Database, from: &Path, json: Json) -> Result<Exi
     let store = database.open_or_make()?;
     let counts = store.import(from);
     let counts = counts.map_err(|error| of_named_file(from, error))?;
-    // Only an import that brought something can have brought a conflict; older ones were told before.
+    // Only an import that added events can have added a conflict; earlier conflicts were told before.
     let conflicts = match counts.events {
         0 => Vec::new(),
         _ => store.conflicts()?,
@@ -111,7 +111,7 @@ pub(super) fn rebuild(database: &Database) -> Result<Exit, Failure> {
     print_out(&said)
 }
 
-/// An error of a file that was not named with --db has no advice to name another one so.
+/// Failure for a file that was not named by --db: without the advice to name another file by --db.
 fn of_named_file(file: &Path, error: StoreError) -> Failure {
     match &error {
         StoreError::Missing(path) if path == file => {
@@ -124,7 +124,7 @@ fn of_named_file(file: &Path, error: StoreError) -> Failure {
     }
 }
 
-/// What a merge did, and what it left as it was, with the next move.
+/// Prints what a merge did, what it left as it was, and what to do next.
 fn tell_merged(
     counts: &MergeCounts,
     conflicts: &[StateConflict],
@@ -147,7 +147,7 @@ fn tell_merged(
     answered(told, exit)
 }
 
-/// A size such as `2GB`, `500MB`, `64kB` or a number of bytes.
+/// Parses a size, as `2GB`, `500MB`, `64kB` or a number of bytes; the result is in bytes.
 fn size_argument(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|letter: char| letter.is_ascii_alphabetic());
     let unit = match text[digits.len()..].to_ascii_lowercase().as_str() {

@@ -30,29 +30,29 @@ enum Verb {
         #[command(flatten)]
         json: Json,
     },
-    /// Compute counts and search words again from the rows they follow from
+    /// Compute derived counts and search words again from the other rows
     Rebuild,
     /// Copy the database while it is in use
     Backup {
         /// The new file
         to: PathBuf,
     },
-    /// Add everything of another database that is not here yet
+    /// Add everything of another database that this database does not have
     ///
-    /// A run that is over in both files stays as it is. If the two differ, the run is named, and the exit code is 3.
-    /// A run that does not fit its seal, and a row with impossible content, are named and left out, with the same exit
-    /// code; the rest is added.
+    /// A run that has ended in both files is not changed. If its two copies differ, the run is named, and the exit code
+    /// is 3. A run that does not fit its seal, and a row with impossible content, are named and left out, with the same
+    /// exit code; the rest is added.
     Import {
         /// The other file
         from: PathBuf,
         #[command(flatten)]
         json: Json,
     },
-    /// Add everything that is here to another database, or write it as Parquet files
+    /// Add everything of this database to another database, or write it as Parquet files
     ///
-    /// A run that is over in both files stays as it is. If the two differ, the run is named, and the exit code is 3. With
-    /// --parquet the views of `ptu db schema` are written for DuckDB, Polars and Spark, a file for
-    /// each month; a month that has not changed is left as it is.
+    /// A run that has ended in both files is not changed. If its two copies differ, the run is named, and the exit code
+    /// is 3. With --parquet the views of `ptu db schema` are written for DuckDB, Polars and Spark, a file for each
+    /// month; the file of a month that has not changed is left as it is.
     Export {
         /// The other file, made if need be
         #[arg(required_unless_present = "parquet", conflicts_with = "parquet")]
@@ -69,7 +69,7 @@ enum Verb {
     /// Look after a server for many laptops
     Server(server::ServerArguments),
     Query(query::QueryArguments),
-    /// Print what `ptu db query` can be asked about
+    /// Print the views and columns that `ptu db query` can ask about
     Schema,
 }
 

@@ -17,7 +17,7 @@ use ptu_runs::table::Table;
 /// Bytes of a megabyte.
 const MEGABYTE: u64 = 1_000_000;
 
-/// Ask the database in SQL, which only reads; `ptu db schema` lists the views
+/// Ask the database in SQL, which may only read; `ptu db schema` lists the views
 ///
 /// Examples:
 ///   ptu db query "SELECT unit, count(*) FROM faults WHERE state = 'open' GROUP BY unit"
@@ -31,10 +31,10 @@ pub struct QueryArguments {
     /// Stop the question after this time, s
     #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=86_400))]
     max_time: u32,
-    /// Memory it may take in a file, MB
+    /// Memory that a question to a database file may take, MB
     #[arg(long, value_name = "MB", default_value_t = 256, value_parser = clap::value_parser!(u32).range(32..=1_000_000))]
     max_memory: u32,
-    /// Temporary disk it may take in a file, MB
+    /// Temporary disk space that a question to a database file may take, MB
     #[arg(long, value_name = "MB", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     max_disk: u32,
     /// Print at most so many rows, whatever LIMIT says
@@ -78,7 +78,7 @@ impl QueryArguments {
 }
 
 impl QueryArguments {
-    /// Which bound it was, and how to allow more.
+    /// Failure that says which bound the query exceeded, and how to allow more.
     fn exceeded(&self, limit: QueryLimit, disk: bool) -> Failure {
         let Self {
             max_time,
@@ -95,7 +95,7 @@ impl QueryArguments {
     }
 }
 
-/// The names of the columns; of two with one name the last has another.
+/// Names of the columns; of columns with one name, the later ones get `_` added.
 fn columns(answer: &QueryResult) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for column in &answer.columns {
@@ -108,7 +108,7 @@ fn columns(answer: &QueryResult) -> Vec<String> {
     names
 }
 
-/// Each row by the names of its columns.
+/// Rows as JSON objects whose keys are the names of the columns.
 fn rows(answer: &QueryResult, columns: &[&str]) -> Vec<Value> {
     let row = |row: &Vec<SqlValue>| {
         let cells = columns.iter().zip(row);
@@ -143,8 +143,7 @@ fn table(answer: &QueryResult) -> String {
     table.render()
 }
 
-/// The number in as few digits as tell it from all others; with an exponent where zeros would fill the
-/// table.
+/// The number in as few digits as distinguish it from all others; very small and very large numbers have an exponent.
 fn real(number: f64) -> String {
     let size = number.abs();
     if size > 0.0 && size.is_finite() && !(1e-5..=1e15).contains(&size) {

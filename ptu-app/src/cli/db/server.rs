@@ -7,7 +7,7 @@ use crate::cli::Json;
 use ptu_runs::clock;
 use ptu_runs::failure::{Exit, Failure};
 
-/// The account of the laptops, if none is named.
+/// Default name of the laptops' account on the server.
 const LAPTOPS: &str = "ptu";
 
 #[derive(Debug, Args)]
@@ -20,11 +20,10 @@ pub(super) struct ServerArguments {
 enum Verb {
     /// Make the tables, or bring them up to date, and let laptops add rows and read
     ///
-    /// Run once by who looks after the server, with the account that owns the database or as a superuser; done
-    /// again it changes nothing. The laptops' account may add rows and read; it can neither change nor remove
-    /// any.
+    /// Run once by whoever looks after the server, with the account that owns the database or as a superuser; a second
+    /// run changes nothing. The laptops' account may add rows and read, but neither change nor remove rows.
     ///
-    /// Exit codes: 0 done, 2 wrong address, 3 no server, or it may not be done.
+    /// Exit codes: 0 done, 2 wrong address, 3 no server, or the account may not do this.
     Init {
         /// The server, as postgres://OWNER@HOST/DATABASE; write a password into ~/.pgpass
         #[arg(value_name = "ADDRESS")]
@@ -50,7 +49,7 @@ impl ServerArguments {
     }
 }
 
-/// What was done, and what is left to do.
+/// Text that says what was done, and what is left to do by hand.
 fn told(done: &ServerSetup, address: &Address) -> String {
     let ServerSetup {
         server,

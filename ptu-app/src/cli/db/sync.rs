@@ -17,7 +17,7 @@ use ptu_runs::{clock, progress, stdio};
 
 /// Send this laptop's history to a server, and receive what others recorded about its faults
 ///
-/// The laptop's file is complete at all times. The next sync continues one that broke off.
+/// The laptop's file is complete at all times. A sync that broke off is continued by the next sync.
 ///
 /// Exit codes: 0 done, 2 wrong address, 3 no server, or something is damaged or differs, 130 stopped.
 #[derive(Debug, Args)]
@@ -25,10 +25,10 @@ pub struct SyncArguments {
     /// The server, as postgres://USER@HOST/DATABASE; write a password into ~/.pgpass
     #[arg(value_name = "ADDRESS")]
     server: String,
-    /// Leave samples for a later sync
+    /// Leave the samples of traces for a later sync
     #[arg(long)]
     no_traces: bool,
-    /// The file is a copy or a backup with which this laptop continues: it gets a name of its own
+    /// The file is a copy or a backup with which this laptop continues: the file gets an identity of its own
     #[arg(long)]
     as_copy: bool,
     #[command(flatten)]
@@ -38,9 +38,9 @@ pub struct SyncArguments {
 impl SyncArguments {
     pub(super) fn run(&self, database: &Database) -> Result<Exit, Failure> {
         let begun = Instant::now();
-        // Not while the command line is read: what is wrong there is shown as it stands, password and all.
+        // Not parsed by clap, whose error would show a wrong address with its password.
         let address: Address = self.server.parse()?;
-        // A name that was mistyped would be synced as a new, empty history.
+        // A mistyped name must not be synced as a new, empty history.
         let path = database.file()?;
         if !path.exists() {
             return Err(StoreError::Missing(path).into());
@@ -49,7 +49,7 @@ impl SyncArguments {
         let server = Store::connect(&address, clock::ids())?;
         let stop = Stop::default();
         let asked = stop.clone();
-        // A server that has fallen silent ends no batch: a second press does not wait for it.
+        // A batch does not end while the server is silent: a second Ctrl-C ends the program at once.
         stop.listen_and(move || {
             if asked.presses() > 1 {
                 std::process::exit(Exit::Aborted.code().into());

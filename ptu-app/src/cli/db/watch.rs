@@ -9,14 +9,14 @@ use std::time::{Duration, Instant};
 use ptu_report::words::tell;
 use ptu_runs::failure::{Exit, Failure, KeepTrouble};
 
-/// From one look at the temporary files to the next.
+/// Interval at which the size of the temporary files is read.
 const LOOK: Duration = Duration::from_millis(50);
-/// A function of SQL that is at work when the time is over is not waited for longer than this.
+/// Time after the limit in which an SQL function under way must return; else the program ends.
 const GRACE: Duration = Duration::from_secs(1);
 /// Beginning of the names of SQLite's temporary files.
 const TEMPORARY: &str = "etilqs_";
 
-/// The bounds of one question.
+/// The bounds of one query.
 pub struct Watch {
     until: Instant,
     most_time: Duration,
@@ -25,7 +25,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Time runs from now on.
+    /// Bounds of a query that begins now.
     pub fn begin(most_time: Duration, most_disk: u64) -> Self {
         Self {
             until: Instant::now() + most_time,
@@ -35,8 +35,8 @@ impl Watch {
         }
     }
 
-    /// Asks with something that says whether it may go on. Ends the program should it not come back: a question
-    /// only reads, and what it has of the disk has no name.
+    /// Runs the query `ask`; the function it is given says whether it may go on. Ends the program if the query does not
+    /// return: a query only reads, and its temporary files are nameless, so the system removes them.
     pub fn over<T>(&self, ask: impl FnOnce(Box<dyn FnMut() -> bool + Send>) -> T) -> T {
         let (until, most_time) = (self.until, self.most_time);
         let (done, waits) = mpsc::channel::<()>();
@@ -70,13 +70,13 @@ impl Watch {
         })
     }
 
-    /// Whether the disk stopped the command, not the time.
+    /// Whether the limit of disk space, not of time, stopped the query.
     pub fn stopped_by_disk(&self) -> bool {
         self.disk.load(Ordering::Relaxed)
     }
 }
 
-/// Size of SQLite's temporary files that are open in this process; they have no name any more.
+/// Size of SQLite's temporary files that this process has open, bytes; they have no name in any folder.
 fn temporary_bytes() -> u64 {
     let open = std::fs::read_dir("/proc/self/fd").into_iter().flatten();
     let sizes = open.flatten().filter_map(|entry| {

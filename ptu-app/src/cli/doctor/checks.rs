@@ -15,20 +15,20 @@ use ptu_runs::owner_only;
 use ptu_runs::places::{Placed, Places};
 use ptu_runs::run::{BenchChoice, Suite};
 
-/// Below this, runs may soon find no room, bytes, a value of this program: some thousand runs with their traces.
+/// Free bytes below which later runs may not fit (warning): some thousand runs with traces. A value of this program.
 const LITTLE_ROOM: u64 = 1 << 30;
-/// Below this, the next runs may, bytes, a value of this program.
+/// Free bytes below which the next runs may not fit (wrong). A value of this program.
 const NO_ROOM: u64 = 100 << 20;
-/// Times that an instrument is tried.
+/// Rounds in which each instrument is tried.
 const ROUNDS: u32 = 20;
-/// Kind as which a Modbus module is registered; its reaction time has a unit of its own, as it is no uncertainty of
-/// a measured time.
+/// Kind under which a Modbus module is registered. Its reaction time is registered under a unit of its own, as it is
+/// not the uncertainty of a measured time.
 const MODULE: &str = "modbus module";
 const REACTION: &str = "ms reaction";
-/// The newest run is at most this far ahead of a clock that is right, µs: another computer's clock may be off a little.
+/// The newest run may be this far ahead of a clock that is right, µs: the other computer's clock may be off a little.
 const AHEAD_US: i64 = 3_600_000_000;
 
-/// The scripts load, and own ones do not silently replace what came with the program.
+/// Checks that the scripts load, and says which shipped files the user's own files replace.
 pub(super) fn scripts(found: Result<ScriptsDirectory, Failure>, words: &Words) -> Vec<Finding> {
     let doctor = &words.doctor;
     let subject = doctor.scripts;
@@ -67,7 +67,7 @@ pub(super) fn scripts(found: Result<ScriptsDirectory, Failure>, words: &Words) -
     findings
 }
 
-/// Serial ports can be opened.
+/// Checks that this user can open the serial ports.
 pub(super) fn ports(words: &Words) -> Vec<Finding> {
     let doctor = &words.doctor;
     let subject = doctor.ports;
@@ -95,9 +95,9 @@ pub(super) fn ports(words: &Words) -> Vec<Finding> {
     findings
 }
 
-/// A port that this user may not open, and the group whose members may, if there is one.
+/// Finding on a port that this user may not open; the remedy names the group whose members may.
 fn closed_port(path: &str, kind: &str, group: Option<&str>, doctor: &Doctor) -> Finding {
-    // A member of the group "root" may do more than open ports.
+    // Nobody should join the group "root": its members may do more than open ports.
     let remedy = match group.filter(|group| *group != "root") {
         Some(group) => fill(doctor.join_group, &[("group", &group)]),
         None => doctor.install_rule.into(),
@@ -106,7 +106,7 @@ fn closed_port(path: &str, kind: &str, group: Option<&str>, doctor: &Doctor) -> 
     Finding::warning(doctor.ports, fill(doctor.port_closed, &of), remedy)
 }
 
-/// The window can open.
+/// Checks that there is a display for the window.
 pub(super) fn display(words: &Words) -> Finding {
     let doctor = &words.doctor;
     let subject = doctor.display;
@@ -123,7 +123,7 @@ pub(super) fn display(words: &Words) -> Finding {
     }
 }
 
-/// The history can be read and written, and is not of the future.
+/// Checks that the history can be read and written, and that its newest run is not of the future.
 pub(super) fn database(file: &Path, words: &Words) -> Vec<Finding> {
     let doctor = &words.doctor;
     let subject = doctor.database;
@@ -201,7 +201,7 @@ pub(super) fn disk(file: &Path, words: &Words) -> Finding {
     }
 }
 
-/// Others keep the clock right.
+/// Checks that the computer's clock is set by the network.
 pub(super) fn clock(words: &Words) -> Finding {
     let doctor = &words.doctor;
     let subject = doctor.clock;
@@ -215,7 +215,7 @@ pub(super) fn clock(words: &Words) -> Finding {
     }
 }
 
-/// The server answers, if there is one.
+/// Checks that the server answers, if one is named.
 pub(super) fn server(server: Option<&Address>, words: &Words) -> Finding {
     let doctor = &words.doctor;
     let subject = doctor.server;
@@ -231,7 +231,7 @@ pub(super) fn server(server: Option<&Address>, words: &Words) -> Finding {
     }
 }
 
-/// Each instrument of a bench does its part; what was measured goes into the register of instruments.
+/// Tries each instrument of a bench, and registers the reaction time that was measured.
 pub(super) fn bench(
     places: &Places,
     store: &Store,

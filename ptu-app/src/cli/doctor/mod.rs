@@ -13,8 +13,8 @@ use ptu_runs::table::padded;
 
 /// Check this computer: scripts, ports, display, database, disk, clock and server
 ///
-/// Without --bench it changes nothing and opens no port, and it says for each finding what to do. With --bench it examines
-/// instruments alone: it switches relays that prove themselves, and registers what it measured.
+/// Without --bench nothing is changed and no port is opened; each finding says what to do. With --bench only the
+/// bench's instruments are examined: relays that prove themselves are switched, and the measured times are registered.
 ///
 /// Examples:
 ///   ptu doctor
@@ -30,7 +30,7 @@ pub struct DoctorArguments {
     /// Server that this computer syncs with: postgres://USER@HOST/DATABASE
     #[arg(long, value_name = "ADDRESS")]
     server: Option<Address>,
-    /// Check the instruments of a bench, benches/NAME.toml or a file ending in .toml: they are switched, and registered
+    /// Examine the instruments of a bench, benches/NAME.toml or a file ending in .toml; switches and registers them
     #[arg(long, value_name = "NAME|FILE")]
     bench: Option<String>,
     #[command(flatten)]
@@ -41,7 +41,7 @@ pub struct DoctorArguments {
     scripts: ScriptsOption,
 }
 
-/// Health of a thing.
+/// How a checked thing stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum State {
@@ -49,7 +49,7 @@ enum State {
     Ok,
     /// Some uses are not possible, or soon will not be.
     Warning,
-    /// Not even the simulated unit can be tested, or what is recorded is lost.
+    /// Not even the simulated unit can be tested, or recorded runs are lost.
     Wrong,
 }
 
@@ -63,13 +63,13 @@ impl State {
     }
 }
 
-/// What was found of one subject.
+/// What a check found of one subject.
 #[derive(Debug, Serialize)]
 struct Finding {
     subject: &'static str,
     state: State,
     found: String,
-    /// Remedy.
+    /// What to do about the finding.
     #[serde(skip_serializing_if = "Option::is_none")]
     remedy: Option<String>,
 }
@@ -110,7 +110,7 @@ impl Finding {
 }
 
 impl DoctorArguments {
-    /// Looks at all and tells.
+    /// Makes all checks and prints the findings.
     pub fn run(self) -> Result<Exit, Failure> {
         let words = self.json.words();
         if let Some(bench) = &self.bench {

@@ -9,9 +9,9 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::clock::now_us;
 use ptu_runs::failure::{Asked, Exit, Failure};
 
-/// Change a fault's state: open, acknowledged, repaired, verified, closed; and that of its case
+/// Change the state of a fault and of its case: open, acknowledged, repaired, verified, closed
 ///
-/// The other faults that come from the same part and are in the same state follow.
+/// The other faults of the case that are in the same state change with it.
 #[derive(Debug, Args)]
 pub struct StateArguments {
     /// The fault
@@ -29,7 +29,7 @@ pub struct StateArguments {
     only: bool,
 }
 
-/// Record a repair of a fault and of the others that come from the same part: its case
+/// Record a repair of a fault, and of the other faults of its case, which come from the same part
 #[derive(Debug, Args)]
 pub struct RepairArguments {
     /// The fault
@@ -59,12 +59,12 @@ pub struct RepairArguments {
     scripts: ScriptsOption,
 }
 
-/// Say which part a fault comes from; no diagnosis changes it afterwards
+/// Say which part a fault comes from; no diagnosis changes this cause afterwards
 #[derive(Debug, Args)]
 pub struct CauseArguments {
     /// The fault
     id: String,
-    /// The part that explains it, see `ptu catalog parts`; `none`: the fault stands alone
+    /// The part that explains the fault, see `ptu catalog parts`; `none`: the fault belongs to no case
     #[arg(required_unless_present = "other_part")]
     part: Option<String>,
     /// Instead of PART: a part that the catalogue lacks
@@ -80,12 +80,12 @@ pub struct CauseArguments {
     scripts: ScriptsOption,
 }
 
-/// Add a note to a fault; its state stays
+/// Add a note to a fault; the fault's state stays as it is
 #[derive(Debug, Args)]
 pub struct NoteArguments {
     /// The fault
     id: String,
-    /// What is to be said
+    /// Text of the note
     text: String,
     /// Who says it
     #[arg(long, value_name = "TEXT", default_value = "")]
@@ -177,7 +177,7 @@ fn is_now(fault: &str, state: FaultState) -> String {
     )
 }
 
-/// The fault that was named, and what was settled with it.
+/// Says the new state of the named fault, and lists the other faults of its case that changed with it.
 pub fn changed((named, rest): &(CaseFault, Vec<CaseFault>)) -> String {
     let mut text = is_now(&named.id.short(), named.state);
     for fault in rest {

@@ -8,25 +8,25 @@ use crate::cli::{ScriptsOption, check_unit};
 use ptu_runs::clock::Span;
 use ptu_runs::failure::{Asked, Failure, did_you_mean, did_you_mean_number};
 
-/// Which faults.
+/// Options that select faults.
 #[derive(Debug, Args)]
 pub struct FilterArguments {
     /// Only of this unit (serial number)
     #[arg(long, value_name = "TEXT")]
     pub serial_no: Option<String>,
-    /// Only repaired with a part of this serial number, taken out or put in
+    /// Only faults whose repair put in or took out a part of this serial number
     #[arg(long, value_name = "TEXT")]
     part_serial_no: Option<String>,
     /// Only of units in this train
     #[arg(long, value_name = "TEXT")]
     pub train_no: Option<String>,
-    /// Only this code, number or name; several with commas between
+    /// Only this fault code, a number or a name; several with commas between
     #[arg(long, value_name = "CODE[,CODE]")]
     code: Option<String>,
-    /// Only pointing at this part
+    /// Only faults that point at this part
     #[arg(long, value_name = "PART")]
     part: Option<String>,
-    /// Only coming from this part, as a diagnosis or a person found; without either, pointing at it
+    /// Only faults with this part as cause, found by a diagnosis or a person; where nobody found one, pointing at it
     #[arg(long, value_name = "PART")]
     pub cause: Option<String>,
     /// Only this severity
@@ -44,11 +44,11 @@ pub struct FilterArguments {
     /// Only seen in this run
     #[arg(long, value_name = "RUN")]
     run: Option<String>,
-    /// Only seen then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
-    // A span that begins with a hyphen is a slip, which the parser of spans explains.
+    /// Only seen in this time: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
+    // A span that begins with a hyphen is a mistake; the parser of spans explains it better than clap.
     #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
     pub when: Option<Span>,
-    /// Only with these words in a note on it, on its repair, or on a run that saw it
+    /// Only with these words in a note on the fault, on its repair, or on a run that saw the fault
     #[arg(long, value_name = "TEXT")]
     note: Option<String>,
     #[command(flatten)]
@@ -56,17 +56,17 @@ pub struct FilterArguments {
 }
 
 impl FilterArguments {
-    /// The span of time of the filter.
+    /// Span of time of the filter, all times where none is given.
     pub fn span(&self) -> Span {
         self.when.unwrap_or_default()
     }
 
-    /// The filter, as the history takes it.
+    /// The filter as `fault-db` takes it.
     pub fn filter(&self, store: &Store) -> Result<FaultFilter, Failure> {
         if let Some(unit) = &self.serial_no {
             check_unit(store, unit)?;
         }
-        // In a list of several codes the others would hide an unknown one.
+        // An unknown code in a list of several would go unnoticed: the other codes still find faults.
         if self.code.as_ref().is_some_and(|codes| codes.contains(','))
             && let Some(unknown) = self.unknown_code(store)?
         {
@@ -93,7 +93,7 @@ impl FilterArguments {
         })
     }
 
-    /// What to say when nothing was found: that nothing fits, or that there is nothing.
+    /// Sentence for an empty answer: no fault fits the filter, or no fault is recorded at all.
     ///
     /// # Errors
     /// A name asked for is known neither in this history nor in the scripts.
@@ -108,7 +108,7 @@ impl FilterArguments {
         .to_owned())
     }
 
-    /// Refusal of the first code that no fault has.
+    /// Refusal of the first code that neither the history nor the unit's list of events knows.
     fn unknown_code(&self, store: &Store) -> Result<Option<Asked>, Failure> {
         let Some(codes) = &self.code else {
             return Ok(None);
@@ -187,14 +187,14 @@ impl FilterArguments {
         Ok(None)
     }
 
-    /// Whether the scripts have this file.
+    /// Whether the scripts directory has this file.
     fn has_script(&self, path: &str) -> bool {
         let scripts = self.scripts.find();
         scripts.is_ok_and(|directory| directory.has(path))
     }
 }
 
-/// Whether the scripts know a part of this name, without any fault of it here.
+/// Whether the fault catalogue of the scripts has a part of this name.
 pub(super) fn is_part(scripts: &ScriptsOption, name: &str) -> bool {
     let catalogue = scripts.find().and_then(|directory| directory.faults());
     catalogue.is_ok_and(|catalogue| {

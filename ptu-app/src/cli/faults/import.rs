@@ -14,26 +14,26 @@ use ptu_runs::stop::Stop;
 use ptu_runs::table::Table;
 use ptu_runs::unit_log::{ImportedLog, UnitReading};
 
-/// Read a unit's own event log: what is new in it becomes faults, stored as a run without steps
+/// Read a unit's own event log: new entries become faults, stored as a run without steps
 ///
-/// The unit is asked for its log of all power-ups, and receives the time. It gets no input and no stimulus,
-/// and nothing is armed. Entries that it logged in runs of this history, while it was armed, or because
-/// nothing was connected to it any more are no faults. The times that the unit received date its entries.
-/// Entries of a power-up without such a time show the power-up and the time since it; their date is the
-/// latest possible. An older unit keeps the log of its present power-up alone.
+/// The unit is asked for its log of all power-ups, and is sent the time. It gets no input and no stimulus, and is not
+/// armed. Entries are no faults if the unit logged them in runs of this history, while it was armed, or because nothing
+/// was connected to it any more. Entries are dated by the times that testers sent to the unit. Entries of a power-up
+/// without such a time show the power-up and the time since then; their date is the latest possible. An older unit
+/// keeps the log of its present power-up alone.
 ///
 /// Examples:
 ///   ptu faults import --unit serial:/dev/ttyUSB0
 ///   ptu faults import --unit tcp:127.0.0.1:7000 --when 7d && ptu diagnose latest
 ///
-/// Exit codes: 0 read, whether or not it holds faults; 2 wrong command; 3 no unit, another unit, or the
-/// link was lost, what was read is kept.
+/// Exit codes: 0 read, whether or not the log holds faults; 2 wrong command; 3 no unit, another unit, or the link was
+/// lost (what was read is kept).
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct ImportArguments {
     #[command(flatten)]
     unit: UnitOption,
-    /// Only entries that are not certainly older: 30d, 12h, 2026-03, 2026-03-21
+    /// Only entries that are not certainly older than: 30d, 12h, 2026-03, 2026-03-21
     #[arg(long, value_name = "SPAN", value_parser = since_argument, allow_hyphen_values = true)]
     when: Option<i64>,
     #[command(flatten)]
@@ -42,14 +42,14 @@ pub struct ImportArguments {
     scripts: ScriptsOption,
 }
 
-/// A log and what became of it.
+/// A unit's log, and the faults made of its entries.
 struct Outcome {
     reading: UnitReading,
     log: ImportedLog,
 }
 
 impl ImportArguments {
-    /// Reads, judges, stores and tells.
+    /// Reads the log, judges its entries, stores the faults, and prints the result.
     pub fn import(self, store: Store) -> Result<Exit, Failure> {
         let stop = Stop::default();
         stop.listen();
@@ -138,7 +138,7 @@ impl Outcome {
     }
 }
 
-/// How many entries or rows were read of which unit.
+/// Text that says how many entries or rows were read of which unit.
 pub fn read_of(reading: &UnitReading, wording: &str, n: usize) -> String {
     let (unit, place) = (&reading.source.serial, &reading.source.endpoint);
     fill(wording, &[("unit", unit), ("place", place), ("n", &n)])

@@ -1,4 +1,4 @@
-//! `ptu faults list`.
+//! `ptu faults list`: the faults of the history that fit a filter.
 
 use clap::Args;
 use fault_db::{FaultFilter, FaultSummary, Store};
@@ -35,7 +35,7 @@ pub struct ListArguments {
 impl ListArguments {
     pub fn list(&self, store: &Store) -> Result<Exit, Failure> {
         let filter = FaultFilter {
-            // One more tells whether there are more.
+            // One fault more than asked for tells whether there are more.
             limit: Some(self.limit.saturating_add(1)),
             ..self.filter.filter(store)?
         };

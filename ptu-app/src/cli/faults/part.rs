@@ -1,4 +1,4 @@
-//! Names of parts that a person writes down: a slip in one would be another part in every count.
+//! Names of parts that a person types: a misspelt name would be counted as another part.
 
 use fault_db::Store;
 
@@ -8,10 +8,10 @@ use ptu_runs::data::ScriptsDirectory;
 use ptu_runs::failure::{Asked, Failure, did_you_mean};
 use ptu_runs::stdio;
 
-/// The part that is meant, in the spelling of the catalogue.
+/// The part with the name `asked`, in the spelling of the catalogue.
 ///
 /// # Errors
-/// Neither the catalogue of the scripts nor a fault here has it.
+/// Neither the catalogue of the scripts nor a fault in this history has the part.
 pub fn named(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<String, Failure> {
     let known = known(store, scripts)?;
     spelling(&known, asked).ok_or_else(|| {
@@ -20,11 +20,11 @@ pub fn named(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<Stri
     })
 }
 
-/// Name of a part that the catalogue lacks, as written; or the part of the catalogue with this name. A name close to
-/// a part's is taken, with a note.
+/// Name of a part that the catalogue lacks, as typed; if the catalogue has the name, the part in the catalogue's
+/// spelling. A name close to a part of the catalogue is accepted, with a note.
 ///
 /// # Errors
-/// The name has no letter, or the database fails.
+/// The name is blank, or the database cannot be read.
 pub fn other(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<String, Failure> {
     if asked.trim().is_empty() {
         return Err(Failure::usage(Asked::OtherPartUnnamed));
@@ -41,9 +41,9 @@ pub fn other(store: &Store, scripts: &ScriptsOption, asked: &str) -> Result<Stri
     Ok(asked.trim().to_owned())
 }
 
-/// The parts of the catalogue, and those that faults here named.
+/// The parts of the catalogue, and the parts named by faults of this history.
 fn known(store: &Store, scripts: &ScriptsOption) -> Result<Vec<String>, Failure> {
-    // Without scripts that can be read, faults still name parts.
+    // If the scripts cannot be read, only the history's faults name parts.
     let catalogue = scripts.find().and_then(|directory| parts_of(&directory));
     let mut known = catalogue.unwrap_or_default();
     for part in store.known_lrus()? {

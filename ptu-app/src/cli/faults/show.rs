@@ -13,8 +13,8 @@ use ptu_runs::clock::{local, rfc3339};
 use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::table::Table;
 
-/// Shows the fault an id stands for. Parts and signals go by their names where another language than English is wanted,
-/// and else by what they are called in commands and scripts.
+/// Shows the fault that an id names. In Korean, parts and signals have their Korean names; in English, the names that
+/// commands and scripts use.
 pub fn show(store: &Store, id: &str, json: Json, names: &PartNames) -> Result<Exit, Failure> {
     let fault = store.fault(store.resolve_fault(id)?)?;
     json.answer(|| detail_json(&fault), || detail(&fault, names))
@@ -139,7 +139,7 @@ fn detail(detail: &FaultDetail, parts: &PartNames) -> String {
     text
 }
 
-/// Number and times of the occurrences.
+/// Text with the number and the times of a fault's occurrences.
 fn times(fault: &FaultSummary, words: &Words) -> String {
     let [first, last] = [fault.first_at_us, fault.last_at_us].map(local);
     match fault.occurrences {

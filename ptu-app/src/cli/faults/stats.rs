@@ -21,14 +21,14 @@ use rate_ratio::RateRatio;
 /// Count faults, the most frequent first: which make up most of them, how long units go without one, how
 /// long repairs take and whether they hold
 ///
-/// By cause, cases are counted: what one part explains is one, with one repair, and SHARE and CUM are of
-/// cases. By anything else, observations are: a part that fails may have several faults.
+/// With --by cause, cases are counted: all faults that one part explains are one case, with one repair; SHARE and CUM
+/// are shares of the cases. With any other --by, occurrences are counted: a part that fails may have several faults.
 ///
-/// SEEN counts occurrences, SHARE and CUM their share and that of all rows so far. FAULTS counts faults
-/// first seen in the span, OPEN those that are not closed now. MTBF is calendar days of all units, since
-/// the first run of each, by faults. MTTR is from a fault's opening to its repair. BACK are repairs
-/// after which the unit had the same fault again in time, of all that are old enough to judge. NFF are
-/// faults closed without a repair, of all closed.
+/// SEEN counts occurrences, SHARE and CUM are the share of a row and of all rows down to it. FAULTS counts faults
+/// first seen in the span, OPEN faults that are not closed now. MTBF is calendar days of all units, since the first
+/// run of each, divided by faults. MTTR is from a fault's opening to its repair. BACK is the share of repairs after
+/// which the unit had the fault again within --back-within, of all repairs that are old enough to judge. NFF is the
+/// share of closed faults that were closed without a repair.
 ///
 /// Examples:
 ///   ptu faults stats --when 2026
@@ -45,7 +45,7 @@ pub struct StatsArguments {
     /// A fault that is seen again within N days of its repair counts as back
     #[arg(long, value_name = "DAYS", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=3650))]
     back_within: u32,
-    /// At most N rows in a table; of months the last
+    /// At most N rows in a table; of months the latest
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = at_least_one())]
     limit: u32,
     /// Readings of odometers, CSV with the columns train, date and km: with --by month, faults for each 10 000 km
@@ -63,7 +63,7 @@ pub struct StatsArguments {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum GroupBy {
-    /// By the part that explains them: cases
+    /// By the part that explains the faults: counts cases
     Cause,
     /// By fault code
     Code,
@@ -85,7 +85,7 @@ impl StatsArguments {
             GroupBy::Cause => StatKey::Cause,
             GroupBy::Unit => StatKey::Unit,
             GroupBy::Line => StatKey::Line,
-            // Months of one cause count its cases, as without months.
+            // With --cause, months count cases, as the other tables by cause do.
             GroupBy::Month if self.filter.cause.is_some() => StatKey::Cause,
             GroupBy::Month => StatKey::All,
         };
@@ -139,7 +139,7 @@ impl StatsArguments {
         })
     }
 
-    /// Total of shares: cases of a cause, else occurrences.
+    /// What a row's share is of: number of cases where cases are counted, else of occurrences.
     fn counted(&self, stat: &FaultStat) -> u64 {
         match self.counts_cases() {
             true => u64::from(stat.faults),

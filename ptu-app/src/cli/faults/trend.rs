@@ -19,9 +19,9 @@ use ptu_runs::whole_file;
 
 /// Show a measurement over time: of one unit value by value, of all units month by month
 ///
-/// With its drift, control limits (3 sigma), capability (Cp, Cpk), and when it will cross the limit it
-/// drifts towards. Sigma is that from one value to the next (moving range) of a unit, and that within days
-/// of a fleet.
+/// With the drift, control limits (3 sigma), capability (Cp, Cpk), and when the measurement will cross the limit it
+/// drifts towards. Sigma of a unit is the scatter from one value to the next (moving range), sigma of a fleet the
+/// scatter within days.
 ///
 /// Examples:
 ///   ptu faults trend eb_reaction --procedure atp/overspeed
@@ -36,10 +36,10 @@ pub struct TrendArguments {
     /// Only of this unit (serial number)
     #[arg(long, value_name = "TEXT")]
     serial_no: Option<String>,
-    /// Only as measured by this procedure; another may have other limits
+    /// Only as measured by this procedure; other procedures may have other limits
     #[arg(long, value_name = "PROCEDURE")]
     procedure: Option<String>,
-    /// Only as measured by this step; without one, values of steps with other limits are shown without limits
+    /// Only as measured by this step; without it, values of steps with different limits are shown without limits
     #[arg(long, value_name = "STEP")]
     step: Option<String>,
     /// Only on this line
@@ -48,10 +48,10 @@ pub struct TrendArguments {
     /// Only of units in this train
     #[arg(long, value_name = "TEXT")]
     train_no: Option<String>,
-    /// Only then: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
+    /// Only values of this time: 30d, today, 2026-03, 2026-03..2026-05, 2026-03-21..
     #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
     when: Option<Span>,
-    /// Only since this part of the unit was repaired last
+    /// Only since the last repair of this part of the unit
     #[arg(
         long,
         value_name = "PART",
@@ -59,10 +59,10 @@ pub struct TrendArguments {
         conflicts_with = "when"
     )]
     since_repair: Option<String>,
-    /// At most N values, months or units in a table: the last, and the units farthest off
+    /// At most N values, months or units in a table: the latest values and months, the units farthest off
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = at_least_one())]
     limit: u32,
-    /// Draw it, too, on a page
+    /// Draw the measurement on a page, too
     #[arg(long, value_name = "FILE.html", value_parser = page_file)]
     plot: Option<PathBuf>,
     #[command(flatten)]
@@ -123,8 +123,8 @@ impl TrendArguments {
         }
     }
 
-    /// Reason for which there is no value: another procedure measures it, or it was measured at another
-    /// time, or it was not measured on such units.
+    /// Reason why no value was found: another procedure or step measures it, it was measured at another time, or never
+    /// on such units.
     fn nothing(
         &self,
         store: &Store,
@@ -171,7 +171,7 @@ impl TrendArguments {
     }
 }
 
-/// A file for a page: browsers tell by its ending what it is.
+/// Parses the file name of a page, which must end in .html or .htm: browsers tell a page by its ending.
 fn page_file(text: &str) -> Result<PathBuf, String> {
     let file = PathBuf::from(text);
     let ending = file.extension().and_then(|ending| ending.to_str());
@@ -181,7 +181,7 @@ fn page_file(text: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// The values, or the days.
+/// Rows of the answer: one for each value of a unit, or for each day of a fleet.
 fn rows(trend: &Trend) -> Vec<Value> {
     match &trend.course {
         TimeSeries::Points(points) => points
@@ -248,7 +248,7 @@ fn json(trend: &Trend) -> Value {
     value
 }
 
-/// Refusal: the unit has no repair of this part; with the nearest part where none has this name.
+/// Refusal: the unit has no repair of this part; names the nearest part if no part has this name.
 fn never_repaired(
     store: &Store,
     scripts: &ScriptsOption,

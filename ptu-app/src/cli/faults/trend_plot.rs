@@ -1,4 +1,4 @@
-//! A trend drawn on a page: values, limits, control limits, the line through them.
+//! A measurement over time, drawn on a page: values, limits, control limits, and the line of drift.
 
 use crate::cli::made_by;
 use ptu_report::plot::{Plot, Series, Style};
@@ -26,7 +26,7 @@ fn title(trend: &Trend) -> String {
     format!("{} {of}", trend.query.measurement)
 }
 
-/// Days to the last value at the horizontal axis.
+/// Plot of the values over days until the last value.
 fn plot(trend: &Trend) -> Plot {
     let samples = trend.course.samples();
     let last_us = samples.last().map_or(0, |sample| sample.at_us);

@@ -11,13 +11,13 @@ use ptu_runs::clock::{local, utc_month};
 use ptu_runs::stored::from_stored;
 use ptu_runs::table::Table;
 
-/// Days of a month, for slopes.
+/// Days of a month, to show slopes per month.
 const MONTH_DAYS: f64 = 30.0;
 
-/// A course is shown in this many bars.
+/// Most bars in which the course of a measurement is shown.
 const BARS: usize = 60;
 
-/// A unit this many standard deviations off the fleet's middle is worth a look.
+/// Standard deviations from the fleet's median beyond which a unit is shown.
 const STANDS_OUT: f64 = 3.0;
 
 pub fn text(trend: &Trend, limit: usize) -> String {
@@ -139,7 +139,7 @@ fn mean(days: &[TrendDay]) -> f64 {
     sums.sum::<f64>() / n
 }
 
-/// As many bars as fit into a row, each the mean of its share of the values.
+/// Bars for the values, at most `BARS`; a bar is the mean of its share of the values.
 fn bars(values: &[Option<f64>]) -> String {
     let share = values.len().div_ceil(BARS).max(1);
     let mean = |values: &[Option<f64>]| {
@@ -278,7 +278,7 @@ fn outstanding(units: &[TrendUnit], limit: usize) -> String {
     format!("\n\n{said}\n{}", table.render())
 }
 
-/// Scatter of units, from their middle half, so that a few bad ones do not hide themselves.
+/// Median and scatter of units. The scatter is taken from the middle half, so that a few bad units do not widen it.
 struct Spread {
     middle: f64,
     sigma: f64,
@@ -297,13 +297,13 @@ impl Spread {
         })
     }
 
-    /// Standard deviations from the middle.
+    /// Distance of a value from the median, in standard deviations.
     fn off(&self, value: f64) -> f64 {
         (value - self.middle) / self.sigma
     }
 }
 
-/// A number in two significant digits, however small.
+/// A number with two significant digits, however small; 12 decimals at most.
 fn two_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return short(value);

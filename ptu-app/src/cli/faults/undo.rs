@@ -10,7 +10,7 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::clock::{local, now_us};
 use ptu_runs::failure::{Exit, Failure};
 
-/// Take back what a person wrote last about a fault, and the same at the others of its case
+/// Take back what a person last wrote about a fault, and about the other faults of its case at the same time
 ///
 /// The history keeps the entry and its withdrawal; state, cause, repairs and counts are as if it had never been written.
 /// What a run found cannot be taken back, nor an entry on which a later run or another person's entry depends: correct
@@ -25,7 +25,7 @@ pub struct UndoArguments {
     /// Why
     #[arg(long, value_name = "TEXT", default_value = "")]
     note: String,
-    /// Of this fault alone, not of the others of its case
+    /// Only the entry of this fault, not the entries of the others of its case
     #[arg(long)]
     only: bool,
 }

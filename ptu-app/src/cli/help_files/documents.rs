@@ -8,14 +8,14 @@ use ptu_runs::failure::{Failure, FileTrouble};
 use ptu_runs::whole_file::write_text;
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
 
-/// Where a reader begins, in the folder of the sources.
+/// Documents from which a reader begins, by their path in the sources.
 const MANUALS: [&str; 2] = ["docs/manual.md", "docs/manual.ko.md"];
 const STYLE: &str = "body{max-width:60em;margin:2em auto;padding:0 1em;font-family:sans-serif;line-height:1.5}\
     table{border-collapse:collapse}td,th{border:1px solid #bbb;padding:.2em .5em;text-align:left;vertical-align:top}\
     code{background:#eee}pre{background:#eee;padding:.5em;overflow-x:auto}pre code{background:none}img{max-width:100%}";
 
-/// Writes both manuals, every document that can be reached from them, and their pictures and files, each at its place in
-/// the sources below `folder`.
+/// Writes both manuals, every document that can be reached from them, and their pictures and files, below `folder`,
+/// each at the path that it has in the sources.
 pub(super) fn write(sources: &Path, folder: &Path) -> Result<(), Failure> {
     let mut due: Vec<PathBuf> = MANUALS.map(PathBuf::from).into();
     let mut written = BTreeSet::new();
@@ -48,10 +48,10 @@ fn page_name(name: &Path) -> PathBuf {
     }
 }
 
-/// The page of a document, and the files that it links to.
+/// The HTML page of a document, and the files of the sources that the document links to.
 fn page(name: &Path, text: &str, sources: &Path) -> (String, Vec<PathBuf>) {
     let mut linked = Vec::new();
-    // A link to what is no file, as a folder of the sources is, stays as its text.
+    // A link to something other than a file, as a folder of the sources, becomes plain text.
     let mut led = Vec::new();
     let mut events: Vec<Event<'_>> = Vec::new();
     for event in Parser::new_ext(text, Options::ENABLE_TABLES) {
@@ -88,7 +88,7 @@ fn page(name: &Path, text: &str, sources: &Path) -> (String, Vec<PathBuf>) {
     (page, linked)
 }
 
-/// Where a link leads on the pages, and the file of the sources that is there; none if it is no file.
+/// Address of a link on the pages, and the file of the sources it leads to; `None` for a link to no file.
 fn target(name: &Path, url: &str, sources: &Path) -> Option<(String, Option<PathBuf>)> {
     let (path, anchor) = url.split_once('#').unwrap_or((url, ""));
     if url.contains("://") || path.is_empty() {
@@ -119,7 +119,7 @@ fn with_url(event: Event<'_>, url: String) -> Event<'_> {
     event
 }
 
-/// Gives each heading the name by which links call it, as code hosts make it.
+/// Gives each heading the anchor by which links name it, made as code hosts make it.
 fn name_headings(events: &mut [Event<'_>]) {
     let mut times: BTreeMap<String, u32> = BTreeMap::new();
     for at in 0..events.len() {

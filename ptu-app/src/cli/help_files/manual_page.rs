@@ -1,13 +1,13 @@
-//! A page of the manual: what the help of a verb says, in the sections that readers of such pages look for.
+//! A manual page: the help of a verb in the sections that readers of manual pages look for.
 
 use std::io::{Result, Write as _};
 
 use clap::Command;
 use clap_mangen::Man;
 
-/// Exit codes of a verb whose help has none of its own.
+/// Exit codes of a verb whose help names no exit codes.
 const EXITS: &str = "0 done or passed, 1 a check failed, 2 wrong command or script, 3 bench, link or database, 130 stopped";
-/// An option, the variable that stands for it, and what the variable holds.
+/// An option, the environment variable that stands for it, and what the variable holds.
 const VARIABLES: [[&str; 3]; 11] = [
     ["db", "PTU_DB", "The history, in place of --db"],
     [
@@ -45,7 +45,7 @@ const VARIABLES: [[&str; 3]; 11] = [
     ],
     ["no-pager", "PAGER", "Pager of long answers [default: less]"],
 ];
-/// An option, the files that are used without it, and what they are.
+/// An option, the file that is used without it, and what the file is.
 const FILES: [[&str; 3]; 5] = [
     ["db", "~/.local/share/ptu/history.db", "The user's history"],
     [
@@ -66,7 +66,7 @@ const FILES: [[&str; 3]; 5] = [
     ],
 ];
 
-/// The page.
+/// The manual page of a command, as roff.
 pub(super) fn page(command: &Command) -> Result<Vec<u8>> {
     let about = command.get_long_about().or(command.get_about());
     let about = about.map(ToString::to_string).unwrap_or_default();
@@ -121,7 +121,7 @@ pub(super) fn page(command: &Command) -> Result<Vec<u8>> {
     Ok(page)
 }
 
-/// Text for a manual page: hyphens that can be copied, and no line that is taken for a request.
+/// Text for a manual page (roff): its hyphens can be copied, and no line is taken for a request.
 fn text(text: &str) -> String {
     let text = text.replace('\\', "\\e").replace('-', "\\-");
     let lines = text
@@ -140,7 +140,8 @@ mod tests {
     use super::*;
     use crate::cli::Cli;
 
-    /// Goal: whoever looks an option's variable up finds it. Method: each that the program's options read is in the list.
+    /// Goal: the manual page lists the variable of each option. Method: each variable that the program's options read
+    /// is in `VARIABLES`.
     #[test]
     fn each_variable_of_an_option_is_listed() {
         fn check(command: &Command) {

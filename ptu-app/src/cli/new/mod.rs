@@ -14,9 +14,9 @@ use ptu_runs::whole_file::write_text;
 
 /// Begin a procedure, unit configuration, line, train or fault mode of your own
 ///
-/// Writes a file with comments that is valid as it is: `ptu run --check` accepts it. Without --in it goes where the program
-/// reads: into a folder of scripts that is read alone, as in a source tree, else into your own scripts, which replace those
-/// of the program file by file. An existing file is not changed.
+/// Writes a file with comments that is valid as it is: `ptu run --check` accepts it. Without --in the file goes where
+/// the program reads: into the folder of scripts if only one is read, as in a source tree, else into your own scripts,
+/// which replace the program's scripts file by file. An existing file is not changed.
 ///
 /// Examples:
 ///   ptu new procedure door/depot_doors
@@ -26,20 +26,20 @@ use ptu_runs::whole_file::write_text;
 ///   ptu new train emu9
 ///   ptu new fault eb_relay.late_when_cold
 ///   ptu new stubs --in ~/ptu-stubs      the script language, for editors that complete and explain it
-///   ptu new schemas --in ~/my-scripts   the keys of every data file, for the same
+///   ptu new schemas --in ~/my-scripts   the keys of every data file, for editors that complete and explain them
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct NewArguments {
     /// What to begin
     #[arg(value_enum)]
     what: What,
-    /// Its name: of a procedure with its folder, of a fault with its part
+    /// Name of the new file: FOLDER/NAME for a procedure, PART.NAME for a fault mode, else NAME
     #[arg(required_if_eq_any([("what", "procedure"), ("what", "unit"), ("what", "line"), ("what", "train"), ("what", "fault")]))]
     name: Option<String>,
-    /// Begin a procedure from one of the same kind: its path, folder or glob; of several the first
+    /// Begin with a copy of this procedure: its path, a folder or a glob; of several procedures the first is copied
     #[arg(long, value_name = "PROCEDURE")]
     like: Option<String>,
-    /// Scripts directory to write into [default: the one that is read alone, else the user's own]
+    /// Scripts directory to write into [default: the only one that is read, else the user's own]
     #[arg(long = "in", value_name = "DIR")]
     into: Option<PathBuf>,
     #[command(flatten)]
@@ -65,10 +65,10 @@ enum What {
 }
 
 impl NewArguments {
-    /// Writes it.
+    /// Writes the new file, and says how to check and use it.
     pub fn run(self) -> Result<Exit, Failure> {
         let scripts = self.scripts.find()?;
-        // A folder that is read alone is the place where what is written is read.
+        // Where only one folder of scripts is read, the new file goes there: it would not be read from elsewhere.
         let read_alone = match scripts.places() {
             [Layer::Folder(folder)] => Some(folder.clone()),
             _ => own_folder(),
@@ -98,7 +98,7 @@ impl NewArguments {
         print_out(&format!("{written}\n{}", fill(terminal.change_it, &of)))
     }
 
-    /// Letters, digits and `_`, as in the names that are shipped; a procedure stands in folders.
+    /// Refuses a name that is not made of lower-case letters, digits and `_`; a procedure's may have folders.
     fn check_name(&self, name: &str) -> Result<(), Failure> {
         let is_word = |word: &str| {
             word.starts_with(|first: char| first.is_ascii_lowercase())
@@ -117,7 +117,7 @@ impl NewArguments {
         }
     }
 
-    /// Path under the scripts directory, and text.
+    /// Path of the new file under the scripts directory, and its text.
     fn begun(&self, scripts: &ScriptsDirectory, name: &str) -> Result<(String, String), Failure> {
         Ok(match self.what {
             What::Procedure => {
@@ -159,7 +159,7 @@ impl NewArguments {
         })
     }
 
-    /// Command that uses the new file at once.
+    /// Command that uses the new file.
     fn next(&self, name: &str) -> String {
         match self.what {
             What::Procedure => format!("ptu run {name}"),
@@ -172,14 +172,14 @@ impl NewArguments {
     }
 }
 
-/// The text of the first procedure that this names.
+/// Text of the first procedure that `like` (a path, folder or glob) names.
 fn like_of(scripts: &ScriptsDirectory, like: &str) -> Result<String, Failure> {
     let (mut texts, order) = select::scripts(scripts, &[like.to_owned()])?;
     let text = order.first().and_then(|path| texts.remove(path));
     Ok(text.unwrap_or_default())
 }
 
-/// A procedure with a title of its own.
+/// Text of a procedure with another title, and without its Korean title.
 fn retitled(text: &str, title: &str) -> String {
     let mut lines = String::new();
     for line in text.lines() {
@@ -194,7 +194,7 @@ fn retitled(text: &str, title: &str) -> String {
     lines
 }
 
-/// A shipped file under another name, where it says its own.
+/// Text of a shipped file with its own name replaced, below a note that says what it was copied from.
 fn renamed(text: &str, from: &str, to: &str) -> String {
     let quoted = |name: &str| format!("\"{name}\"");
     let begin = format!(
@@ -204,7 +204,7 @@ fn renamed(text: &str, from: &str, to: &str) -> String {
     begin + &text.replacen(&quoted(from), &quoted(to), usize::MAX)
 }
 
-/// The line file with its own checksum, which a unit reports of its track database.
+/// Text of a line file with its checksum made anew; a unit reports this checksum of its track database.
 fn summed(text: &str) -> String {
     let sum = protocol::line::checksum(text);
     let line = |line: &str| match line.starts_with("checksum = ") {
@@ -225,7 +225,7 @@ fn write_new(file: &Path, text: &str) -> Result<(), Failure> {
     write_text(file, text)
 }
 
-/// One file for each namespace, and one for the words outside of all.
+/// Writes a stub file for each namespace of the script language, and one for the words outside all namespaces.
 fn stubs(folder: &Path) -> Result<Exit, Failure> {
     for (name, text) in btu_rig::procedure::loader::stubs() {
         write_text(&folder.join(name), text)?;
@@ -238,7 +238,7 @@ fn stubs(folder: &Path) -> Result<Exit, Failure> {
     ))
 }
 
-/// A schema for each kind of data file, and the file that tells Taplo, which editors use for TOML, which is for which.
+/// Writes a schema for each kind of data file, and `.taplo.toml`, which tells editors the schema of each file.
 fn schemas(folder: &Path) -> Result<Exit, Failure> {
     let mut rules = String::new();
     let into = folder.join("schemas");

@@ -1,4 +1,4 @@
-//! `ptu record compare`: a recorded run beside what it should have been.
+//! `ptu record compare`: a recorded automatic run beside its target and a sound unit's run.
 
 use std::path::PathBuf;
 
@@ -29,13 +29,13 @@ use ptu_runs::whole_file::{check_writable, write_text};
 pub struct CompareArguments {
     /// The trace: an id, its beginning or end (at least 4 digits), or `latest`
     trace: String,
-    /// Section [default: the one whose markers and stop fit those of the run]
+    /// Section [default: the section whose markers and stop fit the run]
     #[arg(long, value_name = "N")]
     section: Option<u16>,
-    /// Line, lines/NAME.toml [default: that of the trace's run]
+    /// Line, lines/NAME.toml [default: the line of the trace's run]
     #[arg(long, value_name = "NAME")]
     line: Option<String>,
-    /// Unit configuration, units/NAME.toml [default: that of the trace's run]
+    /// Unit configuration, units/NAME.toml [default: the configuration of the trace's run]
     #[arg(long, value_name = "NAME")]
     unit_config: Option<String>,
     /// Passengers of the sound unit's train: a mass, empty or full
@@ -51,7 +51,6 @@ pub struct CompareArguments {
 }
 
 impl CompareArguments {
-    /// Compares, tells, and writes reports.
     pub fn run(self, store: &Store) -> Result<Exit, Failure> {
         for file in &self.report {
             let ending = file.extension().and_then(|ending| ending.to_str());

@@ -1,4 +1,4 @@
-//! `ptu record pull`: a unit's stored run record as traces.
+//! `ptu record pull`: makes traces of a unit's stored run record.
 
 use clap::Args;
 use fault_db::Store;
@@ -16,16 +16,16 @@ use ptu_runs::unit_log::UnitReading;
 
 /// Read a unit's stored record of automatic runs: each run that is new becomes a trace
 ///
-/// The unit is asked for its record and its log, and receives the time: it gets no input and no stimulus, and
-/// nothing is armed. A run that is under way is left for the next time. `ptu trace show ID` shows a trace,
+/// The unit is asked for its record and its log, and is sent the time. It gets no input and no stimulus, and is not
+/// armed. A run that is under way is left for the next pull. `ptu trace show ID` shows a trace,
 /// `ptu record compare ID` compares it with a sound unit's run.
 ///
 /// Examples:
 ///   ptu record pull --unit serial:/dev/ttyUSB0
 ///   ptu record pull --unit tcp:127.0.0.1:7000 && ptu record compare latest
 ///
-/// Exit codes: 0 read, whether or not there is anything new; 2 wrong command; 3 no unit, another unit, a unit
-/// without stored memory, or the link was lost, what was read is kept.
+/// Exit codes: 0 read, whether or not there is a new run; 2 wrong command; 3 no unit, another unit, a unit without
+/// stored memory, or the link was lost (what was read is kept).
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct PullArguments {
@@ -38,7 +38,7 @@ pub struct PullArguments {
 }
 
 impl PullArguments {
-    /// Reads, stores and tells.
+    /// Reads the record, stores its new runs as traces, and prints the result.
     pub fn run(self, store: Store) -> Result<Exit, Failure> {
         let stop = Stop::default();
         stop.listen();

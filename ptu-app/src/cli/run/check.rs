@@ -1,4 +1,4 @@
-//! `ptu run --check`: what of scripts without errors is still to be done.
+//! `ptu run --check`: what scripts without errors still lack.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use ptu_runs::failure::{Exit, Failure};
 use ptu_runs::places::Places;
 use ptu_runs::stdio;
 
-/// Limits without a source and texts without Korean as notes, and how many there are.
+/// Prints limits without a source and texts without Korean as notes, and the number of each.
 pub(super) fn show(
     procedures: &[Arc<Procedure>],
     data_files: usize,
@@ -46,7 +46,7 @@ pub(super) fn show(
     print_out(&format!("{checked}; {found}; {english}{bench}"))
 }
 
-/// Notes on the steps that a bench leaves out, and their number.
+/// Prints the steps that a bench cannot do as notes, and returns a sentence with the number it can do.
 fn of_bench(bench: &Places, fitted: &[Arc<Procedure>]) -> String {
     let terminal = &Words::shown().terminal;
     let (mut all, mut left_out) = (0, 0);

@@ -12,7 +12,7 @@ use ptu_runs::run::{Task, select};
 use ptu_runs::stdio;
 
 impl RunArguments {
-    /// All when some are named, else those that are not run on request only; without those that are left out.
+    /// All procedures if some are named, else those that do not run on request only; in both cases without --exclude.
     pub(super) fn asked_for(
         &self,
         mut procedures: Vec<Arc<Procedure>>,
@@ -32,7 +32,7 @@ impl RunArguments {
         Ok(procedures)
     }
 
-    /// Procedures with the steps chosen; those with none are left out.
+    /// Tasks for the procedures, with the steps chosen by --step; a procedure without a chosen step is left out.
     pub(super) fn tasks(
         &self,
         procedures: Vec<Arc<Procedure>>,
@@ -73,10 +73,10 @@ impl RunArguments {
     }
 }
 
-/// Removes the procedures of a name, folder or glob.
+/// Removes the procedures with this name, in this folder, or that match this glob.
 ///
 /// # Errors
-/// No procedure has the name, or all the remaining ones have.
+/// It would remove no procedure, or all that are left.
 fn exclude(name: &str, procedures: &mut Vec<Arc<Procedure>>) -> Result<(), Failure> {
     let wanted = name.strip_suffix(".star").unwrap_or(name);
     let wanted = wanted.trim_start_matches("scripts/").trim_end_matches('/');

@@ -16,7 +16,7 @@ use ptu_runs::run_diagnosis::{Answer, RepairProof, diagnose_run};
 use ptu_runs::stdio;
 
 impl RunArguments {
-    /// The diagnosis of an adaptive run, and of any other that failed.
+    /// The diagnosis of an adaptive run, and of any other run that failed.
     pub(super) fn diagnosis(
         &self,
         store: &Store,
@@ -28,8 +28,8 @@ impl RunArguments {
         is_wanted.then(|| diagnose_run(store, directory, outcome.id))
     }
 
-    /// Prints the result of an adaptive run; after any other failed run the conclusion, unless the
-    /// dictionary does not belong to these scripts.
+    /// Prints the diagnosis of an adaptive run, or the conclusion of any other failed run; no conclusion if the
+    /// dictionary was not made with these scripts.
     pub(super) fn say_diagnosis(&self, answer: Result<Answer, Failure>) -> Result<(), Failure> {
         let words = Words::shown();
         if self.adaptive {
@@ -48,8 +48,7 @@ impl RunArguments {
     }
 }
 
-/// Time until which a departure test holds; else the reason why it does not, and how the part is
-/// found.
+/// Prints until when a departure test holds, or why it does not hold; after a failed test also how to find the part.
 pub(super) fn say_validity(run: &RunDetail) -> Result<(), Failure> {
     let Some(departure) = Departure::of(run) else {
         return Ok(());

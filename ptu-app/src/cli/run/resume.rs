@@ -1,4 +1,4 @@
-//! `--resume` and `--retry-errors`: what an earlier run left open, as a new run linked to it.
+//! `--resume` and `--retry-errors`: runs what an earlier run left open, as a new run linked to the earlier run.
 
 use std::sync::Arc;
 
@@ -13,24 +13,24 @@ use ptu_runs::link::Endpoint;
 use ptu_runs::run::{BenchSetup, Unfinished, unfinished};
 use ptu_runs::stdio;
 
-/// Serial number of units that were not reached.
+/// Serial number recorded for a unit that was not reached.
 const UNKNOWN_SERIAL: &str = "unknown";
 
-/// Which earlier run.
+/// Options that name the earlier run.
 #[derive(Debug, Args)]
 pub struct ResumeOption {
-    /// Run what RUN left without a verdict (stopped, interrupted, not begun) as a new run linked to it. Unit, serial
-    /// number, train number, line, unit configuration, seed and injected faults are those of RUN where they are not
-    /// given; what a run does not store (--harness, --train, --set, --scattered, --step, --repeat) is to be given again
+    /// Run what RUN left without a verdict (stopped, interrupted, not begun), as a new run linked to RUN. Unit, serial
+    /// number, train number, line, unit configuration, seed and injected faults are taken from RUN unless given; what a
+    /// run does not store (--harness, --train, --set, --scattered, --step, --repeat) has to be given again
     #[arg(long, value_name = "RUN", conflicts_with_all = ["procedures", "retry_errors", "adaptive", "check"])]
     resume: Option<String>,
-    /// The same with what could not be tested in RUN: its procedures that ended as errors
+    /// Run again the procedures that ended as errors in RUN, because they could not be tested; else as --resume
     #[arg(long, value_name = "RUN", conflicts_with_all = ["procedures", "adaptive", "check"])]
     retry_errors: Option<String>,
 }
 
 impl RunArguments {
-    /// The earlier run, if one is named; what was not given is then as it was there.
+    /// The earlier run, if one is named; takes over its values for all options that are not given.
     pub(super) fn take_over(&mut self) -> Result<Option<RunDetail>, Failure> {
         let (which, name) = match (&self.resume.resume, &self.resume.retry_errors) {
             (Some(name), _) => (Unfinished::WithoutVerdict, name),
@@ -76,7 +76,7 @@ impl RunArguments {
         Ok(Some(earlier))
     }
 
-    /// The unit is that of the earlier run; its port may be another.
+    /// Takes over the unit of the earlier run, on the same port or another; refuses a different unit.
     fn take_unit(&mut self, earlier: &RunDetail) -> Result<(), Failure> {
         let (run, id) = (&earlier.run, earlier.run.id);
         let place = match run.source.parse::<Endpoint>() {
@@ -114,7 +114,7 @@ impl RunArguments {
     }
 }
 
-/// Tells what is not as it was in the earlier run.
+/// Prints which scripts have changed since the earlier run, and whether the unit configuration has.
 pub(super) fn tell_changes(earlier: &RunDetail, procedures: &[Arc<Procedure>], setup: &BenchSetup) {
     let terminal = &Words::shown().terminal;
     let id = earlier.run.id.short();

@@ -1,4 +1,4 @@
-//! The bench that a run is made on, from the options.
+//! The bench of a run, made from the options of `ptu run`.
 
 use std::sync::Arc;
 
@@ -45,7 +45,7 @@ impl RunArguments {
         }
         .setup(directory)
         .and_then(calibrated)?;
-        // A list only looks at the bench: any unit will do.
+        // Without a run the bench file is only read, for any unit, also the simulated one.
         if let Some(bench) = self.bench.as_ref().filter(|_| !drives) {
             setup.places = Some(Arc::new(directory.bench_places(bench)?));
         }
@@ -53,7 +53,7 @@ impl RunArguments {
     }
 }
 
-/// A sound card of the bench plays as it is calibrated.
+/// Sets the full scale of the bench's sound card to its calibration.
 fn calibrated(mut setup: BenchSetup) -> Result<BenchSetup, Failure> {
     if let Some(places) = &mut setup.places
         && let Some((_, device)) = places.sound_card()

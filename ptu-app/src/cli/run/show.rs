@@ -1,4 +1,4 @@
-//! How a run is shown while it goes on and at its end, and where its events go.
+//! Options for what a run shows while it goes on and at its end, and for the files of its events.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ use ptu_report::words::Words;
 use ptu_runs::failure::Failure;
 use ptu_runs::run::{LinePrinter, Listener, Outcome, RunPlan, SessionEvent};
 
-/// How much is said, and in which form.
+/// Options that say how much is shown, and in which form.
 #[derive(Debug, Args)]
 pub struct ShowOptions {
     /// Say only what did not pass, and the verdict
@@ -60,7 +60,7 @@ impl ShowOptions {
         }
     }
 
-    /// Outcome of the run.
+    /// Text at the end of a run: with --quiet failures and verdict, else the table of procedures.
     pub fn verdict(&self, run: &RunDetail) -> String {
         let words = Words::shown();
         match self.quiet {
@@ -70,7 +70,7 @@ impl ShowOptions {
     }
 }
 
-/// Everything the events of a run go to.
+/// Everything that receives the events of a run.
 pub struct RunShow {
     console: Console,
     stream: Option<EventStream>,
@@ -78,7 +78,7 @@ pub struct RunShow {
 }
 
 impl RunShow {
-    /// The run is over; whether the stream and the recording are whole.
+    /// Ends the output after the run; says whether the stream and the recording are complete.
     pub fn finish(self, outcome: Option<&Outcome>) -> [Result<(), Failure>; 2] {
         let recorded = self.recording.map(|recording| recording.finish(outcome));
         let streamed = self.stream.map(|stream| stream.finish(outcome));

@@ -1,4 +1,4 @@
-//! `ptu signal calibrate`: what a sample of a sound card stands for, by an instrument.
+//! `ptu signal calibrate`: measures the voltage of a sound card's full scale against an instrument.
 
 use clap::Args;
 use protocol::config::UnitConfig;
@@ -19,15 +19,15 @@ use ptu_runs::stdio;
 use ptu_runs::stop::Stop;
 use ptu_runs::typed::{Typed, somebody_is_there};
 
-/// How long the reference is heard where nobody is asked, s.
+/// Time for which the reference is played with --measured, s.
 const REFERENCE_S: f64 = 5.0;
-/// How long a level at an input is measured, s.
+/// Time for which a level at an input is measured, s.
 const MEASURED_S: f64 = 1.0;
 
 /// Calibrate a channel of a sound card against an instrument
 ///
-/// Output: a carrier is played at the level, and what the instrument at the coil shows is asked for. Input: a carrier
-/// of the level is applied, and what the card makes of it is measured. The factor is stored for this user.
+/// Output: a carrier is played at the level; enter what the instrument at the coil shows. Input: apply a carrier of the
+/// level; what the card makes of it is measured. The calibration is stored for this user.
 ///
 /// Examples:
 ///   ptu signal calibrate --device coil --level 500 --instrument 'Fluke 87 serial 123' --within 2%
@@ -40,22 +40,22 @@ pub struct CalibrateArguments {
     /// Channel
     #[arg(long, value_name = "atp|twc|both", default_value = "atp")]
     channel: Channel,
-    /// Calibrate the input: a carrier of this level is applied to it
+    /// Calibrate the input, to which a carrier of this level is applied
     #[arg(long, conflicts_with_all = ["measured", "seconds"])]
     input: bool,
-    /// Level of the reference, mV rms
+    /// Level of the reference carrier, mV rms
     #[arg(long, value_name = "MV", default_value_t = 500.0, value_parser = positive)]
     level: f64,
-    /// What the instrument showed, mV rms [default: asked for while the reference is heard]
+    /// What the instrument showed, mV rms [default: asked for while the reference is played]
     #[arg(long, value_name = "MV", value_parser = positive)]
     measured: Option<f64>,
-    /// With --measured: how long the reference is heard, s [default: 5]
+    /// With --measured: time for which the reference is played, s [default: 5]
     #[arg(long, value_name = "S", value_parser = positive, requires = "measured")]
     seconds: Option<f64>,
     /// The instrument, with its serial number
     #[arg(long, value_name = "TEXT")]
     instrument: String,
-    /// Its uncertainty, as 2%
+    /// Uncertainty of the instrument, as 2%
     #[arg(long = "within", value_name = "PERCENT", value_parser = percent)]
     uncertainty: f64,
     #[command(flatten)]
@@ -89,7 +89,7 @@ impl CalibrateArguments {
             if !self.channel.has(side) {
                 continue;
             }
-            // Output: a whole sample made more than was thought. Input: it was made by less.
+            // Factor on the assumed full scale: measured / level for an output, level / measured for an input.
             let full_scale_mv = match self.input {
                 true => now * self.level / measured,
                 false => now * measured / self.level,
@@ -125,7 +125,7 @@ impl CalibrateArguments {
         print_out(&lines.join("\n"))
     }
 
-    /// What the instrument shows while the reference is played.
+    /// Level that the instrument shows while the reference is played, mV rms: `--measured`, or typed by a person.
     fn heard(
         &self,
         device: (&str, [f64; CHANNELS]),
@@ -152,7 +152,7 @@ impl CalibrateArguments {
             if at as f64 >= seconds * rate {
                 return None;
             }
-            // Asked for each 10 ms.
+            // Looks for a typed line every 10 ms (480 samples).
             if at.is_multiple_of(480)
                 && let Some(typed) = &typed
             {
@@ -184,7 +184,7 @@ impl CalibrateArguments {
         Ok([answer.unwrap_or(0.0); CHANNELS])
     }
 
-    /// What the device shows of the level that is applied: all within 20 Hz of the reference.
+    /// Level of the applied carrier as the device records it, mV rms: what lies within 2 Hz of the reference.
     fn applied(
         &self,
         device: (&str, [f64; CHANNELS]),
@@ -196,7 +196,7 @@ impl CalibrateArguments {
         let mut sums = [[0.0; 2]; CHANNELS];
         let mut count = 0usize;
         let half = (MEASURED_S * rate) as usize;
-        // The first second is the card's own beginning.
+        // The first second is left out: the card has just started.
         sound::record(device, Some(2.0 * MEASURED_S), stop, &mut |block| {
             for place in 0..block[0].len() {
                 if count >= half {
@@ -213,7 +213,7 @@ impl CalibrateArguments {
             }
             Ok(())
         })?;
-        // Half of the amplitude times the mean of the window, which is a half.
+        // A sum is half the amplitude, times the mean of the Hann window (1/2), times the number of samples.
         Ok(sums.map(|[re, im]| re.hypot(im) * 4.0 / half as f64 / std::f64::consts::SQRT_2))
     }
 }

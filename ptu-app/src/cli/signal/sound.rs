@@ -22,8 +22,8 @@ use ptu_runs::whole_file::check_writable;
 
 /// Play a WAV file, a speed code or TWC on a sound card
 ///
-/// The first channel (left) is that of ATP, the second that of TWC. It begins 20 dB below its level and reaches it in
-/// half a second. It stops within 100 ms of Ctrl-C, or when this program ends in any way.
+/// The first channel (left) carries ATP, the second channel TWC. The sound begins 20 dB below its level and reaches the
+/// level in half a second. The sound stops within 100 ms of Ctrl-C, or when this program ends in any way.
 ///
 /// Examples:
 ///   ptu signal play recording.wav --device coil
@@ -40,7 +40,7 @@ pub struct PlayArguments {
     value: Option<String>,
     #[command(flatten)]
     device: Device,
-    /// Channel [default: that of the code or TWC; of a file with one channel both]
+    /// Channel [default: atp for a code, twc for TWC; a file with one channel plays on both]
     #[arg(long, value_name = "atp|twc|both")]
     channel: Option<Channel>,
     /// Length of a code, s [default: until Ctrl-C]
@@ -54,7 +54,7 @@ pub struct PlayArguments {
 
 /// Record from a sound card to a WAV file of two channels: ATP and TWC
 ///
-/// Full scale of the file is 4000 mV, whatever the card's is: `ptu signal read` shows the levels at the coil.
+/// Full scale of the file is 4000 mV, whatever the card's full scale: `ptu signal read` shows the levels at the coil.
 ///
 /// Examples:
 ///   ptu signal record --device coil.monitor --out coil.wav --seconds 10
@@ -66,7 +66,7 @@ pub struct RecordArguments {
     /// WAV file to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// For so long, s [default: until Ctrl-C, at most 3 hours]
+    /// Length, s [default: until Ctrl-C, at most 3 hours]
     #[arg(long, value_name = "S", value_parser = positive)]
     seconds: Option<f64>,
 }
@@ -124,7 +124,7 @@ impl PlayArguments {
                 let wave = Wave::Twc(hex(bytes).map_err(Failure::usage)?.0);
                 let samples = signal::samples(&wave, &unit, self.noisy.strength())?;
                 let channel = self.channel.unwrap_or(Channel::Twc);
-                // The receiver hears the first byte at its whole level.
+                // Before the first byte a tone rises, so that the receiver hears this byte at its full level.
                 let rest_hz = signal::rest_hz(&unit) as u32;
                 let level = self.noisy.strength().level_mv as u32;
                 let lead =
@@ -159,7 +159,7 @@ impl PlayArguments {
     }
 }
 
-/// The samples of a file, block by block; those of one channel for both.
+/// The samples of a file, mV, block by block; a file with one channel goes to both channels.
 fn of_file(
     mut wav: Wav,
     channel: Channel,
@@ -265,7 +265,7 @@ fn said(of: &Calibration) -> String {
     )
 }
 
-/// What a whole sample of each channel stands for; says which channel nobody has calibrated.
+/// Voltage that full scale of each channel stands for, mV; a note names the channels that nobody has calibrated.
 pub fn full_scale(device: &str, direction: Direction) -> Result<[f64; CHANNELS], Failure> {
     let known = Calibrations::load(&sound_file()?)?;
     let without = Side::ALL

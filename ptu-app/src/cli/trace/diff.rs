@@ -16,7 +16,7 @@ use ptu_runs::failure::{Asked, Exit, Failure};
 use ptu_runs::replay::{Comparison, Original, Rule, compare, good_twin, rule_between};
 use ptu_runs::stdio;
 
-/// Say where two traces differ, aligned at their triggers: which signals, first where, by how much
+/// Say where two traces differ, aligned at their triggers: which signals, when first, by how much
 ///
 /// Numbers differ if they are more than one step of their signal apart, words and bits if they are not the same. If
 /// one of the traces comes from a unit on a port, they differ only beyond what its clock explains (two rows, and a
@@ -24,8 +24,9 @@ use ptu_runs::stdio;
 /// efforts, accelerations and counts of frames.
 ///
 /// B may be a .csv, .parquet or .mcap file: an export, or another program's table with a column of times or messages in
-/// JSON. Seconds count from the trigger, dates and messages are of the calendar (UTC); a file of another time is laid
-/// with its beginning at that of the trace. Each row of the trace is compared with the last sample before it.
+/// JSON. Times in seconds count from the trigger; dates and the times of messages are UTC. A file of another time is
+/// laid with its beginning at the beginning of the trace. Each row of the trace is compared with the last sample before
+/// it.
 ///
 /// Exit codes: 0 no signal differs, 1 one does.
 ///
@@ -37,10 +38,10 @@ use ptu_runs::stdio;
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub struct DiffArguments {
-    /// A trace
+    /// Trace A: an id, its beginning or end (at least 4 digits), or `latest`
     #[arg(value_name = "A")]
     came: String,
-    /// Another; `twin`: the same stimuli on a sound unit; or a .csv, .parquet or .mcap file
+    /// Trace B; or `twin`: a sound unit with the same stimuli; or a .csv, .parquet or .mcap file
     #[arg(value_name = "B")]
     expected: String,
     /// Only these signals
@@ -50,7 +51,7 @@ pub struct DiffArguments {
     #[arg(long, value_name = "SECONDS", default_value = "0", hide_default_value = true,
         allow_hyphen_values = true, value_parser = shift_argument)]
     shift: f64,
-    /// Take a column of a file for a signal
+    /// Compare column NAME of a file with SIGNAL of the trace
     #[arg(long = "map", value_name = "NAME=SIGNAL", value_parser = map_argument)]
     names: Vec<(String, String)>,
     /// The column of a file that has the times
@@ -140,14 +141,14 @@ impl DiffArguments {
 
 /// Two traces to compare.
 struct ComparedTraces {
-    /// Name of B.
+    /// Name of trace B: its id, `twin` or the file.
     name: String,
     came: TraceData,
     expected: TraceData,
     rule: Rule,
-    /// Signals of B that A does not have, which were not laid beside it.
+    /// Signals of the file that trace A does not have.
     unknown: Vec<String>,
-    /// Seconds from the trigger, where the rows say more than is known.
+    /// Compared span, s from the trigger, if B is a file; else the rows give the span.
     window_s: Option<(f64, f64)>,
 }
 
@@ -172,7 +173,7 @@ fn map_argument(text: &str) -> Result<(String, String), String> {
 }
 
 fn shift_argument(text: &str) -> Result<f64, String> {
-    // A year either way.
+    // At most a year earlier or later.
     let seconds = text.parse::<f64>().ok();
     let seconds = seconds.filter(|seconds| seconds.abs() < 3.2e7);
     seconds.ok_or_else(|| format!("\"{text}\" is no number of seconds"))

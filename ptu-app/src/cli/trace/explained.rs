@@ -10,7 +10,7 @@ use ptu_report::words::{Language, Words, fill};
 use ptu_runs::replay::{Comparison, Deviation, Difference, Explanation, Link};
 use ptu_runs::table::Table;
 
-/// Deviations shown; the rest follows from them.
+/// Most deviations that are shown; later ones follow from these.
 const SHOWN: usize = 15;
 
 /// First deviation, chain and further deviations, as a person reads them.
@@ -43,7 +43,7 @@ pub fn explanation_text(explanation: &Explanation) -> String {
     text.trim_end().to_owned()
 }
 
-/// `speed1 is 0 km/h, expected 12.3 km/h, 4.20 s before the trigger`
+/// A deviation as text, as `speed1 is 0 km/h, expected 12.3 km/h, 4.20 s before the trigger`.
 fn told(deviation: &Deviation) -> String {
     let (channel, first) = (&deviation.channel, &deviation.first);
     let words = Words::shown();
@@ -95,7 +95,7 @@ fn link_text(link: &Link) -> String {
     format!("{at_s:>8.2} s  {said}")
 }
 
-/// A table of deviations, in their order.
+/// Table of the first deviations, in their order.
 pub fn deviations_text(comparison: &Comparison, came: &str, expected: &str) -> String {
     let words = Words::shown();
     let terminal = &words.terminal;
@@ -135,13 +135,13 @@ pub fn deviations_text(comparison: &Comparison, came: &str, expected: &str) -> S
     text
 }
 
-/// From when to when two traces were compared, seconds from the trigger.
+/// Text with the span in which two traces were compared, s from the trigger.
 pub fn compared((from_s, to_s): (f64, f64), words: &Words) -> String {
     let [from, to] = [from_s, to_s].map(|at_s| format!("{at_s:.2}"));
     fill(words.traces.compared, &[("from", &from), ("to", &to)])
 }
 
-/// `first_deviation`, `deviations`, `chain` and `notes`.
+/// JSON object with `procedure`, `first_deviation`, `deviations`, `chain` and `notes`.
 pub fn explanation_json(explanation: &Explanation) -> Value {
     json!({
         "procedure": explanation.procedure,

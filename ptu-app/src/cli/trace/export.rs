@@ -13,12 +13,12 @@ use ptu_runs::failure::{Exit, Failure};
 
 /// Write a trace to a .csv, .parquet or .mcap file
 ///
-/// .csv      a line a row; FILE-metadata.json beside it says what the signals are (CSV on the Web)
-/// .parquet  for DuckDB, pandas, Polars: doubles, booleans, words
-/// .mcap     for Foxglove and PlotJuggler: a JSON message a row, under the topic `trace`
+///   .csv      a line for each row; FILE-metadata.json beside it describes the signals (CSV on the Web)
+///   .parquet  for DuckDB, pandas, Polars: doubles, booleans, words
+///   .mcap     for Foxglove and PlotJuggler: a JSON message for each row, under the topic `trace`
 ///
-/// In each, times are seconds from the trigger and UTC, a sample that is not known is empty, and trace, run,
-/// unit, period, trigger and each signal's unit and words are kept.
+/// In each format, times are seconds from the trigger and UTC, unknown samples are empty, and these are kept: trace,
+/// run, unit, period, trigger, and the unit of measure and the words of each signal.
 ///
 /// Examples:
 ///   ptu trace export latest --out trace.parquet
@@ -28,7 +28,7 @@ use ptu_runs::failure::{Exit, Failure};
 pub struct ExportArguments {
     /// The trace: an id, its beginning or end (at least 4 digits), or `latest`
     id: String,
-    /// The file; its ending says the format
+    /// The file; its ending chooses the format
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     #[command(flatten)]
@@ -40,7 +40,7 @@ pub struct ExportArguments {
 
 impl ExportArguments {
     pub fn run(self, store: &Store) -> Result<Exit, Failure> {
-        // Before anything is looked for.
+        // An unknown ending is refused before the database is searched.
         Format::of(&self.out)?;
         let id = store.resolve_trace(&self.id)?;
         let chosen = TracePart::new(store, id, &self.part.signals, self.part.window)?;

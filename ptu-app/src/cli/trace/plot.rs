@@ -11,14 +11,14 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::clock::local;
 use ptu_runs::table::{cell, padded};
 
-/// Characters of a plotted line.
+/// Width of a plotted line, characters.
 const PLOT_WIDTH: usize = 60;
-/// Signals shown side by side.
+/// Most signals that are shown side by side.
 const LANES: usize = 12;
-/// Widest name of a signal, in columns.
+/// Greatest width of a signal's name, columns.
 const WIDEST_NAME: usize = 60;
 
-/// One line a channel: range and a plot that shows each part's extreme.
+/// A line for each signal: a plot whose bars are the greatest value of their part of the trace, and the range.
 pub fn plot(id: Id, trace: &TraceData) -> String {
     let rows = trace.rows();
     let seconds = |rows: usize| rows as f64 * trace.period_us as f64 / 1e6;
@@ -34,7 +34,7 @@ pub fn plot(id: Id, trace: &TraceData) -> String {
                 ("after", &tenths(rows.saturating_sub(row + 1))),
             ],
         ),
-        // A part of a trace.
+        // A part of a trace without its trigger.
         None => fill(terminal.without_trigger, &[("n", &tenths(rows))]),
     };
     if trace.partial {
@@ -98,7 +98,7 @@ fn bars(column: &[f64], low: f64, high: f64) -> String {
     (0..PLOT_WIDTH).map(part).collect()
 }
 
-/// Two lines a signal, what came above what was expected, on one scale and aligned at the triggers.
+/// Two lines for each signal, the recorded above the expected values, on one scale and aligned at the triggers.
 pub fn lanes(came: &TraceData, expected: &TraceData, names: &[&str]) -> String {
     let words = Words::shown();
     let terminal = &words.terminal;

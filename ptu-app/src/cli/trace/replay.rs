@@ -18,8 +18,8 @@ use ptu_runs::stop::Stop;
 /// Repeat the stimuli of a trace on the simulated unit or one on a port, and compare the responses
 ///
 /// The replay is stored as a run with a trace of its own. The answer is `reproduced` if the unit responds as in the
-/// trace, and else `not reproduced`: as the good twin, or as neither. The verdict is on the unit: passed if it
-/// responds as the good twin, a sound unit with the same stimuli.
+/// trace, else `not reproduced`, with whether it responds as the good twin (a sound unit with the same stimuli). The
+/// verdict is on the unit: passed if it responds as the good twin.
 ///
 /// Examples:
 ///   ptu trace replay latest                                on a sound simulated unit
@@ -33,7 +33,7 @@ pub struct ReplayArguments {
     /// The unit: sim, serial:PATH[@BAUD], tcp:HOST:PORT or lockstep:PATH
     #[arg(long, value_name = "UNIT", default_value = "sim")]
     unit: Endpoint,
-    /// Faults to inject into the simulated unit or into the train around any, see `ptu catalog faults`
+    /// Faults to inject into the simulated unit, or into the train around any unit, see `ptu catalog faults`
     #[arg(long, value_name = "FAULT[,FAULT]", value_delimiter = ',')]
     inject: Vec<String>,
     /// Who tests
@@ -56,7 +56,7 @@ impl ReplayArguments {
         }
         self.reports.check()?;
         limits::name("the operator's name", &self.who)?;
-        // A trace that is not there must not make a database.
+        // Opened for reading first: a trace that does not exist must not make a database.
         let store = database.open_read_only()?;
         let original = Original::read(&store, store.resolve_trace(&self.id)?)?;
         drop(store);

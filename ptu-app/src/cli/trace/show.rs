@@ -1,4 +1,4 @@
-//! `ptu trace show`: a trace beside the trace of a good unit.
+//! `ptu trace show`: a trace, and where it deviates from a good unit's trace.
 
 use clap::Args;
 use fault_db::{Channel, Id, Store, TraceData};
@@ -21,7 +21,7 @@ pub struct ShowArguments {
     id: String,
     #[command(flatten)]
     part: PartArguments,
-    /// Show deviating signals beside those of the good twin: the same stimuli on a sound unit
+    /// Show deviating signals beside the signals of the good twin: a sound unit with the same stimuli
     #[arg(long)]
     twin: bool,
     #[command(flatten)]
@@ -75,7 +75,7 @@ impl ShowArguments {
     }
 
     fn explained(&self, store: &Store, id: Id) -> Result<Explanation, Failure> {
-        // Why there is no recording comes before why there are no scripts.
+        // A missing recording is told before missing scripts.
         if store.recording(id)?.is_none() {
             return Err(Failure::usage(RecordTrouble::NoRecording(id)));
         }
@@ -89,7 +89,7 @@ fn add(document: &mut Value, more: Value) {
     }
 }
 
-/// What was noted at its places, below the trace.
+/// Table of the notes on places of the trace, below the trace.
 fn notes(notes: &[TraceNote], words: &Words) -> String {
     if notes.is_empty() {
         return String::new();

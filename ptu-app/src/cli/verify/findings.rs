@@ -12,31 +12,31 @@ use ptu_runs::keys::{KeyList, Standing};
 use ptu_runs::stored::from_stored;
 use ptu_runs::words::{Say as _, TextStyle};
 
-/// Findings, in the words of their readers.
+/// Findings of a verification, in the language of their readers.
 pub(super) struct Findings {
     pub(super) words: &'static Words,
-    /// `run`, `database`, `sheet` or `certificate`.
+    /// Kind of what is verified: `run`, `database`, `sheet` or `certificate`.
     pub(super) what: &'static str,
     pub(super) id: String,
-    /// A signature or seal of it as a whole was read: without one nothing says that it is unchanged.
+    /// Whether a signature or seal of the whole was read: without one nothing says that the whole is unchanged.
     pub(super) is_covered: bool,
     /// Signatures: who signed what, when, and whether the key was valid then.
     pub(super) signatures: Vec<Value>,
-    /// The signatures, a sentence each.
+    /// The signatures as text, a sentence each.
     pub(super) said: Vec<String>,
     pub(super) changes: Vec<String>,
     /// Things that are not signed, or not by a trusted key.
     pub(super) doubts: Vec<String>,
     /// Remarks that are neither changes nor doubts, such as pruned samples.
     pub(super) remarks: Vec<String>,
-    /// Value as a departure test.
+    /// Validity of the run as a departure test; `None` if it is no departure test.
     pub(super) departure: Option<Departure>,
 }
 
-/// Time by which a clock may be ahead of this one, µs.
+/// Time by which another computer's clock may be ahead of this computer's clock, µs.
 const AHEAD_US: i64 = 86_400_000_000;
 
-/// Sentence on a signature that is dated in the future.
+/// Doubt about a signature that is dated more than a day in the future.
 pub(super) fn dated_ahead(name: &str, at_us: i64, words: &Words) -> Option<String> {
     let is_ahead = at_us > clock::now_us().saturating_add(AHEAD_US);
     is_ahead.then(|| {
@@ -46,7 +46,7 @@ pub(super) fn dated_ahead(name: &str, at_us: i64, words: &Words) -> Option<Strin
 }
 
 impl Findings {
-    /// No findings yet about a `run`, `database`, `sheet` or `certificate`.
+    /// Findings, empty as yet, about a `run`, `database`, `sheet` or `certificate`.
     pub(super) fn of(what: &'static str, words: &'static Words) -> Self {
         Self {
             words,
@@ -108,7 +108,7 @@ impl Findings {
         self.changes.extend(seen.changes);
     }
 
-    /// Notes that nobody signed: a doubt in the name of one of these signers.
+    /// Takes notes that nobody signed: a note in the name of one of `signers` is a doubt, any other note a remark.
     pub(super) fn take_unsigned(&mut self, notes: &[(Id, String)], signers: &[String]) {
         for (id, who) in notes {
             let of = [("id", &id.short() as _), ("who", who as _)];
@@ -152,7 +152,7 @@ impl Findings {
         }));
     }
 
-    /// Time until which a departure test holds, or why it does not: then it is no good one.
+    /// Says until when a departure test holds; why one does not hold is a doubt.
     pub(super) fn say_departure(&mut self, departure: Departure) {
         let verify = &self.words.verify;
         if departure.why_not.is_empty() {
@@ -197,7 +197,7 @@ impl Findings {
     }
 }
 
-/// Summary of a signed run.
+/// Text that sums up a signed run: unit, verdict, counts, operator, time.
 fn about_text(about: &About, words: &Words) -> String {
     let verify = &words.verify;
     let injected = match &about.injected {

@@ -7,7 +7,7 @@ use ptu_runs::keys::KeyList;
 use super::findings::Findings;
 use ptu_report::words::{Words, fill};
 
-/// A sheet by the certificate in it.
+/// Findings on a sheet, by the certificate in it.
 pub(super) fn sheet(page: &str, keys: &KeyList, words: &'static Words) -> Findings {
     let verify = &words.verify;
     let mut found = Findings::of("sheet", words);

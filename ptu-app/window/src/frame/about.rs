@@ -1,4 +1,4 @@
-//! What this program is, its keys, where its data are, and the licences of what it ships.
+//! The dialog About: this program, its keys, the places of its data, and the licences of what it ships.
 
 use eframe::egui::{CollapsingHeader, Grid, RichText, ScrollArea, Ui};
 
@@ -17,7 +17,7 @@ impl About {
         self.open = true;
     }
 
-    /// The dialog while it is open.
+    /// Shows the dialog while it is open.
     pub fn show(&mut self, ui: &Ui, context: &PageContext<'_>) {
         if self.open {
             let title = context.words.frame.about;

@@ -1,4 +1,4 @@
-//! The bar of the unit: which one, how it is reached, what runs, whether it is armed, and what stops all. It is one line.
+//! The bar of the unit, one line: its name, its connection, its run, whether it is armed, and the stop of all units.
 
 use btu_rig::stimulus::Stimulus;
 use eframe::egui::{Align, Layout, Popup, Rect, Response, Ui, UiBuilder, pos2, vec2};
@@ -22,14 +22,14 @@ use ptu_report::words::{self, fill};
 use ptu_runs::bench_worker::Phase;
 use ptu_runs::table::cut;
 
-/// Gap between two things in the bar, points.
+/// Gap between two items of the bar, points.
 const GAP: f32 = 8.0;
-/// Width of the bar of a run, points.
+/// Width of the progress bar of a run, points.
 const RUN_BAR: f32 = 72.0;
-/// Letters of a name, at most.
+/// Most letters of a name that are shown.
 const NAME: usize = 24;
 
-/// Parts of the bar that give way where the bar is too narrow, in this order.
+/// Parts that a narrow bar leaves out, in this order; each value leaves out the earlier parts, too.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Without {
     Nothing,
@@ -59,7 +59,7 @@ impl Without {
     ];
 }
 
-/// Something in the bar, and what it does.
+/// An item of the bar, by what a click on it does.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum What {
     Unit(usize),
@@ -163,7 +163,7 @@ fn act(find: &mut Find, what: What, response: &Response, ui: &Ui, context: &mut 
             let unit = context.units.chosen();
             let place = ActionPlace::new(ui, "arming", (unit.id, true));
             if place.clicked(response) {
-                // Refused only while a run has the bench, when the button is off.
+                // Refused only while a run has the bench, and then the button is disabled.
                 let _ = unit.bench.apply(Stimulus::PtuDisarm);
             }
         }
@@ -203,7 +203,7 @@ fn left(context: &PageContext<'_>, without: Without) -> Vec<Item> {
     items
 }
 
-/// Words, where there is room for them.
+/// The words if there is room for them, else nothing.
 fn shown_if(has_room: bool, said: &str) -> String {
     String::from(if has_room { said } else { "" })
 }
@@ -259,7 +259,7 @@ fn link(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Ite
     }
 }
 
-/// State of a run, whatever page is in front.
+/// State of the unit's run, on every page.
 fn run(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Item>) {
     let Some(run) = unit.run.as_ref().filter(|run| run.is_running()) else {
         return;
@@ -284,7 +284,7 @@ fn run(unit: &Unit, words: &words::Words, without: Without, items: &mut Vec<Item
     }
 }
 
-/// Other states that need a look; the last one without its words.
+/// Other states that need a look, with their words or as icons alone.
 fn states(context: &PageContext<'_>, with_words: bool, items: &mut Vec<Item>) {
     let words = context.words;
     let unit = context.units.chosen();

@@ -1,4 +1,5 @@
-//! Finds anything by a few of its letters: a fault, a step, a unit, a page, an action. It opens and chooses; it arms and runs nothing.
+//! The search dialog: finds a fault, step, unit, page or action by a few letters. An entry is opened or chosen;
+//! nothing is armed or run.
 
 use crate::parts::{over_page, selectable};
 use std::sync::Arc;
@@ -21,7 +22,7 @@ use ptu_report::naming::{DOT, PartNames};
 use ptu_report::words::{Language, fill};
 use ptu_runs::bench_worker::Phase;
 
-/// Width of it, and height of what was found, points.
+/// Width of the dialog, and height of its results, points.
 const WIDE: f32 = 640.0;
 const HIGH: f32 = 420.0;
 /// Number of entries of a kind that are shown.
@@ -34,15 +35,15 @@ const FAULTS: u32 = 500;
 pub struct Find {
     pub open: bool,
     typed: String,
-    /// The row that Enter takes.
+    /// Index of the row that the Enter key takes.
     at: usize,
     faults: Request<(Vec<FaultSummary>, PartNames)>,
-    /// Faults and steps that fit what is typed, and for what they were looked through.
+    /// Faults and steps that fit the typed text; text, whether faults are read, and language of that search.
     found: Vec<Row>,
     found_for: Option<(String, bool, Language)>,
 }
 
-/// Something found, and what it does.
+/// An entry that was found, and what a click on it does.
 #[derive(Clone)]
 struct Row {
     kind: &'static str,
@@ -82,7 +83,7 @@ impl Find {
         }
     }
 
-    /// Draws it while it is open, with the steps of these procedures; does what was chosen.
+    /// Draws the dialog while it is open, with the steps of these procedures; does what was chosen.
     pub fn show(&mut self, ui: &Ui, procedures: &[Arc<Procedure>], context: &mut PageContext<'_>) {
         if !self.open {
             return;
@@ -102,7 +103,7 @@ impl Find {
         };
         self.at = moved.unwrap_or(self.at).min(last);
         let mut taken = key(Key::Enter).then_some(self.at);
-        // Never over the bar.
+        // Below the window's bar, never over it.
         let place = (Align2::CENTER_TOP, Sizes::of(ui).bar + 24.0, WIDE);
         let (open, beside, ()) = over_page(ui, "find", place, |ui| {
             let edit = TextEdit::singleline(&mut self.typed)
@@ -141,7 +142,7 @@ impl Find {
         }
     }
 
-    /// Finds faults and steps when what is typed is other than before: there are thousands of them.
+    /// Searches the thousands of faults and steps, only when the text, the faults read or the language have changed.
     fn look_through(&mut self, procedures: &[Arc<Procedure>], context: &PageContext<'_>) {
         let is_read = self.faults.value().is_some();
         let wanted = (
@@ -287,7 +288,7 @@ fn actions<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
             context.go_to.push(Destination::About)
         }),
     ];
-    // A unit with a run is disconnected by its own menu alone.
+    // During a run only the unit's own menu disconnects it.
     let has_run = usize::from(phase == Phase::Running);
     (actions.into_iter().skip(has_run)).map(|(name, more, act)| Row {
         kind: frame.actions,
@@ -299,7 +300,7 @@ fn actions<'a>(context: &'a PageContext<'_>) -> impl Iterator<Item = Row> + 'a {
 }
 
 impl Row {
-    /// Every part of what is typed, in small letters, is in it.
+    /// Whether the row contains every word of `typed`, which is in lower case.
     fn fits(&self, typed: &str) -> bool {
         let said = format!("{} {}", self.name, self.more).to_lowercase();
         typed.split_whitespace().all(|part| said.contains(part))

@@ -6,10 +6,10 @@ use crate::parts::key_pressed;
 use crate::{Page, PageContext};
 use ptu_runs::bench_worker::Phase;
 
-/// Stops everything, whatever has the keyboard.
+/// Key that stops all units, whichever widget has the keyboard focus.
 pub const STOP_ALL: Key = Key::F12;
 
-/// Finds anything.
+/// Name of the key that opens the search.
 pub const FIND: &str = "Ctrl K";
 
 /// Key of [`connect`].
@@ -30,7 +30,7 @@ pub fn keys(egui_context: &Context, context: &mut PageContext<'_>) {
     }
 }
 
-/// Connects the chosen unit, or lets it go unless a run has it: page keys are beside this one.
+/// Connects or disconnects the chosen unit; does nothing during a run, because the page keys are beside this key.
 pub fn connect(context: &mut PageContext<'_>) {
     let only_reads = context.only_reads();
     let locked = context.settings.is_locked();

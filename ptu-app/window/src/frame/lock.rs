@@ -1,5 +1,5 @@
-//! The lock between two shifts: the window shows what goes on and stops everything, and does nothing else until somebody
-//! gives a name. It is a name and no password.
+//! The lock between two shifts: until a person gives a name, the window only shows what is under way and can stop
+//! everything. The name is no password.
 
 use eframe::egui::{Button, Color32, Key, RichText, Ui};
 
@@ -8,7 +8,7 @@ use crate::{PageContext, Palette, Sizes};
 
 /// Width of the field for a name, points.
 const NAME: f32 = 220.0;
-/// Strength in which disabled parts are painted: they are still to be read.
+/// Opacity of disabled parts, 0 to 1: they must remain readable.
 const STRENGTH: f32 = 0.75;
 
 /// Makes the rest of `ui` readable and not clickable.
@@ -16,7 +16,7 @@ pub fn only_look(ui: &mut Ui) {
     let quiet = Palette::of(ui).quiet;
     let visuals = ui.visuals_mut();
     visuals.disabled_alpha = STRENGTH;
-    // Without a ground a button does not look as if it worked.
+    // A button without background does not look as if it could be clicked.
     let widgets = &mut visuals.widgets;
     for widget in [
         &mut widgets.inactive,
@@ -29,7 +29,7 @@ pub fn only_look(ui: &mut Ui) {
     ui.disable();
 }
 
-/// Says that the window is locked, and takes the name that opens it.
+/// Says that the window is locked, and takes the name that unlocks it.
 pub fn bar(ui: &mut Ui, context: &mut PageContext<'_>) {
     let words = &context.words.frame;
     let sizes = Sizes::of(ui);

@@ -1,4 +1,4 @@
-//! The row below the bar after a link was lost in a run: where it broke off, and how it goes on.
+//! The row below the bar after the link was lost during a run: where the run broke off, and the button to continue it.
 
 use eframe::egui::Ui;
 use egui_material_icons::icons::{ICON_LINK, ICON_LINK_OFF};
@@ -6,7 +6,7 @@ use egui_material_icons::icons::{ICON_LINK, ICON_LINK_OFF};
 use crate::parts::{ActionPlace, Face, Look};
 use crate::{Destination, PageContext, Wanted};
 
-/// The row, if the chosen unit's run broke off so; `goes_on` = its scripts are still those of the run.
+/// Draws the row, if the chosen unit's run broke off; `goes_on` = the scripts are still those of the run.
 pub fn row(ui: &mut Ui, goes_on: bool, context: &mut PageContext<'_>) {
     let words = context.words;
     let frame = &words.frame;
@@ -24,10 +24,10 @@ pub fn row(ui: &mut Ui, goes_on: bool, context: &mut PageContext<'_>) {
     ui.horizontal_wrapped(|ui| {
         Face::new(Look::Warned, said).icon(ICON_LINK_OFF).show(ui);
         match why_not {
-            // Nothing else can be done then.
+            // The run cannot be continued; only the reason is shown.
             Some(why) => drop(ui.label(why)),
             None => {
-                // The page below it has the button that is pressed first.
+                // Secondary, because the primary button belongs to the page below.
                 let go_on = Face::new(Look::Secondary, frame.go_on).hint(frame.go_on_hint);
                 if place.clicked(&go_on.icon(ICON_LINK).show(ui)) {
                     unit.connect(context.queries);

@@ -1,4 +1,4 @@
-//! The one menu: language, theme, density, size, who works here, the lock, and what this program is.
+//! The window's menu: language, theme, density, size, operator, depot, the lock, and the dialog About.
 
 use eframe::egui::{Grid, Ui};
 
@@ -12,7 +12,7 @@ const STEP: f32 = 0.1;
 /// Width of a field, points.
 const FIELD: f32 = 200.0;
 
-/// `with_history`: the rail has no room for the history.
+/// Draws the menu; `with_history` = with the history, for which the rail has no room.
 pub fn menu(with_history: bool, ui: &mut Ui, context: &mut PageContext<'_>) {
     let words = &context.words.frame;
     let settings = &mut *context.settings;
@@ -38,7 +38,7 @@ pub fn menu(with_history: bool, ui: &mut Ui, context: &mut PageContext<'_>) {
         ui.end_row();
         ui.label(words.scale);
         ui.horizontal(|ui| {
-            // The size moves every button under the pointer.
+            // A change of size moves the buttons, so a double click must not act twice.
             let zoom = f32::from(settings.zoom);
             let place = ActionPlace::new(ui, "size", zoom.to_bits());
             let smaller = Face::new(Look::Secondary, "−").show(ui);
@@ -55,7 +55,7 @@ pub fn menu(with_history: bool, ui: &mut Ui, context: &mut PageContext<'_>) {
         ui.end_row();
         let name = name_edit(&mut settings.operator, FIELD);
         field(ui, context.words.common.operator, name);
-        // The depot's name stays with the window, whatever unit is chosen.
+        // The depot belongs to the window, not to the chosen unit.
         let depot = name_edit(&mut settings.depot, FIELD);
         field(ui, context.words.report.depot, depot);
     });

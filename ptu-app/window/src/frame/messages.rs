@@ -1,5 +1,5 @@
-//! Messages: trouble until somebody acknowledges it, the latest message for a while, and all of them under the bell.
-//! A message that tells what was written has a button that takes it back.
+//! Shows messages: trouble until a person acknowledges it, the latest message for a while, all under the bell.
+//! A message about a written step has a button that undoes the step.
 
 use std::time::Duration;
 
@@ -16,19 +16,19 @@ use crate::{Page, PageContext, Palette};
 use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
 
-/// Width of what is told, points.
+/// Width of messages, points.
 const WIDE: f32 = 560.0;
 
-/// A step that is being taken back.
+/// A step that is being undone.
 #[derive(Default)]
 pub struct Undo {
     under_way: Request<Written>,
-    /// The step as its message told it.
+    /// Text of the message about the step.
     what: String,
 }
 
 impl Undo {
-    /// Tells when it is done.
+    /// Adds a message once the step is undone.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         let frame = &context.words.frame;
         if let Some(written) = self.under_way.take(frame.not_undone, context.messages) {
@@ -56,11 +56,11 @@ impl Undo {
     }
 }
 
-/// Shows what was told last, over the bottom left of the page: trouble until it was taken note of, anything else for a while.
+/// Shows the latest messages over the bottom left of the page: trouble until it is acknowledged, others for a while.
 pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo) {
     let (ended, now_s) = (context.units.runs_ended(), ui.input(|input| input.time));
     let undoable = context.messages.undoable(now_s, ended);
-    // The person who takes a message back is written down with it.
+    // An undo is recorded with the name of the person who does it.
     let named = !context.settings.operator.trim().is_empty();
     let undoable = undoable.filter(|_| named && !context.settings.is_locked());
     let place = undoable.map(|(place, ..)| place);
@@ -69,7 +69,7 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
     let all = &context.messages.all;
     let trouble = context.messages.unread_trouble();
     let last = context.messages.latest_note(place, now_s);
-    // The case shows itself what its run came to.
+    // The page Case itself shows the result of its run.
     let last = last.filter(|last| context.settings.page != Page::Case || !last.is_of_run());
     let told =
         undoable.and_then(|(place, written, left_s)| Some((all.get(place)?, written, left_s)));
@@ -94,7 +94,7 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
             }
             if let Some(last) = last {
                 ui.horizontal_wrapped(|ui| {
-                    // The message may stand over what is read, or have come under a pointer that clicks twice.
+                    // The message may have appeared under the pointer during a double click.
                     let place = ActionPlace::new(ui, "seen", last.at_us);
                     let close = Face::new(Look::Quiet, "").icon(ICON_CLOSE);
                     seen = place.clicked(&close.named(words.frame.seen).show(ui));
@@ -130,7 +130,7 @@ pub fn toasts(ui: &Ui, at: Vec2, context: &mut PageContext<'_>, undo: &mut Undo)
     }
 }
 
-/// All that was told, under the bell.
+/// List of all messages, under the bell.
 pub fn bell(response: &Response, context: &mut PageContext<'_>) {
     let words = context.words;
     Popup::menu(response).show(|ui| {

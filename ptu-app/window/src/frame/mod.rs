@@ -1,4 +1,4 @@
-//! The frame around the pages: bar of the unit, rail of the pages, what is told, dialogs, keys.
+//! The frame around the pages: bar of the unit, rail of the pages, messages, dialogs, keys.
 
 mod about;
 mod bar;
@@ -56,7 +56,7 @@ impl Frame {
         self.is_wide ^= key(Key::B);
     }
 
-    /// Bar and rail; what is left of `ui` is the page's, and can be used unless a dialog is over it.
+    /// Draws bar and rail; the rest of `ui` is for the page, and disabled while a dialog is open.
     pub fn around(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
         let ground = Ground::new().fill(palette.panel);
@@ -64,7 +64,7 @@ impl Frame {
         bar.frame(ground.inner_margin(Margin::symmetric(8, 0)))
             .show(ui, |ui| bar::bar(&mut self.find, ui, context));
         if dialog_is_open(ui.ctx()) {
-            // The dialog dims it.
+            // The page is not greyed: the dialog dims it already.
             ui.visuals_mut().disabled_alpha = 1.0;
             ui.disable();
         }
@@ -78,7 +78,7 @@ impl Frame {
             .show(ui, |ui| rail::rail(ui, context));
     }
 
-    /// Opens the dialog to which this leads, if it leads to one.
+    /// Opens the dialog that this destination names, if it is one.
     pub fn go_to(&mut self, to: &Destination) {
         match to {
             Destination::Setup => self.setup.open(),
@@ -88,20 +88,20 @@ impl Frame {
         }
     }
 
-    /// Bar of a locked window, with the name that opens it.
+    /// Bar of a locked window, with the field for the name that unlocks the window.
     pub fn locked(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
         lock::bar(ui, context);
     }
 
-    /// A run that broke off with the link, and how it goes on.
+    /// Row about a run that broke off when the link was lost, with the button to continue the run.
     pub fn lost(&self, ui: &mut Ui, goes_on: bool, context: &mut PageContext<'_>) {
         lost::row(ui, goes_on, context);
     }
 
-    /// Shows what stands over the page: messages, and open dialogs.
+    /// Shows messages and open dialogs over the page.
     pub fn over(&mut self, ui: &Ui, procedures: &[Arc<Procedure>], context: &mut PageContext<'_>) {
         self.undo.poll(context);
-        // Not over the steps and the foot of a case, nor over the foot of a form.
+        // Messages cover neither steps and foot of a case, nor the foot of a form.
         let wide = ui.ctx().content_rect().width();
         let (left, below) = match context.settings.page {
             Page::Case => (case_steps(wide), Sizes::of(ui).footer),

@@ -14,7 +14,7 @@ use egui_material_icons::icons::{
 use super::menu;
 use crate::{Density, Destination, Page, PageContext, Palette, Sizes};
 
-/// Width of a window whose rail has names beside the icons, and that width, points.
+/// Least width of a window whose rail has names beside the icons, and width of that rail, points.
 const WIDE: [f32; 2] = [1600.0, 200.0];
 /// Gap between two entries of the rail, points.
 const GAP: f32 = 1.0;
@@ -43,7 +43,7 @@ pub fn rail(ui: &mut Ui, context: &mut PageContext<'_>) {
         Density::Engineer => 46.0,
     };
     let all = Page::ALL.len() as f32 + 2.0;
-    // In a low window the history is in the menu.
+    // In a low window the rail has no entry for the history; the menu has it.
     let is_low = ui.available_height() < all * (usual + GAP);
     let all = all - f32::from(u8::from(is_low));
     let high = (ui.available_height() / all - GAP).floor().min(usual);

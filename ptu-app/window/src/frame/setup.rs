@@ -1,4 +1,4 @@
-//! The form of the bench choice: endpoint, line, unit configuration, train and injected faults.
+//! Dialog to choose the unit and its bench: endpoint, line, unit configuration, train and injected faults.
 
 use btu_rig::rig::Harness;
 use eframe::egui::{DragValue, Grid, Label, RichText, Role, ScrollArea, Ui, WidgetInfo};
@@ -15,7 +15,7 @@ use ptu_runs::run::BenchChoice;
 
 /// Width of a field, points.
 const FIELD: f32 = 220.0;
-/// Height that the list of faults leaves to the rest of the dialog, and its least height.
+/// Height that the list of faults leaves to the rest of the dialog, and the list's least height, points.
 const AROUND: f32 = 120.0;
 const LOWEST: f32 = 120.0;
 
@@ -27,14 +27,14 @@ struct Names {
     faults: Vec<(String, String)>,
 }
 
-/// The setup's own state.
+/// State of the dialog.
 #[derive(Default)]
 pub struct Setup {
     names: Request<Names>,
     find: String,
     open: bool,
     opened: bool,
-    /// The second tab is shown: injected faults.
+    /// The second tab, for practice, is shown: injected faults.
     practice: bool,
 }
 
@@ -45,7 +45,7 @@ impl Setup {
         self.names = Request::Idle;
     }
 
-    /// The dialog while it is open, which it is while the unit is not connected.
+    /// Shows the dialog while it is open; it closes when the unit is connected.
     pub fn show(&mut self, ui: &Ui, context: &mut PageContext<'_>) {
         self.open &= context.units.chosen().phase() == Phase::Offline;
         if !self.open {
@@ -149,7 +149,7 @@ impl Setup {
         });
     }
 
-    /// The injected faults, each with a button that takes it out, all there are, and how the simulated unit behaves.
+    /// Draws the injected faults, each with a button to remove it, all fault modes, and the simulated unit's options.
     fn injected(&mut self, ui: &mut Ui, words: &Words, choice: &mut BenchChoice) {
         let frame = &words.frame;
         ui.label(RichText::new(frame.inject).strong());
@@ -168,7 +168,7 @@ impl Setup {
         });
         ui.horizontal(|ui| {
             let find = find_edit(ui, &mut self.find, frame.find, FIELD);
-            // Most people want to type a name at once.
+            // The search field has the keyboard at once, to type the name of a fault.
             if std::mem::take(&mut self.opened) {
                 find.request_focus();
             }
@@ -212,7 +212,7 @@ impl Setup {
     }
 }
 
-/// A list with its name before it.
+/// Draws a list to choose from, with its name before it.
 fn row(ui: &mut Ui, name: &str, chosen: &mut String, names: &[String]) {
     ui.label(name);
     let names = names.iter().map(|name| (name.clone(), name.clone()));

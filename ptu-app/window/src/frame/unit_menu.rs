@@ -1,4 +1,4 @@
-//! The menu of a unit: connect it or let it go, what it is set up for, who it is.
+//! The menu of a unit: connect or disconnect, set-up, and identity.
 
 use eframe::egui::{Button, RichText, Ui};
 use protocol::message::Identity;
@@ -9,7 +9,7 @@ use crate::{Destination, PageContext, Palette};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::Phase;
 
-/// Least width, points.
+/// Least width of the menu, points.
 const WIDE: f32 = 260.0;
 
 pub fn unit_menu(ui: &mut Ui, context: &mut PageContext<'_>) {
@@ -63,7 +63,7 @@ pub fn unit_menu(ui: &mut Ui, context: &mut PageContext<'_>) {
     }
 }
 
-/// Software and data of the unit.
+/// Text: software version of the unit, and checksums of its configuration and line.
 fn versions(identity: &Identity, words: &Words) -> String {
     let software = identity.software.map(|number| number.to_string()).join(".");
     let config = ptu_runs::run::unit_text::config_name(identity);

@@ -34,7 +34,7 @@ pub struct Pages {
 }
 
 impl Pages {
-    /// Takes what has come for the pages, whichever is in front.
+    /// Takes results that have arrived for any page, whichever is shown.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         self.procedures.poll(context);
         self.case.poll(self.procedures.concluded(), context);
@@ -97,7 +97,7 @@ impl Pages {
                 self.procedures.want(wanted, context);
                 page
             }
-            // The frame has opened it.
+            // The frame has opened the dialog; the page stays.
             Destination::Setup | Destination::History | Destination::About => context.settings.page,
             Destination::ChooseStep { procedure, step } => {
                 self.procedures.choose_step(&procedure, &step);

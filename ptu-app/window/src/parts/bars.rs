@@ -1,4 +1,4 @@
-//! Charts of bars: beside each other in time, or below each other by name.
+//! Bar charts: over time with bars beside each other, by name with bars below each other.
 
 use eframe::egui::{
     Align2, FontId, Rect, Role, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
@@ -10,32 +10,32 @@ use crate::Palette;
 use ptu_report::limits::short;
 use ptu_report::naming::DOT;
 
-/// Height of a chart in time, and of a row of one by name, points.
+/// Height of a chart over time, and of a row of a chart by name, points.
 const HEIGHT: f32 = 180.0;
 const ROW: f32 = 30.0;
-/// Share of the width that names take at most, and between a bar and what is said beside it.
+/// Greatest share of the width for names; gap between a bar and its text, points.
 const NAMES: f32 = 0.35;
 const BESIDE: f32 = 8.0;
-/// Room for the values at the axis, and for the names below it.
+/// Width for the values at the axis, and height for the names below the axis, points.
 const GUTTER: f32 = 40.0;
 const BELOW: f32 = 20.0;
-/// Height of the chart over that of the highest bar; the rest holds the bar's value.
+/// Height of the chart divided by the height of the highest bar; the bar's value stands above the bar.
 const ABOVE: f64 = 1.15;
-/// Counts have an axis that reaches so far: there are no halves on it.
+/// Least upper end of an axis of counts; a shorter axis would show halves.
 const LEAST: f64 = 5.0;
 
 pub struct Bar {
     pub name: String,
     /// Count, or rate.
     pub value: f64,
-    /// Said behind the count.
+    /// Text after the value.
     pub more: String,
 }
 
 /// A chart, each bar of which can be clicked.
 pub struct Chart<'a> {
     pub title: &'a str,
-    /// The bars are counts, whose sum is shown.
+    /// The bars are counts, whose sum a screen reader reads.
     pub sums: bool,
 }
 
@@ -55,7 +55,7 @@ impl Bar {
 }
 
 impl Chart<'_> {
-    /// Bars beside each other, with their names where there is room; the place of the one that was clicked.
+    /// Draws bars beside each other, with their names where there is room; index of the bar that was clicked.
     pub fn in_time(&self, ui: &mut Ui, bars: &[Bar]) -> Option<usize> {
         let rect = self.frame(ui, HEIGHT, bars)?;
         let palette = Palette::of(ui);
@@ -102,7 +102,7 @@ impl Chart<'_> {
         clicked
     }
 
-    /// Bars below each other, each with its name and count; the place of the one that was clicked.
+    /// Draws bars below each other, each with its name and value; index of the bar that was clicked.
     pub fn by_name(&self, ui: &mut Ui, bars: &[Bar]) -> Option<usize> {
         let rect = self.frame(ui, ROW * bars.len() as f32, bars)?;
         let (palette, most) = (Palette::of(ui), most(bars));
@@ -148,7 +148,7 @@ impl Chart<'_> {
         clicked
     }
 
-    /// Room of a chart, by its name.
+    /// Area of a chart, named for screen readers; none if it is out of view or has no bars.
     fn frame(&self, ui: &mut Ui, height: f32, bars: &[Bar]) -> Option<Rect> {
         let size = vec2(ui.available_width(), height);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());

@@ -1,4 +1,4 @@
-//! Cards: what a run comes to, and a name with its value.
+//! Cards: the outcome of a run, a large choice, and a name with its value.
 
 use eframe::egui::{
     Color32, Frame, Label, Margin, Rect, Response, RichText, Role, Sense, Stroke, Ui, WidgetInfo,
@@ -9,18 +9,18 @@ use egui_material_icons::MaterialIcon;
 use super::{Face, Look};
 use crate::{Palette, Sizes};
 
-/// Width of the stripe of a card, and between its edge and what is in it, points.
+/// Width of a card's stripe, and margin between its edge and its content, points.
 const STRIPE: f32 = 6.0;
 const INNER: i8 = 16;
-/// Width of what says what is missing.
+/// Width of a message that something is missing, points.
 const EMPTY: f32 = 420.0;
 
-/// Card of an outcome: an icon and a word in its colour, a headline, and what belongs to it.
+/// Card of an outcome: an icon and a word in the outcome's colour, a count and a headline.
 pub struct Card<'a> {
     pub icon: MaterialIcon,
     pub word: &'a str,
     pub colour: Color32,
-    /// Number beside the word.
+    /// Count beside the word, as text.
     pub count: &'a str,
     pub headline: &'a str,
 }
@@ -53,8 +53,7 @@ pub fn ground(palette: &Palette) -> Frame {
     frame.corner_radius(8).inner_margin(Margin::same(INNER))
 }
 
-/// Message that something is missing, with a button that leads to it if there is one; true when it
-/// was clicked.
+/// Message that something is missing, with a button if there is a way to get it; true when the button was clicked.
 pub fn empty(
     ui: &mut Ui,
     icon: MaterialIcon,
@@ -77,7 +76,7 @@ pub fn empty(
     .inner
 }
 
-/// A large choice with a line below its name.
+/// A large button to choose something, with a line of text below its name.
 pub fn choice(ui: &mut Ui, (name, below): (&str, &str), chosen: bool, size: [f32; 2]) -> Response {
     let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
     let enabled = ui.is_enabled();
@@ -117,7 +116,7 @@ pub fn fact(ui: &mut Ui, name: &str, value: &str) {
     ui.add_space(8.0);
 }
 
-/// The title of what stands below it.
+/// A title above other widgets.
 pub fn title(ui: &mut Ui, text: &str) {
     let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
     ui.label(RichText::new(text).size(sizes.title).color(palette.ink));

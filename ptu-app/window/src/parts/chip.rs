@@ -1,4 +1,4 @@
-//! A state as an icon and a word. What is in order is grey; a colour says what is not.
+//! A state as an icon and a word: grey if all is in order, else in a colour.
 
 use btu_rig::procedure::Verdict;
 use eframe::egui::{Color32, Response, Ui};

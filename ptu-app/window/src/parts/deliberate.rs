@@ -1,15 +1,16 @@
-//! Actions that are meant: a double click acts once, and what came under the pointer a moment ago is not clicked.
+//! Protection against unintended clicks: a double click acts once, and a button that has just appeared under the
+//! pointer takes no click.
 
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher, Hash};
 
 use eframe::egui::{Context, Event, Id, Key, Modifiers, Response, Ui};
 
-/// A click so soon after the place changed or acted was meant for what was there before, s.
+/// Time after a change or an action at a place in which clicks are ignored, as meant for the previous button, s.
 const MOMENT_S: f64 = 0.6;
-/// Time for which a button that arms is held, s.
+/// Time for which a button that arms has to be held down, s.
 const HOLD_S: f64 = 1.0;
 
-/// This key was pressed just now; one that is held down acts once.
+/// Whether this key was pressed just now; repeats of a key that is held down do not count.
 pub fn key_pressed(context: &Context, modifiers: Modifiers, key: Key) -> bool {
     context.input_mut(|input| {
         let is_held = input
@@ -30,9 +31,9 @@ pub struct ActionPlace {
 #[derive(Clone, Copy)]
 struct Remembered {
     state: u64,
-    /// When it appeared, its state changed, or an action began.
+    /// When the place appeared, its state changed, or an action began, s.
     at_s: f64,
-    /// Frame in which it was shown last.
+    /// Frame in which the place was shown last.
     frame: u64,
 }
 
@@ -60,7 +61,7 @@ impl ActionPlace {
         self.now_s - self.remembered.at_s >= MOMENT_S
     }
 
-    /// Whether an action of this place was clicked and meant. From then on the place takes no click for a moment.
+    /// Whether a button of this place was clicked on purpose. After that the place takes no click for [`MOMENT_S`].
     pub fn clicked(&self, response: &Response) -> bool {
         let meant = response.clicked() && self.is_ready();
         if meant {
@@ -69,8 +70,7 @@ impl ActionPlace {
         meant
     }
 
-    /// Progress of a button that has to be held down, by pointer or by key: 1 once it was long
-    /// enough.
+    /// Progress of a button that has to be held down, by pointer or by key: 0 to 1; 1 = it was held for [`HOLD_S`].
     pub fn held(&self, ui: &Ui, response: &Response) -> f32 {
         let id = self.id.with("held since");
         let by_key = response.has_focus()

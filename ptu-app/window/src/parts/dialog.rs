@@ -1,4 +1,5 @@
-//! A dialog over the page. The page is dimmed and does nothing meanwhile; the bar above it does, so that all can be stopped.
+//! A dialog over the page. The page is dimmed and takes no clicks meanwhile; the bar above stays usable, so that
+//! everything can be stopped.
 
 use eframe::egui::{
     Align, Align2, Area, Color32, Context, Frame, Id, Key, Layout, Margin, Rect, RichText,
@@ -7,14 +8,14 @@ use eframe::egui::{
 
 use crate::{Palette, Sizes};
 
-/// Width of what is in it, and around that, points.
+/// Width of a dialog's content, and margin around it, points.
 const WIDE: f32 = 520.0;
 const AROUND: f32 = 20.0;
-/// Radius of its corners, and how dark the page is behind it, of 255.
+/// Radius of a dialog's corners, points; darkness of the page behind, 0 to 255.
 const CORNER: u8 = 12;
 const DIM: u8 = 150;
 
-/// Shows it; false once it is to be closed.
+/// Shows a dialog; false once it is to be closed.
 pub fn dialog(ui: &Ui, name: &str, title: &str, content: impl FnOnce(&mut Ui)) -> bool {
     let sizes = Sizes::of(ui);
     let place = (Align2::CENTER_CENTER, sizes.bar / 2.0, WIDE);
@@ -27,14 +28,15 @@ pub fn dialog(ui: &Ui, name: &str, title: &str, content: impl FnOnce(&mut Ui)) -
         let high =
             ui.ctx().content_rect().height() - sizes.bar - 4.0 * AROUND - ui.min_rect().height();
         let area = ScrollArea::vertical().max_height(high);
-        // While it is placed it has less room than it takes in the end.
+        // In the frame in which the area is placed, it offers less room than the dialog takes later.
         let area = area.min_scrolled_height(high);
         area.show(ui, content);
     });
     open
 }
 
-/// Shows something so wide at this place over the page: whether Esc leaves it open, and whether the page behind it was clicked.
+/// Shows `content` over the page, `wide` points wide, `lower` points below the place `at`. Returns: Esc was not
+/// pressed; the page behind was clicked; what `content` returns.
 pub fn over_page<R>(
     ui: &Ui,
     name: &str,
@@ -76,7 +78,7 @@ pub fn over_page<R>(
     (!escaped, behind.inner.clicked(), shown.inner)
 }
 
-/// The last row of a dialog: from its right end, what is clicked first.
+/// The last row of a dialog: its buttons from the right end, the main one first.
 pub fn last_row(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     ui.add_space(AROUND / 2.0);
     let size = vec2(ui.available_width(), Sizes::of(ui).target);
@@ -84,7 +86,7 @@ pub fn last_row(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     ui.allocate_ui_with_layout(size, ends, content);
 }
 
-/// A dialog is open, or was in the frame before.
+/// Whether a dialog is open, or was in the previous frame.
 pub fn dialog_is_open(context: &Context) -> bool {
     let shown = context.data(|data| data.get_temp::<u64>(id()));
     shown.is_some_and(|shown| shown + 1 >= context.cumulative_frame_nr())

@@ -21,14 +21,14 @@ pub fn note_edit(text: &mut String, wide: f32) -> TextEdit<'_> {
     path_edit(text, wide).char_limit(MOST_TEXT)
 }
 
-/// A field without a name beside it for something that is looked for, this many points wide.
+/// A search field, this many points wide, with its name inside instead of beside it.
 pub fn find_edit(ui: &mut Ui, text: &mut String, name: &str, wide: f32) -> Response {
     let field = ui.add(path_edit(text, wide).hint_text(name));
     name_input(&field, name);
     field
 }
 
-/// The name of what stands below it.
+/// A small name above a widget.
 pub fn caption(ui: &mut Ui, name: &str) -> Response {
     ui.label(RichText::new(name).small().color(Palette::of(ui).quiet))
 }

@@ -1,4 +1,4 @@
-//! Buttons, and states that look like them: an icon, words, and the reason beside one that is off.
+//! Buttons, and states that look like buttons: an icon, words, and beside a disabled one the reason.
 
 use std::borrow::Cow;
 
@@ -12,11 +12,11 @@ use egui_material_icons::MaterialIcon;
 use super::{ActionPlace, key_pressed};
 use crate::{Palette, Sizes};
 
-/// Gap between the parts of a face, and between its edge and its content, points.
+/// Gap between the icon and words of a face, and between its edge and its content, points.
 const GAP: f32 = 8.0;
 /// Distance of the focus ring from the face, points.
 const OUTSIDE: f32 = 2.0;
-/// Strokes of a dashed edge, points.
+/// Length of the dashes of a dashed edge, points.
 const DASH: f32 = 4.0;
 /// Gap between two dashes, points.
 const DASH_GAP: f32 = 4.0;
@@ -26,21 +26,21 @@ pub enum Look {
     /// The one button of a screen that is pressed first.
     Primary,
     Secondary,
-    /// No ground until the pointer is over it.
+    /// No background until the pointer is over the button.
     Quiet,
     /// The chosen one of a few.
     Chosen,
     /// Stops or ends something.
     Danger,
-    /// Stops something, while there is something to stop; an armed unit.
+    /// Stops something that is under way now; also an armed unit.
     Acting,
-    /// A line and no ground.
+    /// An outline without a background.
     Outlined,
     /// Says something and cannot be clicked.
     State,
     /// A state that needs a look and cannot be clicked.
     Warned,
-    /// A state of practice, which cannot be clicked.
+    /// A state in practice (simulated unit); it cannot be clicked.
     Dashed,
 }
 
@@ -83,13 +83,13 @@ impl<'a> Face<'a> {
         self
     }
 
-    /// An icon behind the words.
+    /// Adds an icon after the words.
     pub fn end(mut self, icon: MaterialIcon) -> Self {
         self.end = Some(icon);
         self
     }
 
-    /// Small words behind the others.
+    /// Adds small words after the others.
     pub fn small(mut self, small: impl Into<Cow<'a, str>>) -> Self {
         self.small = small.into();
         self
@@ -101,7 +101,7 @@ impl<'a> Face<'a> {
         self
     }
 
-    /// Off, for this reason.
+    /// Disables the button if there is a reason, which is shown beside it.
     pub fn off(mut self, why_not: Option<&'a str>) -> Self {
         self.why_not = why_not;
         self
@@ -116,7 +116,7 @@ impl<'a> Face<'a> {
         self
     }
 
-    /// Said when the pointer is over it.
+    /// Sets the text that is shown while the pointer is over the button.
     pub fn hint(mut self, hint: impl Into<Cow<'a, str>>) -> Self {
         self.hint = hint.into();
         self
@@ -133,12 +133,12 @@ impl<'a> Face<'a> {
         self.laid(ui, Color32::WHITE, Color32::WHITE).size.x
     }
 
-    /// Shows it, and the reason why it is off beside it.
+    /// Shows the button, and beside a disabled one the reason.
     pub fn show(&self, ui: &mut Ui) -> Response {
         self.shown(ui, Sense::click(), &|_, _| 0.0)
     }
 
-    /// Shows one that is to be held down; true once it was long enough. Meanwhile it fills.
+    /// Shows a button that is to be held down and fills meanwhile; true once it was held long enough.
     pub fn held(&self, ui: &mut Ui, place: &ActionPlace) -> bool {
         let done = std::cell::Cell::new(false);
         // A widget that senses only clicks does not stay down for long.
@@ -296,8 +296,8 @@ pub fn dashed_outline(edge: Rect, stroke: Stroke, dash: f32) -> Vec<Shape> {
     Shape::dashed_line(&corners, stroke, dash, DASH_GAP)
 }
 
-/// Room for something of which one may be chosen, under its name for screen readers: with the ground of what is chosen
-/// or pointed at, and the mark of what has the keyboard.
+/// Area of one entry of a choice, with `name` for screen readers; its background shows whether the entry is chosen
+/// or pointed at, a ring that it has the keyboard focus.
 pub fn selectable(ui: &mut Ui, size: Vec2, (name, chosen): (&str, bool)) -> (Rect, Response) {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
@@ -313,7 +313,7 @@ pub fn selectable(ui: &mut Ui, size: Vec2, (name, chosen): (&str, bool)) -> (Rec
     (rect, response)
 }
 
-/// Marks what has the keyboard.
+/// Draws a ring around a widget that has the keyboard focus.
 pub fn focus_ring(ui: &Ui, rect: Rect, response: &Response) {
     if response.has_focus() {
         let stroke = Stroke::new(2.0, Palette::of(ui).accent);

@@ -1,4 +1,4 @@
-//! Where a file is read or written: in the folder for documents until somebody says otherwise.
+//! Choice of the file to read or write; first proposed is the folder for documents.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use crate::Palette;
 /// Width of the field for a path, points.
 const FIELD: f32 = 420.0;
 
-/// The folder for documents, or the one the program was started in.
+/// The folder for documents; if there is none, the folder in which the program was started.
 pub fn usual_folder() -> PathBuf {
     directories::UserDirs::new()
         .and_then(|folders| folders.document_dir().map(Path::to_path_buf))
@@ -20,7 +20,7 @@ pub fn usual_folder() -> PathBuf {
         .unwrap_or_default()
 }
 
-/// A button of this name behind which the path is written, and the name of the file.
+/// A button that opens the field for the path, and beside it the name of the file.
 pub fn file_place(ui: &mut Ui, path: &mut String, (name, hint): (&str, &str)) {
     ui.horizontal(|ui| {
         let face = Face::new(Look::Quiet, "").icon(ICON_FOLDER_OPEN);

@@ -1,4 +1,4 @@
-//! All parts on one page, each in its states, of which a picture is compared.
+//! Test: all parts of the window on one page, each in its states; pictures of the page are compared with kept ones.
 
 use btu_rig::procedure::{Measurement, Verdict};
 use eframe::egui::{Grid, Ui};
@@ -11,7 +11,7 @@ use crate::picture::{Picture, Textures};
 use crate::{Density, Palette, Sizes, fonts, theme};
 use ptu_report::words::Language;
 
-/// A pixel is another one from such a difference of a channel on, and as many may be: letters are painted to rounding.
+/// Least difference of a colour channel that makes a pixel differ, and most pixels that may: letters are rounded.
 const DIFFERS: u8 = 16;
 const OTHERS: usize = 40;
 
@@ -24,7 +24,7 @@ fn gallery(language: Language, density: Density, dark: bool) -> Picture {
             parts(ui, language);
             return;
         }
-        // Fonts are there from the next frame on.
+        // Fonts can be used from the next frame on.
         is_set = true;
         let context = ui.ctx();
         fonts::set(context);
@@ -197,8 +197,8 @@ fn kept(file: &std::path::Path) -> Picture {
     }
 }
 
-/// Goal: no part looks other than it is meant to. Method: the gallery against pictures that were looked at;
-/// `SNAPSHOTS=overwrite` makes them anew.
+/// Goal: every part looks as intended. Method: the gallery against pictures that a person has checked;
+/// `SNAPSHOTS=overwrite` writes the pictures anew.
 #[test]
 fn the_gallery_of_parts_looks_as_its_pictures() {
     for (name, language, density, dark) in [

@@ -1,4 +1,4 @@
-//! Work that takes minutes, on a thread of its own: how far it is, a button that stops it, and what it came to.
+//! Work that takes minutes, on a thread of its own: its progress, a button that stops it, and its result.
 
 use std::sync::{Arc, Mutex};
 
@@ -17,12 +17,12 @@ use ptu_runs::stop::Stop;
 pub struct Done {
     pub text: String,
     pub notes: Vec<String>,
-    /// Why the work was not done to its end.
+    /// Reason for which the work was not completed; none = completed.
     pub broken_off: Option<Trouble>,
 }
 
 impl Done {
-    /// Work that ended without an error.
+    /// Result of work that was completed.
     pub fn all(text: String, notes: Vec<String>) -> Self {
         Self {
             text,
@@ -41,7 +41,7 @@ pub struct Job {
     done: Option<Done>,
 }
 
-/// Handle of the work: stop, and text of its progress.
+/// What window and work share: the stop, and the text of the progress.
 #[derive(Clone, Default)]
 pub struct Told {
     pub stop: Stop,
@@ -50,7 +50,7 @@ pub struct Told {
 }
 
 impl Told {
-    /// Says how far the work is.
+    /// Sets the text of the progress.
     pub fn say(&self, how_far: String) {
         *held(&self.said) = how_far;
         if let Some(wake) = &self.wake {
@@ -64,7 +64,7 @@ impl Job {
         matches!(self.under_way, Request::Pending(_))
     }
 
-    /// Begins it; `said` stands beside it until the work says how far it is. Trouble is told under `failed`.
+    /// Begins the work; `said` is shown until the work tells its progress. Trouble is a message headed `failed`.
     pub fn begin(
         &mut self,
         context: &mut PageContext<'_>,
@@ -90,7 +90,7 @@ impl Job {
         }
     }
 
-    /// Takes what it came to; true when it has been done, to its end or not.
+    /// Takes the result; true when the work has ended, completed or not.
     pub fn poll(&mut self, context: &mut PageContext<'_>, failed: &str) -> bool {
         let Some(done) = self.under_way.take(failed, context.messages) else {
             return false;
@@ -106,7 +106,7 @@ impl Job {
     pub fn progress(&self, ui: &mut Ui, words: &Words, stops: bool) {
         ui.horizontal_wrapped(|ui| {
             ui.spinner();
-            // Before the text, which changes: the button stays where it is.
+            // The button stands before the text, whose length changes, so that the button does not move.
             if stops && ui.button(words.memory.stop).clicked() {
                 self.told.stop.press_once();
             }

@@ -15,7 +15,7 @@ use ptu_report::trace_view::{Column, Span, SpanKind, Window};
 pub const TEXT: f32 = 11.5;
 /// Height of an axis shared by lanes, with its text.
 pub const AXIS_HEIGHT: f32 = 20.0;
-/// Room between two values beside an axis.
+/// Distance of two values along the horizontal and the vertical axis, points.
 const TICK_ROOM: (f32, f32) = (90.0, 24.0);
 /// Left free above and below what a lane shows.
 const FREE: f32 = 3.0;
@@ -25,7 +25,7 @@ const BLUR: f32 = 0.6;
 /// Width of a bit's line, and of the hatch where it changes too fast.
 const BIT_LINE: f32 = 1.5;
 const HATCH: f32 = 3.0;
-/// Narrowest box with text in it; one lower than its text has none either.
+/// Width below which a box has no text, points; a box lower than its text has none either.
 const NARROWEST: f32 = 18.0;
 
 /// Vertical lines at round values, behind lanes, over the whole height of `rect`.
@@ -79,7 +79,7 @@ pub fn y_axis(painter: &Painter, gutter: Rect, rect: Rect, range: (f64, f64), pa
     for value in ticks.values() {
         let y = y_at(rect, range, value);
         painter.hline(rect.x_range(), y, Stroke::new(1.0, palette.grid));
-        // At the edges half a line of text would be cut off.
+        // The text is moved inward at the edges, where half a line would be cut off.
         let half = TEXT / 2.0;
         let beside = y.clamp(
             rect.top() + half,
@@ -95,7 +95,7 @@ pub fn y_axis(painter: &Painter, gutter: Rect, rect: Rect, range: (f64, f64), pa
     }
 }
 
-/// A quantity: one mesh, with an edge that is smooth without the tessellator's help.
+/// Draws a quantity as one mesh, which smooths its edges itself.
 pub fn quantity(
     painter: &Painter,
     rect: Rect,
@@ -120,7 +120,7 @@ pub fn quantity(
         if before.is_none() {
             rib(&mut mesh, left, top, bottom, colour);
         }
-        // Amid equal ones it adds nothing.
+        // A column between two equal ones needs no points of its own.
         if before != Some(*column) || after != Some(column) {
             rib(&mut mesh, left + width / 2.0, top, bottom, colour);
             join(&mut mesh);
@@ -186,7 +186,7 @@ pub fn cut_text(painter: &Painter, area: Rect, text: String, font: FontId, colou
     wide
 }
 
-/// A bit: a line that is up where it is set, with the ground below it filled.
+/// Draws a bit: a line that is up while the bit is set, with the area below filled.
 pub fn bit(painter: &Painter, rect: Rect, spans: &[Span], colour: Color32) {
     let painter = painter.with_clip_rect(painter.clip_rect().intersect(rect));
     let inner = rect.shrink2(vec2(0.0, FREE));
@@ -220,7 +220,7 @@ pub fn bit(painter: &Painter, rect: Rect, spans: &[Span], colour: Color32) {
     slabs.paint(&painter);
 }
 
-/// Many rectangles as one mesh, at whole pixels: an hour of a lane may have hundreds.
+/// Many rectangles as one mesh, at whole pixels: an hour of a lane may have hundreds of rectangles.
 struct RectangleMesh {
     mesh: Mesh,
     pixels_per_point: f32,
@@ -273,12 +273,12 @@ impl RectangleMesh {
     }
 }
 
-/// Where a value of the shared axis lies.
+/// Horizontal position of a value of the shared axis.
 pub fn x_at(rect: Rect, window: Window, value: f64) -> f32 {
     rect.left() + (window.share(value) * f64::from(rect.width())) as f32
 }
 
-/// Where a value of a lane lies.
+/// Vertical position of a value of a lane.
 pub fn y_at(rect: Rect, (low, high): (f64, f64), value: f64) -> f32 {
     let inner = rect.shrink2(vec2(0.0, FREE));
     inner.bottom() - ((value - low) / (high - low) * f64::from(inner.height())) as f32

@@ -23,7 +23,7 @@ pub fn value_text(measurement: &Measurement, words: &Words) -> String {
     }
 }
 
-/// The bar: the band between the limits, a mark at the value.
+/// Draws a small bar: the band between the limits, and a mark at the value.
 pub fn limit_bar(
     ui: &mut Ui,
     words: &Words,
@@ -36,7 +36,7 @@ pub fn limit_bar(
     response
 }
 
-/// Paints the bar in this place.
+/// Paints the bar in this area.
 pub fn limits_within(ui: &Ui, rect: Rect, measurement: &Measurement) {
     let palette = Palette::of(ui);
     let Some((value, low, high)) = places(measurement.value, measurement.low, measurement.high)
@@ -56,7 +56,7 @@ pub fn limits_within(ui: &Ui, rect: Rect, measurement: &Measurement) {
     painter.vline(x(value), rect.y_range(), Stroke::new(3.0, colour));
 }
 
-/// The bar of a limit over the whole width, with ticks, the limit in words and the value above it.
+/// Draws a bar over the whole width, with ticks, and above it the limits as text and the value.
 pub fn limit_scale(ui: &mut Ui, words: &Words, (name, measurement): (&str, &Measurement)) {
     let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
     let high = 2.0 * sizes.lead + sizes.caption + 14.0;
@@ -148,7 +148,7 @@ pub fn limit_scale(ui: &mut Ui, words: &Words, (name, measurement): (&str, &Meas
     );
 }
 
-/// From 0 or below the lower limit to a round number beyond the greatest of value and limits.
+/// Round ends of the scale, beyond the least and the greatest of value and limits; it begins at 0 if none is negative.
 fn span(value: f64, (low, high): (Option<f64>, Option<f64>)) -> (f64, f64) {
     let ends = [Some(value), low, high];
     let least = ends.into_iter().flatten().fold(0.0, f64::min);

@@ -5,20 +5,20 @@ use eframe::egui::Ui;
 use super::{pick, segments};
 use ptu_report::words::{Words, fill};
 
-/// Width of a list of them, points.
+/// Width of the list of spans, points.
 const LIST: f32 = 90.0;
 /// Microseconds of a day.
 pub const DAY_US: i64 = 86_400_000_000;
 /// Spans to look back, days; none = all there is.
 const SPANS: [Option<i64>; 4] = [Some(30), Some(90), Some(365), None];
 
-/// Chooses the days to look back.
+/// Draws the choice of days to look back as segments.
 pub fn look_back(ui: &mut Ui, words: &Words, days: &mut Option<i64>) {
     let names = named(words, words.faults.always);
     segments(ui, days, names.iter().map(|(span, name)| (*span, &**name)));
 }
 
-/// The choice of a time in a list, which names what the time limits.
+/// Draws the choice of days to look back as a list.
 pub fn look_back_list(ui: &mut Ui, words: &Words, days: &mut Option<i64>) {
     let (since, always) = (words.faults.since, words.faults.always);
     let names = named(words, &format!("{since}: {always}"));
@@ -32,7 +32,7 @@ fn named(words: &Words, always: &str) -> [(Option<i64>, String); SPANS.len()] {
     })
 }
 
-/// The first time of interest, µs since 1970; none = all there is.
+/// Beginning of the span, µs since 1970; none = no beginning.
 pub fn since_us(days: Option<i64>, now_us: i64) -> Option<i64> {
     days.map(|days| now_us - days * DAY_US)
 }

@@ -19,14 +19,14 @@ pub enum Stored {
     Runs,
 }
 
-/// The button, and what becomes of it. Reading takes minutes: it has a thread of its own.
+/// The button, and the work that it begins. Reading takes minutes and has a thread of its own.
 #[derive(Default)]
 pub struct MemoryReader {
     job: Job,
 }
 
 impl MemoryReader {
-    /// Shows the button for one of the two; true when something was stored here.
+    /// Shows the button that reads `stored`; true when a reading has ended, completed or not.
     pub fn show(&mut self, ui: &mut Ui, stored: Stored, context: &mut PageContext<'_>) -> bool {
         let has_stored = self.job.poll(context, context.words.memory.failed);
         let words = context.words;
@@ -60,7 +60,7 @@ impl MemoryReader {
     }
 }
 
-/// The chosen unit, if it can be read now; why it cannot otherwise.
+/// The chosen unit, if it can be read now; else the reason why not.
 fn asked(context: &PageContext<'_>) -> Result<AskedUnit, &'static str> {
     if let Some(why) = context.only_reads() {
         return Err(why);

@@ -1,4 +1,4 @@
-//! Opens a written file with the program that the desktop has for it, which prints it, too.
+//! Opens a written file with the desktop's program for its type, which can also print it.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -8,7 +8,7 @@ use ptu_runs::failure::{Asked, Failure, RunTrouble};
 
 /// Command that opens files here, and its arguments before the file's name.
 const OPENER: (&str, &[&str]) = if cfg!(windows) {
-    // A command line would take apart a name with its signs in it.
+    // `cmd /c start` would misread a file name with special characters.
     ("explorer", &[])
 } else if cfg!(target_os = "macos") {
     ("open", &[])
@@ -16,7 +16,7 @@ const OPENER: (&str, &[&str]) = if cfg!(windows) {
     ("xdg-open", &[])
 };
 
-/// Opens it; waits for nothing.
+/// Opens a file, and returns without waiting for the viewer.
 ///
 /// # Errors
 /// The desktop has no program that opens files.
@@ -33,8 +33,7 @@ fn open_with((program, before): (&str, &[&str]), path: &Path) -> Result<(), Fail
         .stderr(Stdio::null());
     match command.spawn() {
         Ok(mut child) => {
-            // Waits for the process, so that nothing is left of it; the viewer that it starts
-            // outlives it.
+            // The thread waits for the opener, so that no zombie process is left; the viewer runs on.
             std::thread::spawn(move || child.wait());
             Ok(())
         }

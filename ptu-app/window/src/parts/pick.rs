@@ -1,8 +1,8 @@
-//! Boxes in which one of several is chosen, and accessible names for them.
+//! Boxes in which one of several values is chosen, with names for screen readers.
 
 use eframe::egui::{ComboBox, Response, Role, Ui, WidgetInfo};
 
-/// One of these in a box of this name, so wide, points; true when another one was chosen.
+/// A box in which one value is chosen, `wide` points wide; true when another value was chosen.
 pub fn pick<T: Clone + PartialEq, S: Into<String>>(
     ui: &mut Ui,
     (name, wide): (&str, f32),
@@ -22,13 +22,13 @@ pub fn pick<T: Clone + PartialEq, S: Into<String>>(
     combo.inner.unwrap_or_default()
 }
 
-/// Names in order, each once.
+/// The names in alphabetical order, each once.
 pub fn names<'a>(all: impl Iterator<Item = &'a str>) -> Vec<String> {
     let names: std::collections::BTreeSet<_> = all.collect();
     names.into_iter().map(str::to_owned).collect()
 }
 
-/// Names a box to choose from for screen readers; by itself the box shows only the choice.
+/// Gives a box its name for screen readers, which would otherwise read only the chosen value.
 pub fn named_combo(response: &Response, name: &str, chosen: &str) {
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::ComboBox, response.enabled(), name);

@@ -6,14 +6,14 @@ use crate::Palette;
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::Progress;
 
-/// Steps that were run, of all.
+/// Text: number of steps run, of all.
 pub fn running_text(run: &Progress, words: &Words) -> String {
     let counts = run.counts();
     let of = [("n", &counts.run() as _), ("all", &counts.planned as _)];
     fill(words.frame.running, &of)
 }
 
-/// Steps that were run, of all, and those that did not pass.
+/// Text: number of steps run, of all, and of steps that did not pass.
 pub fn progress_text(run: &Progress, words: &Words) -> String {
     let counts = run.counts();
     let of = [
@@ -34,7 +34,7 @@ pub fn progress(ui: &mut Ui, size: Vec2, run: &Progress, words: &Words) {
         true => palette.accent,
         false => palette.edge,
     };
-    // Repetitions count for how far it is, and not as steps.
+    // Repetitions count for the length of the bar, but not as steps.
     let bad = f64::from(counts.not_passed()) / f64::from(counts.run().max(1));
     let end = rect.left() + rect.width() * run.share();
     let bad = end - rect.width() * run.share() * bad as f32;

@@ -1,10 +1,10 @@
-//! Rows that scroll together with what stands above them.
+//! Rows that scroll together with the widgets above them.
 
 use std::ops::Range;
 
 use eframe::egui::Ui;
 
-/// Rows of one height in an area that scrolls: only those in view are made.
+/// Rows of one height in a scrolling area; only rows in view are drawn.
 pub fn rows(ui: &mut Ui, height: f32, count: usize, show: impl FnOnce(&mut Ui, Range<usize>)) {
     let pitch = height + ui.spacing().item_spacing.y;
     let (top, seen) = (ui.cursor().top(), ui.clip_rect());

@@ -29,7 +29,7 @@ pub struct RunList {
     shown: Option<Id>,
 }
 
-/// State that decides which run is shown unless one is chosen.
+/// Unit and number of ended runs that decide which run is shown while no run is chosen.
 #[derive(Clone, Default, PartialEq)]
 struct Followed {
     unit: Option<String>,
@@ -59,7 +59,7 @@ impl RunList {
         self.shown = Some(run);
     }
 
-    /// The other runs of this run's unit, the latest first.
+    /// The other runs of the same unit as this run, the latest first.
     pub fn of_same_unit(&self, run: Id) -> impl Iterator<Item = &RunSummary> {
         let all = self.runs.items().iter();
         let unit = all.clone().find(|other| other.id == run);
@@ -67,7 +67,7 @@ impl RunList {
         all.filter(move |other| Some(other.unit_serial.as_str()) == unit && other.id != run)
     }
 
-    /// Two runs of the list in the order in which they were made.
+    /// Two runs of the list, the earlier first.
     pub fn in_time(&self, runs: [Id; 2]) -> [Id; 2] {
         let place = |run: Id| self.runs.items().iter().position(|other| other.id == run);
         match place(runs[0]) < place(runs[1]) {
@@ -138,7 +138,7 @@ impl RunList {
         }
     }
 
-    /// Asks for the list at first, and when the data have changed since.
+    /// Reads the list at first, and again when the data have changed.
     fn keep_up(&mut self, context: &PageContext<'_>) {
         self.runs.keep_up(((), true), context, |paths, ()| {
             let filter = RunFilter {
@@ -155,7 +155,7 @@ impl RunList {
     }
 }
 
-/// Height of a row: time and unit, verdict and counts.
+/// Height of a row of two lines (time and unit; verdict and counts), points.
 fn row_high(ui: &Ui) -> f32 {
     let sizes = Sizes::of(ui);
     (2.2 * (sizes.body + sizes.caption)).max(sizes.target)

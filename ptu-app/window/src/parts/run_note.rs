@@ -1,4 +1,4 @@
-//! A form for a note on a run, or at a place in a trace of it.
+//! A form for a note on a run, or at a place of a trace.
 
 use eframe::egui::Ui;
 use fault_db::{Id, TracePlace};
@@ -10,7 +10,7 @@ use crate::request::Request;
 use ptu_report::words::Words;
 use ptu_runs::clock::now_us;
 
-/// Room for the button, points.
+/// Width of the button, points.
 const BUTTON: f32 = 130.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub enum NoteOn {
 }
 
 impl NoteOn {
-    /// The run or the trace, wherever in it.
+    /// Id of the run or the trace.
     fn id(self) -> Id {
         match self {
             Self::Run(run) => run,
@@ -29,18 +29,18 @@ impl NoteOn {
     }
 }
 
-/// The field and what becomes of it.
+/// The field for a note, and the note that is being stored.
 #[derive(Default)]
 pub struct RunNoteForm {
     text: String,
-    /// The run or the trace it is meant for.
+    /// The run or the trace that the text is meant for.
     on: Option<Id>,
-    /// Answers with what was noted on.
+    /// Response: the run or the place to which the note was added.
     under_way: Request<NoteOn>,
 }
 
 impl RunNoteForm {
-    /// Thing on which a note has just been stored.
+    /// Takes the response: the run or place whose note has just been stored.
     pub fn poll(&mut self, words: &Words, messages: &mut Messages) -> Option<NoteOn> {
         let noted = self.under_way.take(words.report.note_not_saved, messages)?;
         messages.note(words.report.note_saved);
@@ -50,7 +50,7 @@ impl RunNoteForm {
         Some(noted)
     }
 
-    /// The field with its button, for a note on this.
+    /// The field with its button, for a note on `on` by `who`.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -60,7 +60,7 @@ impl RunNoteForm {
         on: NoteOn,
     ) {
         if self.on != Some(on.id()) {
-            // What was begun on another run or trace is not meant for this one.
+            // Text typed for another run or trace is not meant for this one.
             self.on = Some(on.id());
             self.text.clear();
         }

@@ -1,4 +1,4 @@
-//! Questions that were given a name: what a page was asked, to be asked again; and layouts of lanes likewise.
+//! Named questions to a page, saved to be asked again; layouts of lanes are saved in the same way.
 
 use eframe::egui::{Button, Ui};
 use egui_material_icons::icons::ICON_BOOKMARK;
@@ -16,7 +16,7 @@ pub struct SavedQuestion<T> {
     asked: T,
 }
 
-/// Names of the list, its entries and its buttons.
+/// Texts of the list and its buttons.
 pub struct SavedSaid {
     pub list: &'static str,
     pub none: &'static str,
@@ -49,8 +49,8 @@ impl SavedSaid {
     }
 }
 
-/// The menu of saved questions, with the field for the name of another one; the question that was chosen. `now` is what is asked
-/// at present.
+/// The menu of saved questions, with the field for a name to save the present question (`now`); returns the question
+/// that was chosen.
 pub fn saved_questions<T: Clone + PartialEq>(
     ui: &mut Ui,
     said: &SavedSaid,

@@ -5,7 +5,7 @@ use eframe::egui::{Frame, Stroke, Ui};
 use super::{Face, Look};
 use crate::Palette;
 
-/// Chooses one of these.
+/// Draws the buttons; a click on one makes its value the chosen one.
 pub fn segments<'a, T: PartialEq>(
     ui: &mut Ui,
     chosen: &mut T,
@@ -22,7 +22,7 @@ pub fn segments<'a, T: PartialEq>(
             (value, Face::new(look, name))
         })
         .collect();
-    // The segments stay together.
+    // All segments stand in one line; if there is no room, in the next.
     let wide: f32 = all.iter().map(|(_, face)| face.wide(ui)).sum();
     if ui.layout().main_wrap() && wide > ui.available_size_before_wrap().x {
         ui.end_row();

@@ -1,4 +1,4 @@
-//! Serial numbers, each of which leads to the life of what has it.
+//! Serial numbers as links to the history of the unit, train or part.
 
 use eframe::egui::Ui;
 use fault_db::RepairRecord;
@@ -7,7 +7,7 @@ use super::link;
 use crate::Destination;
 use ptu_report::words::{Words, fill};
 
-/// A serial number that leads to the life of what has it.
+/// A serial number as a link to the history of its unit, train or part.
 pub fn serial_link(ui: &mut Ui, words: &Words, serial: &str, go_to: &mut Vec<Destination>) {
     let open = fill(words.life.open, &[("serial", &serial)]);
     if link(ui, serial).on_hover_text(open).clicked() {
@@ -15,7 +15,7 @@ pub fn serial_link(ui: &mut Ui, words: &Words, serial: &str, go_to: &mut Vec<Des
     }
 }
 
-/// A repair in one line: the part, as `said`, its serial numbers before and after, and what was done.
+/// A repair in one line: `said` (the part), its serial numbers before and after, and what was done.
 pub fn repair_line(
     ui: &mut Ui,
     words: &Words,

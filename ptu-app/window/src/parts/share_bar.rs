@@ -6,7 +6,7 @@ use crate::Palette;
 
 const WIDTH: f32 = 110.0;
 
-/// A share, 0 to 1.
+/// Draws a share, 0 to 1, as a bar.
 pub fn share_bar(ui: &mut Ui, share: f64, colour: Color32) -> Response {
     let height = ui.text_style_height(&TextStyle::Body) + 4.0;
     let (rect, response) = ui.allocate_exact_size(vec2(WIDTH, height), Sense::hover());

@@ -18,18 +18,18 @@ use crate::Palette;
 use ptu_report::plot::Plot;
 use ptu_report::run::page::{self, DASH, HEIGHT, Ink, Item, MARGIN, Page, Text, WIDTH};
 
-/// A page is so wide at least and at most, points of the window.
+/// Least and greatest width of a page, points of the window.
 const WIDE: RangeInclusive<f32> = 640.0..=1168.0;
-/// Step of the sheet's width, so that few sizes of letters are made.
+/// Step of the sheet's width, points, so that few font sizes are needed.
 const STEP: f32 = 16.0;
-/// Free beside and between pages.
+/// Gap beside and between pages, points.
 const BETWEEN: f32 = 12.0;
-/// Points of the window in a unit of a plot, and the least height of a plot in such units.
+/// Points of the window in one unit of a plot; least height of a plot, units of a plot.
 const UNIT: f32 = 1.13;
 const LOWEST: f32 = 150.0;
-/// Share of what is in view that a key scrolls by.
+/// Share of the visible height that the page keys scroll by.
 const PAGE: f32 = 0.9;
-/// Reach of words above and below their base line, in sizes of the letters.
+/// Reach of text above and below its base line, multiples of the font size.
 const ABOVE: f32 = 1.0;
 const BELOW: f32 = 0.4;
 
@@ -39,7 +39,7 @@ pub fn show_sheet(ui: &mut Ui, sheet: impl Hash + Debug, pages: &[Page]) {
         .id_salt(("sheet", sheet))
         .auto_shrink(false);
     area.show_viewport(ui, |ui, viewport| {
-        // Paper is white in a dark window, too: it is seen as it will be printed.
+        // Paper is white in a dark window, too: the sheet is shown as it will be printed.
         ui.style_mut().visuals = ui.ctx().style_of(Theme::Light).visuals.clone();
         let room = viewport.width() - 2.0 * BETWEEN;
         let wide = room.clamp(*WIDE.start(), *WIDE.end());
@@ -77,7 +77,7 @@ pub fn show_sheet(ui: &mut Ui, sheet: impl Hash + Debug, pages: &[Page]) {
     });
 }
 
-/// Plots as a window shows them: as wide as there is room, each so high.
+/// Plots as drawings for the window, each of the width and height of `room`; the drawings, and their total height.
 pub fn drawings(mut plots: Vec<Plot>, room: Vec2) -> (Page, f32) {
     let height = (room.y / UNIT).max(LOWEST);
     for plot in &mut plots {
@@ -100,7 +100,7 @@ pub fn show_drawings(ui: &mut Ui, (page, height): &(Page, f32), cells: Option<Te
     page_area.draw(page, Rangef::EVERYTHING);
 }
 
-/// A page up or down where no field has the keys.
+/// Scrolls a page up or down by key, unless an input field has the keyboard focus.
 fn keys(ui: &Ui, page: f32) {
     if ui.ctx().text_edit_focused() {
         return;
@@ -196,7 +196,7 @@ impl PageArea<'_> {
         }
     }
 
-    /// Words as a label, which a screen reader reads and from which can be copied; those of a drawing only seen.
+    /// Draws text as a label that screen readers read and that can be copied; text of a drawing is only painted.
     fn text(&mut self, place: usize, text: &Text) {
         let Some((first, _)) = text.lines.first() else {
             return;
@@ -227,7 +227,7 @@ impl PageArea<'_> {
         self.ui.new_child(place).add(Label::new(laid));
     }
 
-    /// The lines, broken where the page breaks them, as one text.
+    /// The lines as one text, with the line breaks of the page.
     fn laid(&self, text: &Text) -> Arc<Galley> {
         let font = FontId::proportional(text.size * self.scale);
         let colour = match text.ink {
@@ -262,7 +262,7 @@ impl PageArea<'_> {
     }
 }
 
-/// From the top of a row to its base line.
+/// Height from the top of a row to its base line.
 fn base(laid: &Galley) -> f32 {
     let letter = laid.rows.iter().find_map(|row| row.glyphs.first());
     letter.map_or(0.0, |letter| letter.pos.y)

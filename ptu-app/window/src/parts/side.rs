@@ -6,20 +6,20 @@ use egui_material_icons::icons::ICON_MENU_OPEN;
 use super::{Face, Look, over_page};
 use crate::{Palette, Sizes};
 
-/// A window narrower than this has what stands at a side as a drawer, and from the other on it is wider, points.
+/// Window width below which side panels are drawers, and from which on they are wider, points.
 const BESIDE: f32 = 1100.0;
 const WIDE: f32 = 1600.0;
-/// Width of a form.
+/// Width of a form, points.
 pub const FORM: f32 = 268.0;
-/// Least width, and what is left of the page beside it.
+/// Least width of a side panel, and of the page beside it, points.
 const LEAST: f32 = 200.0;
 const LEFT: f32 = 440.0;
-/// Below what is in a drawer.
+/// Gap below the content of a drawer, points.
 const BELOW: f32 = 24.0;
 
 /// Side panel of a page; its divider can be dragged.
 pub struct Side<'a> {
-    /// Name of the list, form or strip; the button that opens its drawer has it.
+    /// Name of the list, form or strip, and text of the button that opens its drawer.
     pub name: &'a str,
     /// Width until the divider is dragged, and the width in a wide window, points.
     pub wide: [f32; 2],
@@ -32,7 +32,7 @@ impl Side<'_> {
         ui.ctx().content_rect().width() < BESIDE
     }
 
-    /// Shows what stays open whatever is clicked in it: nothing of it is chosen.
+    /// Shows a side panel whose drawer stays open after a click in it.
     pub fn show_open(&self, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
         let _: Option<()> = self.show(ui, |ui| {
             content(ui);
@@ -40,7 +40,7 @@ impl Side<'_> {
         });
     }
 
-    /// Shows the list, or the button that opens its drawer; what was chosen in it, which closes the drawer.
+    /// Shows the side panel, or the button that opens its drawer; returns what was chosen, which closes the drawer.
     pub fn show<R>(&self, ui: &mut Ui, content: impl FnOnce(&mut Ui) -> Option<R>) -> Option<R> {
         if !Self::is_narrow(ui) {
             let most = (ui.available_width() - LEFT).max(LEAST);

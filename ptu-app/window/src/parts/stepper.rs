@@ -1,4 +1,4 @@
-//! The steps of a way: done, where one is, and what comes next; a step that cannot be gone to says why.
+//! A list of steps: done, present and to come; a step that cannot be chosen shows the reason.
 
 use eframe::egui::{
     Align2, Color32, FontId, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
@@ -8,7 +8,7 @@ use egui_material_icons::icons::ICON_CHECK;
 use super::{focus_ring, lane::cut_text};
 use crate::{Palette, Sizes};
 
-/// Radius of the number, and where its middle is, points.
+/// Radius of the circle around a number, and distance of its centre from the left edge, points.
 const RADIUS: f32 = 14.0;
 const MIDDLE: f32 = 24.0;
 /// Left edge of a name, and the width of a step below which there is only its number, points.
@@ -18,7 +18,7 @@ const NARROW: f32 = 100.0;
 pub struct Step<'a> {
     pub number: usize,
     pub name: &'a str,
-    /// Below the name: what it came to, or why it cannot be gone to.
+    /// Text below the name: the step's outcome, or why it cannot be chosen.
     pub below: &'a str,
     pub is_here: bool,
     pub is_done: bool,

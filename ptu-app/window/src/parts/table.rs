@@ -1,4 +1,5 @@
-//! A table: a heading, and rows of one line each, of which only those in view are made. The whole row is clicked; arrows move, Enter opens.
+//! A table: a heading, and rows of one line each, of which only those in view are drawn. The whole row can be clicked;
+//! arrow keys move, Enter opens.
 
 use crate::parts::selectable;
 use std::borrow::Cow;
@@ -19,15 +20,15 @@ const HIGH: f32 = 30.0;
 
 pub struct Column<'a> {
     pub name: &'a str,
-    /// Points in an engineer's window; 0 = what the others leave.
+    /// Width in an engineer's window, points; 0 = the width that the other columns leave.
     pub wide: f32,
-    /// Numbers, at its right end.
+    /// The column holds numbers, aligned right.
     pub right: bool,
-    /// A table narrower than this, points, goes without it.
+    /// Least width of a table that shows this column, points.
     pub from: f32,
 }
 
-/// Content of a row below a column.
+/// Content of one cell.
 pub enum Cell<'a> {
     Text(Cow<'a, str>, Color32),
     /// Coloured text over all columns that follow.
@@ -38,7 +39,7 @@ pub enum Cell<'a> {
 
 pub struct Table<'a> {
     pub columns: &'a [Column<'a>],
-    /// Kept free at the right end of each row for a button, points.
+    /// Width kept free at the right end of each row for a button, points.
     pub end: f32,
 }
 
@@ -70,7 +71,7 @@ impl Table<'_> {
         Sizes::of(ui).target.max(HIGH)
     }
 
-    /// The heading, and this many rows that scroll below it.
+    /// Draws the heading, and below it `count` rows that scroll.
     pub fn scrolled(&self, ui: &mut Ui, count: usize, show: impl FnOnce(&mut Ui, Range<usize>)) {
         ui.spacing_mut().item_spacing.y = 0.0;
         let bar = ui.spacing().scroll.allocated_width();
@@ -79,7 +80,7 @@ impl Table<'_> {
         area.show_rows(ui, Self::high(ui), count, show);
     }
 
-    /// The names of the columns, this much narrower than there is room.
+    /// Draws the names of the columns; `narrower` is left free at the right end, points.
     pub fn head(&self, ui: &mut Ui, narrower: f32) {
         let (palette, sizes) = (Palette::of(ui), Sizes::of(ui));
         let size = vec2(ui.available_width(), 2.0 * sizes.caption);
@@ -132,7 +133,7 @@ impl Table<'_> {
         response
     }
 
-    /// Where the columns are in a row; nowhere where it is too narrow for one.
+    /// Areas of the columns in a row; none for a column that a row of this width does not show.
     fn places(&self, ui: &Ui, row: Rect) -> Vec<Option<Rect>> {
         let scale = Sizes::of(ui).body / 14.0;
         let shown = |column: &&Column<'_>| column.from * scale <= row.width();

@@ -22,7 +22,7 @@ pub struct Units {
 }
 
 impl Units {
-    /// One unit that is not connected.
+    /// Begins with one unit, which is not connected.
     ///
     /// # Errors
     /// The system gives no thread.
@@ -36,7 +36,7 @@ impl Units {
         })
     }
 
-    /// Adds a unit beside those there are, and chooses it.
+    /// Adds a unit to the window, and chooses the added unit.
     ///
     /// # Errors
     /// The system gives no thread.
@@ -69,7 +69,7 @@ impl Units {
         self.chosen
     }
 
-    /// The pages show the unit of this place from now on.
+    /// From now on the pages show the unit at this index.
     pub fn choose(&mut self, place: usize) {
         self.chosen = place.min(self.all.len() - 1);
     }
@@ -82,17 +82,17 @@ impl Units {
         &mut self.all[self.chosen]
     }
 
-    /// Counts the times everything was stopped: what was ordered before is not begun after.
+    /// Number of stops of all units; a run ordered before a stop does not begin after it.
     pub fn stops(&self) -> u64 {
         self.stops
     }
 
-    /// Runs that have ended here: what the database holds has changed when this has.
+    /// Number of runs that have ended in this window; when it changes, the database has changed.
     pub fn runs_ended(&self) -> usize {
         self.iter().map(|unit| unit.runs_ended).sum()
     }
 
-    /// Tells the benches what the window watches: pages of the chosen unit, the bar of the others.
+    /// Tells the benches what the window shows: `watched` of the chosen unit, only the bar of the others.
     pub(super) fn watch(&self, watched: Watched) {
         for (place, unit) in self.iter().enumerate() {
             let watched = if place == self.chosen {
@@ -104,7 +104,7 @@ impl Units {
         }
     }
 
-    /// The unit of this number, if it is still there.
+    /// The unit of this number, if it has not been removed.
     pub fn of_id(&mut self, id: u64) -> Option<&mut Unit> {
         self.all.iter_mut().find(|unit| unit.id == id)
     }
@@ -117,7 +117,7 @@ impl Units {
         }
     }
 
-    /// Nothing is connected, begun or armed while `locked`; what is under way goes on.
+    /// While `locked`, no unit is connected or armed and no run begins; a run under way goes on.
     pub(super) fn lock(&mut self, locked: bool) {
         for unit in &mut self.all {
             if locked && !unit.locked {
@@ -127,12 +127,12 @@ impl Units {
         }
     }
 
-    /// A unit was let go without its outputs being confirmed safe.
+    /// Whether any unit was disconnected without its outputs being confirmed safe.
     pub(super) fn any_not_safe(&self) -> bool {
         self.iter().any(|unit| unit.not_safe)
     }
 
-    /// Takes what happened at all of them.
+    /// Takes the events of all units' benches.
     pub(super) fn poll(&mut self, words: &Words, messages: &mut Messages) {
         let several = self.count() > 1;
         for (place, unit) in (1..).zip(&mut self.all) {
@@ -145,11 +145,11 @@ impl Units {
         }
     }
 
-    /// Stops all and lets all go; true once every bench's thread has ended.
+    /// Stops and disconnects all units; true once every bench's thread has ended.
     pub(super) fn close(&mut self) -> bool {
         let mut closed = true;
         for unit in &mut self.all {
-            // Each is told, however many are still at it.
+            // Every bench is told to close, even while others have not ended.
             closed &= unit.bench.close();
         }
         closed

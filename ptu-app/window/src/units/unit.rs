@@ -18,38 +18,38 @@ use ptu_runs::bench_worker::{BenchEvent, BenchWorker, Phase, Progress, RunOrder,
 use ptu_runs::failure::{Failure, Trouble};
 use ptu_runs::run::{BenchChoice, BenchSetup, SessionEvent, unit_text};
 
-/// Entries of a unit's log that are shown.
+/// Most entries of a unit's log that are kept; the oldest are dropped.
 const LOG: usize = 500;
 
 pub struct Unit {
-    /// Number of the unit in this window, never used again.
+    /// Number of the unit in this window; no later unit gets the same number.
     pub id: u64,
     pub choice: BenchChoice,
     pub bench: BenchWorker,
-    /// Content of the unit's bench, once it was asked to connect.
+    /// What the bench needs to connect, requested when a person connects the unit.
     pub setup: Request<BenchSetup>,
     /// Events that the unit and TCMS logged outside runs, oldest first.
     pub log: VecDeque<UnitEvent>,
     /// Present or last run of the unit.
     pub run: Option<Progress>,
-    /// The unit's case ordered that run.
+    /// The page of the unit's case ordered `run`.
     pub is_run_of_case: bool,
     pub(super) runs_ended: usize,
-    /// The link to it is lost, which the person knows.
+    /// The link to the unit is lost, and a message has said so.
     pub lost: bool,
-    /// The run broke off with the link, and nobody has ended it.
+    /// `run` broke off when the link was lost, and can go on until a person ends it.
     waits: bool,
     is_other: bool,
-    /// Everything is being stopped, and it is not known to be safe yet.
+    /// Run and stimuli are being stopped; the bench has not confirmed the stop yet.
     pub stopping: bool,
-    /// Nothing is begun: no name has been given.
+    /// The window is locked: no run begins until a person has given a name.
     pub(super) locked: bool,
-    /// The unit was let go without its outputs being confirmed safe.
+    /// The unit was disconnected without its outputs being confirmed safe.
     pub(super) not_safe: bool,
 }
 
 impl Unit {
-    /// The run is of another unit than the one connected now.
+    /// The run was made on another unit than the one connected now.
     pub fn is_other(&self) -> bool {
         self.is_other
     }
@@ -81,13 +81,13 @@ impl Unit {
         }
     }
 
-    /// A unit is there, run or not.
+    /// A unit is connected, with a run or without.
     pub fn is_connected(&self) -> bool {
         matches!(self.phase(), Phase::Idle | Phase::Running)
     }
 
-    /// A unit is there and waits for a run: nothing is run, nor ordered and not begun yet. A bench that is
-    /// held up takes seconds to begin what it was told.
+    /// A unit is connected, and no run is under way or ordered. The phase alone does not tell: a busy bench
+    /// takes seconds to begin a run that was ordered.
     pub fn may_run(&self) -> bool {
         !self.locked
             && self.phase() == Phase::Idle
@@ -117,7 +117,7 @@ impl Unit {
         self.setup = Request::Pending(queries.run(move |paths| choice.setup(&paths.scripts)));
     }
 
-    /// Lets it go, or gives up reaching it.
+    /// Disconnects the unit, or gives up connecting.
     pub fn disconnect(&mut self) {
         if matches!(self.setup, Request::Pending(_)) {
             self.setup = Request::Idle;
@@ -125,13 +125,13 @@ impl Unit {
         self.bench.disconnect();
     }
 
-    /// Stops its run, takes every stimulus away and disarms.
+    /// Stops the unit's run, takes every stimulus away and disarms.
     pub(super) fn stop_all(&mut self) {
         self.stopping = self.is_connected();
         self.bench.stop_all();
     }
 
-    /// Begins a run, perhaps one of the unit's case, if nothing else has the bench; whether it did.
+    /// Begins a run, if nothing else has the bench; true = begun. `of_case`: the unit's case ordered the run.
     pub fn begin(&mut self, order: RunOrder, of_case: bool) -> bool {
         if !self.may_run() {
             return false;
@@ -148,13 +148,13 @@ impl Unit {
         self.run.as_ref().filter(|_| self.is_run_of_case)
     }
 
-    /// The run that broke off with the link and can go on, and the place where it did.
+    /// The run that broke off when the link was lost and can go on, and the finding that tells the place.
     pub fn waiting_run(&self) -> Option<(&Progress, &Finding)> {
         let run = self.run.as_ref().filter(|_| self.waits)?;
         Some((run, link_loss(run)?))
     }
 
-    /// The run that broke off stays as it is.
+    /// The run that broke off will not go on; it is no longer shown if it belongs to another unit.
     pub fn end_run(&mut self) {
         self.waits = false;
         if std::mem::take(&mut self.is_other) {
@@ -162,7 +162,7 @@ impl Unit {
         }
     }
 
-    /// Answers what the run's script asks; it asks nothing more then.
+    /// Answers the prompt of the run's script, which takes the prompt off the screen.
     pub fn answer(&mut self, yes: bool) {
         if let Some(present) = self.run.as_mut().and_then(|run| run.present.as_mut())
             && present.prompt.take().is_some()
@@ -171,7 +171,7 @@ impl Unit {
         }
     }
 
-    /// Connection: as found, or as far as it is known before.
+    /// Connection that the bench found; before a unit is connected, the connection that was chosen.
     pub fn connection(&self) -> Connection {
         let found = self.bench.live().connection;
         found.unwrap_or_else(|| self.choice.connection())
@@ -189,7 +189,7 @@ impl Unit {
         }
     }
 
-    /// Takes what happened since the last time, and tells the person what matters.
+    /// Takes the bench's events since the last call, and adds messages about those that matter to a person.
     pub(super) fn poll(&mut self, words: &Words, said: &mut UnitMessages<'_>) {
         let connection = About::Connection(self.id);
         if self.setup.poll() {
@@ -219,7 +219,7 @@ impl Unit {
                 self.log.clear();
                 self.lost = false;
                 self.not_safe = false;
-                // The run shown belongs to another unit; one that broke off stays until a person ends it.
+                // A run of another unit is no longer shown, unless it broke off: then it stays until a person ends it.
                 let other = self.run.as_ref().is_some_and(|run| run.unit != serial);
                 self.is_other = other && self.waits;
                 if other && !self.waits {
@@ -286,7 +286,7 @@ impl Unit {
         }
     }
 
-    /// Said once, though every procedure of a run finds it out for itself.
+    /// Adds one message that the link is lost, though every procedure of a run reports the loss.
     fn lose(&mut self, why: LinkTrouble, words: &Words, said: &mut UnitMessages<'_>) {
         self.stopping = false;
         if !std::mem::replace(&mut self.lost, true) {
@@ -299,7 +299,7 @@ impl Unit {
     }
 }
 
-/// The finding that a run broke off with the link: of the run as a whole, or of its last step.
+/// The finding that the link was lost during a run; the latest procedure is searched first.
 fn link_loss(run: &Progress) -> Option<&Finding> {
     let results = run.procedures.iter().rev().flat_map(|of| &of.results);
     let mut all = results.flat_map(|result| result.findings.iter());
@@ -313,7 +313,7 @@ fn link_loss(run: &Progress) -> Option<&Finding> {
     found.map(|found| &found.finding)
 }
 
-/// Whether what was being stopped is stopped, or cannot be stopped any more.
+/// Whether the event ends a stop: run and stimuli are stopped, or can no longer be stopped.
 fn ends_stop(event: &BenchEvent) -> bool {
     matches!(
         event,

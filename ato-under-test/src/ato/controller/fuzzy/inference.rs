@@ -1,5 +1,5 @@
-//! Mamdani inference [S1 §2.3.3]: 15 rules, minimum for *and*, clipped output sets, their maximum, and the
-//! centre of gravity of that.
+//! Mamdani inference [S1 §2.3.3]: 15 rules, minimum for *and*, clipped output sets, their maximum, and the centre of
+//! gravity of this maximum.
 //!
 //! All variables are in units of their outermost peak. Their sets are isosceles triangles that overlap
 //! by half, so a value belongs to at most two sets, with degrees that make 1. Beyond the outermost

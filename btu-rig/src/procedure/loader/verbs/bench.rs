@@ -14,7 +14,7 @@ use crate::stimulus::{CodeSignal, Stimulus, TachoCondition};
 
 /// Acceleration of the generators if a script gives none, m/s².
 const DEFAULT_ACCEL_MPS2: f64 = 3.0;
-/// Top of the tachometer generators.
+/// Greatest speed of the tachometer generators, km/h.
 const TOP_KMH: f64 = 200.0;
 /// Time for a prompt if a script gives none.
 const PROMPT_TIME: protocol::Duration = protocol::Duration::from_ms(300_000);

@@ -146,7 +146,7 @@ fn given(args: &Args<'_>, condition: Condition) -> Result<Item, String> {
     Ok(Item::Condition(condition, args.origin()))
 }
 
-/// An expectation with the source of its numbers; limits of an event's parameter are plain ones.
+/// An expectation with the source of its numbers; limits of an event's parameter are plain numbers, without a source.
 fn expected(args: &Args<'_>, expectation: Expectation) -> Result<Item, String> {
     let mut origin = args.origin();
     if ["low", "high"]
@@ -214,7 +214,7 @@ fn condition(args: &Args<'_>) -> Result<Condition, String> {
     }
 }
 
-/// Bits a signal of bits is compared with.
+/// Bits with which a signal is compared, if the signal is a set of bits.
 fn bits(signal: Signal, name: &str, item: &Item) -> Result<Operand, String> {
     let definition = signal.definition();
     if !definition.unit.is_empty() || !matches!(definition.kind, Kind::Number { lsb: 1.0 }) {
@@ -286,7 +286,7 @@ pub(super) fn amount(unit: &str, item: &Item) -> Result<Operand, ()> {
     }
 }
 
-/// The slot is found when the whole script is known.
+/// A measured value as operand; its slot is found when the whole script is known.
 fn measured(name: &str, offset: f64) -> Operand {
     Operand::Measured {
         slot: usize::MAX,

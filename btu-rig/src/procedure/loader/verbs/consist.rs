@@ -1,4 +1,4 @@
-//! The train's switches, what is cut out of it, and the gradient it stands on.
+//! The train's switches, equipment that is cut out or fails, and the gradient under the train.
 
 use crate::procedure::loader::args::Args;
 use crate::procedure::loader::param_type::ParamType;

@@ -11,7 +11,7 @@ use crate::procedure::loader::verb::{Verb, needs, takes};
 use crate::procedure::origin::Origin;
 use crate::procedure::plan::{Measure, Operand, TimeFrom, What};
 
-/// Time a measurement waits for its condition if neither `within` nor `high` says.
+/// Time for which a measurement waits for its condition if neither `within` nor `high` gives a time.
 const MEASURE_WITHIN: Duration = Duration::from_ms(10_000);
 /// Time beyond its upper limit for which a measured time is waited for, so that a late one has a
 /// value.
@@ -19,7 +19,7 @@ const BEYOND_LIMIT_MS: f64 = 1000.0;
 
 const TIME: ParamType = ParamType::Amount(Dimension::Time);
 
-/// A measurement of one signal that needs nothing but the step.
+/// A verb that measures one signal in the step, without a condition.
 macro_rules! of_signal {
     ($name:literal, $what:ident) => {
         Verb {
@@ -109,7 +109,7 @@ fn measure(args: &Args<'_>, what: What) -> Result<Item, String> {
     Ok(Item::Measure(Box::new(measure)))
 }
 
-/// Where its limits come from; plain numbers do not say.
+/// Where the limits come from; a plain number has no source.
 fn origin(args: &Args<'_>) -> Origin {
     let mut origin = Origin::default();
     for item in ["low", "high"].iter().filter_map(|limit| args.get(limit)) {

@@ -34,7 +34,7 @@ const ORDERS: &[Param] = &[
     takes("destination", NUMBER),
     takes("train_number", NUMBER),
 ];
-/// Longest section that orders can tell, m: that of a track database.
+/// Longest section that orders can tell, m: the longest that a track database may have.
 const LONGEST_M: f64 = 20_000.0;
 
 pub(super) static VERBS: &[Verb] = &[
@@ -56,12 +56,12 @@ pub(super) static VERBS: &[Verb] = &[
     stimulus!("twc.corrupt", &[], |_| Stimulus::Wayside(Corrupt)),
 ];
 
-/// Station data of a departure, with what the script gives in place of them.
+/// Station data of a departure; values that the script gives replace those of the section.
 pub(super) fn departure(args: &Args<'_>) -> Result<StationData, String> {
     station(args, |section, _| StationData::at_departure(section))
 }
 
-/// Station data of an arrival, with what the script gives in place of them.
+/// Station data of an arrival; values that the script gives replace those of the section.
 pub(super) fn arrival(args: &Args<'_>) -> Result<StationData, String> {
     station(args, |section, line| {
         StationData::at_arrival(section, line.station_after(section))
@@ -104,7 +104,7 @@ fn station(args: &Args<'_>, of: fn(&Section, &Line) -> StationData) -> Result<St
     Ok(data)
 }
 
-/// Orders of the wayside: the length is that of the section, unless another is given.
+/// Orders of the wayside: the length is the section's own, unless the script gives another.
 fn orders(args: &Args<'_>) -> Result<OrderData, String> {
     let number = |name: &str| match args.get(name) {
         Some(_) => args.int(name),

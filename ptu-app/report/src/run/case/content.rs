@@ -17,7 +17,7 @@ use crate::trace_notes::{note_text as run_note_text, noted_by};
 use crate::words::{Words, fill};
 use ptu_runs::clock::local;
 
-/// Pages of what failed, at most.
+/// Most pages for the failures.
 const PAGES: usize = 2;
 /// Failed steps in full, further rows of the comparison, faults, and events at most.
 const MOST_STEPS: usize = 6;

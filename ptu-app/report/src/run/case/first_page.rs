@@ -12,9 +12,9 @@ use crate::run::{Sheet, SheetTrace, page};
 use crate::words::{Words, fill};
 use ptu_runs::clock::local;
 
-/// Rows of the comparison at most.
+/// Most rows of the comparison.
 const MOST_ROWS: usize = 8;
-/// Letters of a text at most: the rest is on the next page.
+/// Most letters of a text: the rest is on the next page.
 const MOST_LETTERS: usize = 180;
 
 impl CaseSheet {
@@ -56,7 +56,7 @@ impl CaseSheet {
         blocks
     }
 
-    /// The verdict, and what it stands on.
+    /// Tone and words of the verdict, and the grounds for it.
     pub(super) fn verdict(&self, words: &Words) -> (Tone, String, String) {
         let report = &words.report;
         let after = self.after.as_ref().map(|sheet| &sheet.run.run);
@@ -192,7 +192,7 @@ impl CaseSheet {
         }
     }
 
-    /// Which run was on a simulated unit or had injected faults: practice, no unit in service.
+    /// Sentence that names the runs on a simulated unit or with injected faults: practice, no unit in service.
     fn practice(&self, words: &Words) -> String {
         let report = &words.report;
         let told = |sheet: &Sheet, when: &str| {

@@ -12,7 +12,7 @@ use ptu_runs::failure::{Asked, Failure};
 use ptu_runs::symptoms::{self, Symptom};
 
 impl CaseSheet {
-    /// Reads all the sheet of a fault's case says.
+    /// Reads all that the repair sheet of a fault's case says.
     ///
     /// # Errors
     /// There is no such fault, no run saw it, or the database cannot be read.
@@ -57,7 +57,7 @@ impl CaseSheet {
         let standing = match &repair {
             None => Standing::NotRepaired,
             Some(_) if came_back => Standing::CameBack,
-            // Somebody has opened it again.
+            // Somebody has opened the fault again.
             Some(_) if is_open => Standing::Claimed,
             Some(_) if is_proved => Standing::Proved,
             Some(_) => vouched.unwrap_or(Standing::Claimed),
@@ -86,8 +86,8 @@ impl CaseSheet {
     }
 }
 
-/// The fault of the case that names the part itself, so that the sheet is the same whichever of them was asked for; one
-/// that is in another state has a sheet of its own.
+/// The fault of the case that names the part itself and is in the same state as the fault `asked`: the sheet is the
+/// same for all faults of the case in this state.
 fn leading(store: &Store, asked: FaultDetail) -> Result<FaultDetail, Failure> {
     let names_it = |fault: &FaultSummary| fault.lru.eq_ignore_ascii_case(fault.cause());
     if names_it(&asked.fault) {

@@ -7,7 +7,7 @@ use crate::json::{fault_json, run_summary_json, value_json};
 use crate::words::Language;
 use ptu_runs::clock::rfc3339;
 
-/// A case: its number, what is said of its repair, the repair, both runs, and each failure before and after.
+/// A case: its number, the standing of its repair, the repair, both runs, and each failure before and after.
 pub fn case_json(case: &CaseSheet) -> Value {
     let words = Language::English.words();
     let fault = &case.fault.fault;

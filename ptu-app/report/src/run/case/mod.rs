@@ -1,6 +1,6 @@
 //! The repair sheet of a case: what failed, what was replaced, and what a run afterwards says of it.
 //!
-//! A case is a fault and those that come from the same part. Terms: the run *before* saw the fault last before its
+//! A case is the faults of a unit that come from one part. Terms: the run *before* saw the fault last before its
 //! repair; the run *after* is the one that proves the repair, or else the last that passed since.
 
 mod compare;
@@ -24,17 +24,17 @@ use ptu_runs::symptoms::Symptom;
 
 /// All a repair sheet says, in no language yet.
 pub struct CaseSheet {
-    /// The fault that names the part, or else the one that was asked for.
+    /// The fault that names the part of the case, or else the fault that was asked for.
     pub fault: FaultDetail,
-    /// Where the unit is kept; empty: a line to write on.
+    /// Depot of the unit; if empty, the sheet has a line to write the depot on.
     pub depot: String,
     /// The sheet has an annex with all that the two runs say.
     pub with_annex: bool,
-    /// The run that saw it.
+    /// The run before the repair, which saw the fault.
     pub before: Sheet,
-    /// Steps of that run that saw a fault of the case, by their place.
+    /// `index` of each step of the run before that saw a fault of the case.
     pub steps: Vec<u32>,
-    /// Symptom reported with the unit; the run before has it, or an earlier one of the case.
+    /// Symptom reported with the unit, in the run before or in an earlier run of the case.
     pub symptom: Option<Symptom>,
     pub repair: Option<Repair>,
     /// Runs that passed since the repair, oldest first.
@@ -56,18 +56,18 @@ pub struct Repair {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Standing {
     Proved,
-    /// A person says it holds: who, when and why.
+    /// A person says that the repair holds: who, when (µs UTC) and why.
     Vouched(String, i64, String),
     /// The repair is recorded, and no run proves it yet.
     Claimed,
-    /// The fault was seen again after it.
+    /// The fault was seen again after the repair.
     CameBack,
     /// No repair is recorded.
     NotRepaired,
 }
 
 impl CaseSheet {
-    /// The number of the document: of the fault and of the runs, so that it stays while these stay.
+    /// Number of the sheet, from the identifiers of fault and runs: while they stay, the number stays.
     pub fn number(&self) -> String {
         let runs = self.sheets().map(|sheet| sheet.run.run.id);
         let ids = std::iter::once(self.fault.fault.id).chain(runs);
@@ -79,7 +79,7 @@ impl CaseSheet {
         std::iter::once(&self.before).chain(&self.after)
     }
 
-    /// The run that tells how the unit is now.
+    /// The run that tells the present state of the unit: the run after, or else the run before.
     pub fn last(&self) -> &Sheet {
         self.after.as_ref().unwrap_or(&self.before)
     }

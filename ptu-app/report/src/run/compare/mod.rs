@@ -21,14 +21,14 @@ use ptu_runs::stored::outside_of;
 pub(super) use table::{comparison, name_of};
 pub use text::{comparison_json, comparison_text};
 
-/// A step of two runs, or a value that it measured in them.
+/// One step in two runs, or one measurement of this step in both runs.
 #[derive(Clone, Copy)]
 pub struct Compared<'a> {
-    /// The step of the first run, if that has it.
+    /// The step in the first run; `None` if that run lacks the step.
     pub step_before: Option<&'a StepRecord>,
-    /// This step in the second run.
+    /// The step in the second run; `None` if that run lacks the step.
     pub step_after: Option<&'a StepRecord>,
-    /// Measurement of the first run; none if the row is about the step.
+    /// Measurement in the first run; `None` if that run lacks the measurement, or if the row is about the step.
     pub before: Option<&'a MeasurementRecord>,
     pub after: Option<&'a MeasurementRecord>,
 }
@@ -44,7 +44,7 @@ impl<'a> Compared<'a> {
         self.before.or(self.after)
     }
 
-    /// The verdict after, if it was tested again.
+    /// Verdict in the second run; `None` if the step or measurement was not tested again.
     pub fn verdict_after(&self) -> Option<Verdict> {
         match self.measured() {
             Some(_) => self.after.map(|after| after.verdict),
@@ -52,7 +52,7 @@ impl<'a> Compared<'a> {
         }
     }
 
-    /// Increase of the value in the second run; none where either run has no value, or another unit of measure.
+    /// Increase of the value from the first run to the second; `None` if a run has no value, or if the units differ.
     pub fn change(&self) -> Option<f64> {
         let (before, after) = (self.before?, self.after?);
         let change = after.value? - before.value?;
@@ -60,7 +60,7 @@ impl<'a> Compared<'a> {
     }
 }
 
-/// A step of two runs with all it measured.
+/// One step in two runs, with its measurements.
 pub struct StepPair<'a> {
     /// The step without its measurements.
     pub step: Compared<'a>,
@@ -78,7 +78,7 @@ impl StepPair<'_> {
     }
 }
 
-/// Numbers of steps that changed, by direction.
+/// Numbers of steps by their results in A and in B; steps that passed in both are not counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Steps that did not pass in A and pass in B.
@@ -88,21 +88,20 @@ pub struct Tally {
     /// Steps that pass in neither.
     pub in_neither: usize,
     pub only_a: usize,
-    /// B alone has them.
+    /// Steps that B alone has.
     pub only_b: usize,
 }
 
-/// Differences by which two runs say less about each other than two of one unit with the same
-/// scripts.
+/// Differences that make two runs hard to compare.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Differs {
     /// Serial numbers.
     Unit(String, String),
-    /// Names of unit configurations, or the same name for two.
+    /// Names of unit configurations whose contents differ; the names may be equal.
     Configuration(String, String),
     /// Names of lines.
     Line(String, String),
-    /// Procedures whose script is another one; none where only others of the directory are.
+    /// Paths of scripts that both runs used with different contents; empty if only other scripts differ.
     Scripts(Vec<String>),
     /// A run without a verdict.
     Unfinished(Id),
@@ -118,7 +117,7 @@ pub struct RunComparison {
 }
 
 impl RunComparison {
-    /// Reads both.
+    /// Reads both runs.
     ///
     /// # Errors
     /// The same run twice, no such run, or the database cannot be read.
@@ -134,7 +133,7 @@ impl RunComparison {
         })
     }
 
-    /// Each step once, in the order of A, then those of B alone.
+    /// Each step once: the steps of A in their order, then those that B alone has.
     pub fn steps(&self) -> Vec<StepPair<'_>> {
         let (first, second) = (by_name(&self.a.steps), by_name(&self.b.steps));
         let of_a = in_order(&self.a.steps).into_iter();
@@ -147,7 +146,7 @@ impl RunComparison {
         pairs
     }
 
-    /// Numbers of steps that changed. A skipped step counts in no direction, and an entry outside steps is no step.
+    /// Numbers of steps by result. A skipped step counts in no direction; an entry outside steps is not counted.
     pub fn tally(&self) -> Tally {
         let mut tally = Tally::default();
         let is_step =
@@ -196,7 +195,7 @@ impl RunComparison {
         all
     }
 
-    /// Scripts that both runs used and that are not the same.
+    /// Paths of scripts that both runs used with different contents.
     fn other_scripts(&self) -> Vec<String> {
         let of_b = self
             .b
@@ -212,7 +211,7 @@ impl RunComparison {
     }
 }
 
-/// Procedure and name of a step, or of an entry outside steps.
+/// Procedure and name of a step, or of an entry outside steps, and whether the key is of a step.
 type Key<'a> = (&'a str, &'a str, bool);
 
 fn key(step: &StepRecord) -> Key<'_> {
@@ -220,7 +219,7 @@ fn key(step: &StepRecord) -> Key<'_> {
     (&step.procedure, &step.name, is_step)
 }
 
-/// The names of the steps in their order, each once.
+/// Keys of the steps in their order, each once.
 fn in_order(steps: &[StepRecord]) -> Vec<Key<'_>> {
     let mut seen = std::collections::BTreeSet::new();
     let keys = steps.iter().map(key);

@@ -34,7 +34,7 @@ impl RunComparison {
         said
     }
 
-    /// Warnings of differences that make the two hard to compare, a sentence each.
+    /// Warnings of differences that make the two runs hard to compare, a sentence each.
     pub fn warnings(&self, words: &Words) -> Vec<String> {
         let report = &words.report;
         let two = |wording, a: &String, b: &String| fill(wording, &[("a", a), ("b", b)]);

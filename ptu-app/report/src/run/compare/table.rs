@@ -1,4 +1,4 @@
-//! Table of steps that were tested twice: before and after with limits, and of two runs the change.
+//! Table of steps that were tested twice: values before and after with limits, and the change between two runs.
 
 use fault_db::{MeasurementRecord, StepRecord, Verdict};
 use ptu_runs::stored::outside_of;
@@ -10,7 +10,7 @@ use crate::run::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 use crate::run::steps::verdict;
 use crate::words::{Words, fill};
 
-/// Checks of a case, each with the value that failed: a row each.
+/// Table of the failed checks of a case: a row for each value beyond its limits, or for the step.
 pub fn comparison(compared: &[Compared<'_>], words: &Words) -> Table {
     let (common, report) = (&words.common, &words.report);
     let procedure = |one: &Compared<'_>| one.step().map(|step| step.procedure.clone());

@@ -6,7 +6,7 @@ use super::{plot, table};
 use crate::run::block::{Block, Tone};
 use crate::run::code::Code;
 
-/// Size of running words, and from line to line.
+/// Size of running text, and distance from line to line.
 const SIZE: f32 = 8.2;
 const LINE: f32 = 11.2;
 /// Width of the names of facts.

@@ -35,7 +35,7 @@ fn needed(pieces: &[Piece]) -> f32 {
     let together = bound.clone().count() + 1;
     let all = pieces.iter().take(together).map(|piece| piece.height);
     let height: f32 = all.sum();
-    // What is longer than a page together cannot stay together.
+    // Pieces that together are longer than a page cannot stay together.
     if height > ROOM {
         pieces.first().map_or(0.0, |piece| piece.height)
     } else {

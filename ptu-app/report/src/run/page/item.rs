@@ -10,11 +10,11 @@ pub const WIDTH: f32 = 595.28;
 pub const HEIGHT: f32 = 841.89;
 /// Length of a dash and of the gap after it.
 pub const DASH: [f32; 2] = [3.0, 2.2];
-/// Left and right of what is printed.
+/// Width of the left and of the right margin.
 pub const MARGIN: f32 = 42.0;
-/// Above what flows: the header is within it.
+/// Height of the top margin, which holds the header.
 pub(super) const TOP: f32 = 54.0;
-/// Below what flows: the footer is within it.
+/// Height of the bottom margin, which holds the footer.
 pub(super) const BOTTOM: f32 = 48.0;
 /// Width of what is printed.
 pub(super) const INSIDE: f32 = WIDTH - 2.0 * MARGIN;
@@ -24,7 +24,7 @@ pub(super) const INSIDE: f32 = WIDTH - 2.0 * MARGIN;
 pub enum Ink {
     /// Words.
     Black,
-    /// Text of less weight.
+    /// Less important text.
     Soft,
     /// Passed.
     Good,
@@ -50,15 +50,15 @@ pub enum Item {
         ink: Ink,
         /// Thickness.
         width: f32,
-        /// Broken, as [`DASH`] says.
+        /// The line is dashed with the lengths of [`DASH`].
         dashed: bool,
     },
     /// A filled rectangle: left, top, width and height.
     Area(f32, f32, f32, f32, Ink),
     /// A filled disc: its middle and radius.
     Disc(f32, f32, f32, Ink),
-    /// A drawing is here (left, top, width and height), which the items after it make up, with its title
-    /// for those who cannot see it.
+    /// Beginning of a drawing (left, top, width and height), which the items after it make up, and the drawing's
+    /// title for those who cannot see it.
     Drawing(f32, f32, f32, f32, String),
     /// Cells: left, top, width and height, how many are in a row, and their shades, row by row.
     Cells(f32, f32, f32, f32, usize, Vec<u8>),
@@ -67,27 +67,27 @@ pub enum Item {
 /// Words on a page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// From the left to the anchor.
+    /// Distance from the left edge of the page to the anchor.
     pub x: f32,
-    /// Point of each line that lies there.
+    /// Point of each line of text that lies at `x`.
     pub anchor: Anchor,
     /// Height of letters.
     pub size: f32,
     /// Colour.
     pub ink: Ink,
-    /// Drawn with weight.
+    /// In bold type.
     pub strong: bool,
     /// Runs upwards.
     pub turned: bool,
-    /// Part of a drawing, whose title is read in its place.
+    /// Part of a drawing: a screen reader reads the drawing's title instead of this text.
     pub in_drawing: bool,
-    /// Base line of each line, from above, and its words; together they are the whole text: a line keeps the
-    /// space or line feed at which it was broken.
+    /// For each line, the distance of its base line from the top of the page, and its words. The lines together are
+    /// the whole text: a line keeps the space or line feed at which it was broken.
     pub lines: Vec<(f32, String)>,
 }
 
 impl Item {
-    /// A line of words; what cannot be seen is spelled.
+    /// A line of text; characters that cannot be seen are written as codes.
     pub(crate) fn text(x: f32, y: f32, size: f32, ink: Ink, text: &str) -> Self {
         Self::lines(
             x,
@@ -166,7 +166,7 @@ impl Item {
     }
 }
 
-/// Items that stay together, from 0 down to `height`.
+/// Items that stay together on one page, from 0 down to `height`.
 #[derive(Clone, Debug, Default)]
 pub struct Piece {
     /// Items of the piece: x from the page's left edge, y from the top of the piece.
@@ -176,7 +176,7 @@ pub struct Piece {
     pub with_next: bool,
     /// Drawn again at the top of each page on which its table goes on.
     pub repeated: bool,
-    /// Belongs to the last piece that is repeated.
+    /// Row of a table, below the last piece that is `repeated`.
     pub under_repeated: bool,
     /// Begins a page.
     pub on_new_page: bool,

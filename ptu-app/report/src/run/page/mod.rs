@@ -29,7 +29,7 @@ const SIZE: f32 = 7.4;
 /// Items of a page, in the order in which they are drawn.
 pub type Page = Vec<Item>;
 
-/// Largest letters of what stands across a page, and the share of its width that they take.
+/// Largest size of the text across a page, and the share of the width between the margins that the text takes.
 const ACROSS: (f32, f32) = (110.0, 0.96);
 
 /// All pages with header and footer.
@@ -73,7 +73,7 @@ pub(super) fn pages_of(
     Ok((pages, coded))
 }
 
-/// Writes letters that the font lacks as their codes; which these are.
+/// Writes letters that the font lacks as their codes; returns these letters.
 fn write_codes(page: &mut Page, letters: &FontMetrics) -> BTreeSet<char> {
     let mut lacking = BTreeSet::new();
     for item in page {
@@ -88,8 +88,8 @@ fn write_codes(page: &mut Page, letters: &FontMetrics) -> BTreeSet<char> {
     lacking
 }
 
-/// Plots below each other on a page so wide between its margins, in points of which a unit of a plot has `scale`; and how
-/// far down they reach.
+/// Plots below each other on a page that is `wide` points between its margins, with `scale` points to a unit of a plot;
+/// and the height of all plots.
 pub fn drawings(plots: &[Plot], wide: f32, scale: f32) -> (Page, f32) {
     let (mut page, mut height) = (Page::new(), 0.0);
     for plot in plots {
@@ -100,7 +100,7 @@ pub fn drawings(plots: &[Plot], wide: f32, scale: f32) -> (Page, f32) {
     (page, height)
 }
 
-/// Number of pages that the blocks take; none where the shipped font does not serve.
+/// Number of pages that the blocks take; 0 if the shipped font cannot be used.
 pub(super) fn count(blocks: &[Block]) -> usize {
     FontMetrics::new().map_or(0, |letters| {
         flow::pages(&blocks::pieces(blocks, &letters)).len()

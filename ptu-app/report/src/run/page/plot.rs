@@ -5,13 +5,13 @@ use protocol::display_text;
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece, Text};
 use crate::plot::{Mark, Plot, Role, Style};
 
-/// Width of the drawing on paper in its own units: words in it are as large as those around it.
+/// Width of the drawing on paper, in units of the drawing: its text is then as large as the text around it.
 const WIDTH: f32 = 800.0;
-/// Size of words in it, in its own units.
+/// Size of text in the drawing, in units of the drawing.
 const SIZE: f32 = 11.5;
-/// Radius of a dot there.
+/// Radius of a dot, in units of the drawing.
 const DOT: f32 = 2.0;
-/// Free below on paper.
+/// Space left free below the drawing on paper, points.
 const BELOW: f32 = 6.0;
 
 /// The drawing on paper, which is never cut.
@@ -23,7 +23,7 @@ pub fn piece(plot: &Plot) -> Piece {
     }
 }
 
-/// A drawing so wide, in points, of which a unit of its own has so many.
+/// A drawing that is `wide` points wide, with `scale` points to a unit of the drawing.
 pub fn drawing(plot: &Plot, wide: f32, scale: f32) -> Piece {
     let width = f64::from(wide / scale);
     let height = plot.size(width).1 as f32 * scale;

@@ -4,7 +4,7 @@ use super::font::FontMetrics;
 use super::item::{INSIDE, Ink, Item, MARGIN, Piece};
 use crate::run::block::{Align, Cell, Column, Gauge, Row, RowKind, Table, Tone};
 
-/// Size of words in tables, and from line to line.
+/// Size of text in tables, and distance from line to line.
 const SIZE: f32 = 7.6;
 const LINE: f32 = 10.0;
 /// Free above and below a row's words, and between columns.
@@ -39,7 +39,7 @@ pub fn pieces(table: &Table, letters: &FontMetrics) -> Vec<Piece> {
                 .insert(0, Item::rule(MARGIN, 0.0, INSIDE, Ink::Grid));
         }
         let next = table.rows.get(place + 1);
-        // A step's name stands with the first of what belongs to it.
+        // The first row of details stands on the page of its step's name.
         piece.with_next =
             one.kind == RowKind::Head && next.is_some_and(|next| next.kind == RowKind::Detail);
         piece.under_repeated = table.has_headings();

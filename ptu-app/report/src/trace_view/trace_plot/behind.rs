@@ -17,7 +17,7 @@ impl TracePlot {
         }
     }
 
-    /// Takes the first difference from the trace behind.
+    /// Keeps the first difference from the trace behind, unless another trace is behind by now.
     pub fn told(&mut self, against: &OverlaySource, parting: FirstDifference) {
         if let Some(behind) = &mut self.behind
             && behind.overlay.against == *against

@@ -6,7 +6,7 @@ use protocol::signal::Signal;
 use super::Bench;
 
 impl Bench {
-    /// States of a signal by their numbers; empty for a signal that is none of states.
+    /// Names of a signal's states by their numbers; empty for a signal without states.
     pub fn states(&self, signal: Signal) -> Vec<&'static str> {
         match signal {
             Signal::Eb

@@ -7,7 +7,7 @@ use protocol::injection::Lru;
 use super::super::names;
 use super::both::{Both, checked};
 
-/// Parts named at most where it cannot be told which one has failed.
+/// Most parts that are named where nobody can tell which one has failed.
 const MOST_NAMED: usize = 3;
 
 pub(super) fn concluded(conclusion: &Conclusion, next: Option<&NextCheck>, names: &[Lru]) -> Both {
@@ -119,7 +119,7 @@ fn cannot_tell(shown: &[Both], more: usize, can_go_on: bool) -> Both {
     };
     let [all, all_ko] = one_or_other(shown);
     match shown {
-        // As many parts as nobody could choose from.
+        // Too many parts are likely to choose from: none is named.
         [] if can_go_on => [
             "not enough was run to tell which part".to_owned(),
             "시험 범위가 부족하여 판별할 수 없습니다".to_owned(),

@@ -8,7 +8,7 @@ use protocol::signal::{Kind, Signal};
 
 use super::super::{KOREAN, content};
 
-/// Bits of a signal at most.
+/// Greatest number of bits of a signal.
 const BITS: u16 = 16;
 
 pub fn korean(condition: &Condition) -> String {
@@ -104,7 +104,7 @@ pub fn name(signal: Signal) -> String {
     said[..end].to_owned()
 }
 
-/// A state of a signal, or its bits, by their English label.
+/// Korean of a state of a signal, or of its bits, by the English label.
 pub fn state(of: &str, label: &str) -> Option<String> {
     let signal = Signal::from_name(of)?;
     let operand = match signal.definition().kind {
@@ -156,7 +156,7 @@ fn value(signal: Signal, number: f64) -> Option<String> {
     }
 }
 
-/// The names of the bits that are set; `None` for a signal that is no set of these.
+/// The names of the bits that are set; `None` for a signal that is no set of bits.
 pub fn bits(signal: Signal, bits: u16) -> Option<String> {
     let english = bit_names(signal, bits)?;
     let names = KOREAN.bench.bits(signal);

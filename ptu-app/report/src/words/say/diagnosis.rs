@@ -58,7 +58,7 @@ impl Words {
         })
     }
 
-    /// A reason held against the fault dictionary; `None` of what that does not have.
+    /// A reason compared with the fault dictionary; `None` for a reason on which the dictionary says nothing.
     pub fn reason_detail(&self, reason: &Reason) -> Option<String> {
         match reason {
             Reason::Step(step) => Some(self.choose(step_expected(step))),

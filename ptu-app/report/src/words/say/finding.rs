@@ -34,7 +34,7 @@ fn measured(name: &str) -> String {
     KOREAN.measurement(name).into_owned()
 }
 
-/// Words of others, if they are known.
+/// Korean of a text of scripts, catalogues or the runner, if it is known, else the text.
 fn told(text: &str) -> String {
     content::korean(text).into_owned()
 }

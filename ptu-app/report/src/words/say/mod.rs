@@ -1,4 +1,4 @@
-//! Sentences that are made of data, one match for each kind: what is added to the data does not compile without its words.
+//! Sentences that are made of data, one match for each kind: a kind that is added does not compile without its words.
 
 mod both;
 mod conclusion;

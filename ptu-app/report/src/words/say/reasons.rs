@@ -110,7 +110,7 @@ pub(super) fn logged(sign: &Sign) -> Both {
     ]
 }
 
-/// The signal by which a trace first leaves that of a sound unit.
+/// Sentence on the signal that is the first to leave the trace of a sound unit.
 pub(super) fn deviated(signal: &str) -> Both {
     let name = crate::naming::signal(signal, Language::English.words());
     let name_ko = crate::naming::signal(signal, Language::Korean.words());
@@ -131,7 +131,7 @@ pub(super) fn deviated_share(signal: &str, shares: [f64; 2]) -> Both {
     ]
 }
 
-/// The fault that a sign is.
+/// Name of the fault that a sign of the diagnosis consists in.
 fn sign_named(sign: &Sign) -> Both {
     match Event::from_name(&sign.fault).map(Event::definition) {
         Some(event) => [

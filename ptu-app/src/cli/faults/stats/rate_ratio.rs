@@ -1,21 +1,21 @@
-//! Whether something is seen more often than before.
+//! Ratio that says whether faults are seen more often than before.
 
 use ptu_report::words::Words;
 
-/// Ratio of the counts in the later half of a course to those in the earlier half.
+/// Ratio of the count in the later half of a span to the count in the earlier half.
 pub(super) struct RateRatio {
     pub(super) ratio: f64,
-    /// 95 % interval.
+    /// Lower end of the 95 % interval of `ratio`; `high` is the upper end.
     pub(super) low: f64,
     pub(super) high: f64,
 }
 
 impl RateRatio {
-    /// Ratio of the rates in both halves of counts by day or month; of an odd number of counts the middle one
-    /// belongs to neither half. None where both halves are empty.
+    /// Ratio of the counts in both halves of `course`, counts by day or month; the middle one of an odd number of
+    /// counts belongs to neither half. `None` where both halves are empty.
     ///
-    /// The logarithm of a ratio of two Poisson counts is nearly normal with variance `1/a + 1/b`; half a count is
-    /// added to each, so that none divides by zero (Haldane, Anscombe).
+    /// The logarithm of a ratio of two Poisson counts is nearly normal with variance `1/a + 1/b`; half a count is added
+    /// to each count, so that nothing is divided by zero (Haldane, Anscombe).
     pub(super) fn of(course: &[u64]) -> Option<Self> {
         let half = course.len() / 2;
         let earlier: u64 = course[..half].iter().sum();
@@ -47,7 +47,7 @@ impl RateRatio {
 mod tests {
     use super::*;
 
-    /// By hand: 4.5 to 10.5 is 2.33 times; 1.96 × √(1/4.5 + 1/10.5) is 1.104, and e to that 3.02.
+    /// Worked out by hand: 10.5 / 4.5 = 2.33; 1.96 × √(1/4.5 + 1/10.5) = 1.104, and e to this power is 3.02.
     #[test]
     fn a_rate_ratio_has_the_interval_of_two_counts() {
         let ratio = RateRatio::of(&[1, 3, 50, 4, 6]).expect("something was seen");

@@ -1,4 +1,4 @@
-//! Counts of faults as a table for people, with what its numbers are of.
+//! Counts of faults as a table for people, with a caption that says what is counted.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::clock::local_minute;
 use ptu_runs::table::Table;
 
-/// A course over time is shown in this many bars at most: the last ones.
+/// Most bars in which a course over time is shown, the latest.
 const BARS: usize = 24;
 
 impl StatsArguments {
@@ -178,7 +178,7 @@ fn of(part: u32, all: u32) -> String {
     }
 }
 
-/// A length of time in the unit that fits.
+/// A time of `days` as text, in hours below 2 days.
 fn days(days: f64) -> String {
     match days {
         hours if hours < 2.0 => format!("{:.1} h", 24.0 * days),

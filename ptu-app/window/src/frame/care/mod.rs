@@ -21,7 +21,7 @@ const FIELD: f32 = 380.0;
 pub struct HistoryMaintenance {
     open: bool,
     address: String,
-    /// The address was proposed once: an address typed in its place stays.
+    /// An address has been proposed; it is not proposed again over a typed one.
     proposed: bool,
     without_traces: bool,
     file: String,
@@ -109,8 +109,8 @@ impl HistoryMaintenance {
             ui.label(fill(words.last_synced, &said));
         }
         if let (false, Some(last)) = (self.proposed, last) {
-            // The address as typed: a stored address tells where the server is, not how this
-            // computer reaches it.
+            // The last typed address comes first: the stored one may not be the address by which this computer reaches
+            // the server.
             let latest = last.first().map(|sync| sync.server.clone());
             let typed = typed(&context.settings.server);
             self.address = typed.or(latest).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Work of the dialog, on a thread of its own.
+//! Work on the fault history that its dialog begins, on a thread of its own.
 
 use std::path::{Path, PathBuf};
 
@@ -36,7 +36,7 @@ pub fn sync(job: &mut Job, context: &mut PageContext<'_>, address: Address, trac
     });
 }
 
-/// Adds what another file has.
+/// Adds the entries of another database file.
 pub fn import(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
     let words = context.words;
     let shown = file.display().to_string();
@@ -47,9 +47,9 @@ pub fn import(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
             Err(StoreError::Stopped) => return Ok(stopped(words)),
             done => done.map_err(|error| of_file(&file, error))?,
         };
-        // The rows that were taken stay: from here on nothing stops.
+        // The imported rows are stored: from here on the work cannot be stopped.
         store.stop_when(|| false)?;
-        // Only an import that brought something can have brought a conflict; older ones were told before.
+        // Conflicts are told only if the import added events; older conflicts were told before.
         let conflicts = match counts.events {
             0 => Vec::new(),
             _ => store.conflicts()?,
@@ -59,7 +59,7 @@ pub fn import(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
     });
 }
 
-/// Copies the history.
+/// Copies the history to a file.
 pub fn backup(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
     let words = context.words;
     let shown = file.display().to_string();
@@ -69,7 +69,7 @@ pub fn backup(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
             Err(StoreError::Stopped) => return Ok(stopped(words)),
             done => done.map_err(|error| of_file(&file, error))?,
         }
-        // Head of the copy: another program may have recorded more into the file meanwhile.
+        // The chain's head is read from the copy: another program may have added to the original meanwhile.
         let head = Store::open_read_only(&file)?.head()?;
         let text = fill(words.care.backed_up, &[("file", &shown)]);
         let notes = head.map(|head| care::chain(&head, words));
@@ -77,7 +77,7 @@ pub fn backup(job: &mut Job, context: &mut PageContext<'_>, file: PathBuf) {
     });
 }
 
-/// Looks for damage and for what was changed.
+/// Checks the history for damage and for later changes.
 pub fn check(job: &mut Job, context: &mut PageContext<'_>) {
     let words = context.words;
     let said = (words.care.checking.to_owned(), words.care.failed);
@@ -93,19 +93,19 @@ pub fn check(job: &mut Job, context: &mut PageContext<'_>) {
     });
 }
 
-/// The store, whose work ends when the person stops it.
+/// The store, whose work ends when a person stops it.
 fn stopped_by(told: &Told, store: Store) -> Result<Store, StoreError> {
     let stop = told.stop.clone();
     store.stop_when(move || stop.presses() > 0)?;
     Ok(store)
 }
 
-/// Work that was stopped before it had done anything that stays.
+/// Result of work that was stopped before it stored anything.
 fn stopped(words: &Words) -> Done {
     Done::all(words.care.nothing_done.to_owned(), Vec::new())
 }
 
-/// An error about a file that was named here.
+/// Turns an error about the file that the person named into a failure.
 fn of_file(file: &Path, error: StoreError) -> Failure {
     let shown = file.display().to_string();
     match &error {
@@ -115,7 +115,7 @@ fn of_file(file: &Path, error: StoreError) -> Failure {
     }
 }
 
-/// An error of a sync.
+/// Turns an error of a replication into a failure.
 fn of_copy(error: StoreError) -> Failure {
     match error {
         StoreError::EarlierCopy { .. } | StoreError::ForkedCopy { .. } => {

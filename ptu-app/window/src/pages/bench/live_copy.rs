@@ -9,7 +9,7 @@ use ptu_runs::bench_worker::{BenchWorker, Phase};
 #[derive(Debug, Default)]
 pub struct BenchSnapshot {
     pub phase: Phase,
-    /// Counts up when a bench is made again or made safe.
+    /// Bench epoch: counts up when the bench is connected again or made safe.
     pub bench_epoch: u64,
     pub sample: Sample,
     /// Results of the last requested self-test.
@@ -28,12 +28,12 @@ impl BenchSnapshot {
         }
     }
 
-    /// `None` while the value is unknown.
+    /// Value of a signal; `None` while it is unknown.
     pub fn value(&self, signal: Signal) -> Option<f64> {
         self.sample.get(signal)
     }
 
-    /// A bit, or a contact of two positions.
+    /// State of a bit or two-position contact; `None` while it is unknown.
     pub fn on(&self, signal: Signal) -> Option<bool> {
         self.value(signal).map(|value| value != 0.0)
     }

@@ -1,7 +1,7 @@
 //! The bench page: the unit live as in its cab, manual stimuli, and a rolling plot.
 //!
-//! What is shown is copied once per frame ([`live_copy`]), what is filled in becomes stimuli in [`forms`];
-//! both know nothing of widgets.
+//! [`live_copy`] copies the bench's state once per frame, [`forms`] turns the filled-in fields into stimuli;
+//! neither uses widgets.
 
 mod forms;
 mod live;
@@ -27,21 +27,21 @@ use ptu_runs::run::BenchSetup;
 pub use rolling::chosen;
 use stimuli::{StimuliGiven, StimulusPanel, stimuli};
 
-/// Width of the stimuli.
+/// Width of the panel of stimuli, points.
 const STIMULI: f32 = 324.0;
-/// Least height of log and plot, and what stands around them.
+/// Least height of log and plot, and height of their margins, points.
 const LOWEST: f32 = 100.0;
 const AROUND: f32 = 30.0;
-/// Height by which the plot's heading exceeds the log's.
+/// Height by which the plot's heading exceeds the log's, points.
 const HEADING: f32 = 8.0;
-/// Share of the log in the width.
+/// Share of the width that the log takes.
 const LOG_SHARE: f32 = 0.4;
 
-/// Forms and memory of one unit's bench.
+/// Forms of one unit's bench, and the stimuli given to it.
 struct Sheet {
     /// Checksums of the unit's configuration and line.
     of: (u32, u32),
-    /// Epoch of the bench when a stimulus was given.
+    /// Bench epoch in which the stimuli of `given` were given.
     bench_epoch: u64,
     forms: Forms,
     given: StimuliGiven,
@@ -65,7 +65,7 @@ impl BenchPage {
         };
         let seen = BenchSnapshot::of(&unit.bench);
         let sheet = sheet(&mut self.sheets, unit.id, setup, seen.bench_epoch);
-        // A run lays its own track; what was given before it is gone already.
+        // A run begins with its own track; stimuli given by hand are no longer in force.
         if seen.phase != Phase::Idle {
             sheet.given = StimuliGiven::default();
         }
@@ -97,7 +97,7 @@ impl BenchPage {
     }
 }
 
-/// The unit's sheet: filled in again for another configuration, and without what is no longer given.
+/// The unit's sheet: new for another configuration or line, and without given stimuli after a new bench epoch.
 fn sheet<'a>(
     sheets: &'a mut BTreeMap<u64, Sheet>,
     unit: u64,
@@ -122,7 +122,7 @@ fn sheet<'a>(
     sheet
 }
 
-/// Room for stimuli at the right.
+/// Panel for stimuli at the right.
 fn stimuli_panel() -> Panel {
     let frame = Frame::new().inner_margin(Margin {
         left: 8,
@@ -131,7 +131,7 @@ fn stimuli_panel() -> Panel {
     Panel::right("stimuli").exact_size(STIMULI).frame(frame)
 }
 
-/// The live view, and log and plot in the height it leaves.
+/// Draws the live view, and log and plot in the remaining height.
 fn live_view(ui: &mut Ui, shown: &View<'_>, plot: impl FnOnce(&mut Ui, f32)) {
     let height = ui.available_height();
     let scroll = ScrollArea::vertical()

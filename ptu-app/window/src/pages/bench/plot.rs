@@ -18,17 +18,17 @@ use ptu_report::words::{Words, fill};
 use ptu_report::{naming, ticks};
 use ptu_runs::bench_worker::BenchWorker;
 
-/// Left of the curves: names with values, and the scale's numbers.
+/// Widths at the left of the curves: names with values, and the scale's numbers, points.
 const NAMES: f32 = 168.0;
 const SCALE: f32 = 36.0;
-/// Height of a lane of quantities, in lanes of states.
+/// Height of a lane of quantities, as a multiple of the height of a lane of states.
 const TALL: f32 = 3.5;
-/// Height of a name.
+/// Height of a name, points.
 const NAME: f32 = 14.0;
-/// Highest lane of states.
+/// Greatest height of a lane of states, points.
 const STATES: f32 = 20.0;
 
-/// The plot's own state; its buffers are kept from frame to frame.
+/// The rolling plot: its settings, and buffers that are used again in each frame.
 #[derive(Debug)]
 pub struct Plot {
     span_s: u32,
@@ -51,13 +51,13 @@ impl Default for Plot {
 }
 
 impl Plot {
-    /// Takes what is to be shown of the chosen signals.
+    /// Copies the latest rows of the chosen signals from the bench.
     pub fn take(&mut self, worker: &BenchWorker, signals: &[Signal]) {
         let span_s = f64::from(self.span_s);
         self.rows.take(&worker.live(), signals, span_s);
     }
 
-    /// The plot, its heading not counted in this height.
+    /// Draws the plot; `height` does not include its heading.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -104,7 +104,7 @@ impl Plot {
         });
     }
 
-    /// Time shown, and signals by name.
+    /// Controls for the span that is shown, and for the signals, by name.
     fn choose(&mut self, ui: &mut Ui, plotted: &mut Vec<String>, words: &Words) {
         for span_s in SPANS_S {
             let text = fill(words.bench.plot_last, &[("time", &span_s)]);
@@ -179,7 +179,7 @@ impl Plot {
         }
     }
 
-    /// A lane of quantities, all on one scale.
+    /// Draws a lane of quantities, all on one scale.
     fn quantities(
         &mut self,
         sheet: &Sheet<'_>,
@@ -204,7 +204,7 @@ impl Plot {
     }
 }
 
-/// Where lanes lie: those of quantities share what those of states leave.
+/// Areas of the lanes: lanes of quantities share the height that lanes of states leave.
 fn rects(curves: Rect, lanes: &[Lane]) -> impl Iterator<Item = Rect> {
     let tall = |lane: &Lane| matches!(lane, Lane::Quantities(_));
     let count = lanes.iter().filter(|lane| tall(lane)).count() as f32;
@@ -237,7 +237,7 @@ impl Sheet<'_> {
         self.palette.curves[place % self.palette.curves.len()]
     }
 
-    /// Names and present values of a lane's signals, left of it.
+    /// Writes names and present values of a lane's signals, left of the lane.
     fn names(&self, rect: Rect, places: &[usize]) {
         let height = (rect.height() / places.len() as f32).min(NAME);
         let size = (height - 1.0).clamp(7.0, 12.0);

@@ -4,12 +4,12 @@ use protocol::signal::{Kind, Signal};
 
 use ptu_runs::bench_worker::LiveData;
 
-/// Times that can be chosen, s.
+/// Spans that can be chosen for the plot, s.
 pub const SPANS_S: [u32; 4] = [10, 30, 60, 120];
-/// Number of signals that can be told apart.
+/// Most signals in the plot; more could not be told apart.
 pub const MOST: usize = 12;
 
-/// Signals of a lane, as places among the chosen ones.
+/// Signals of a lane, as indices into the chosen signals.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Lane {
     /// Quantities of one unit of measure, on one scale.
@@ -19,7 +19,7 @@ pub enum Lane {
     Bit(usize),
 }
 
-/// Lanes of the chosen signals: quantities of one unit share theirs, as limit and speed belong together.
+/// Lanes of the chosen signals: quantities of one unit of measure, such as limit and speed, share a lane.
 pub fn lanes(signals: &[Signal]) -> Vec<Lane> {
     let mut lanes: Vec<Lane> = Vec::new();
     for (place, signal) in signals.iter().enumerate() {
@@ -46,14 +46,13 @@ pub fn lanes(signals: &[Signal]) -> Vec<Lane> {
     lanes
 }
 
-/// The chosen signals by their names; names that are no signals any more are passed over.
+/// The chosen signals by their names; unknown names, which an older program may have saved, are ignored.
 pub fn chosen(names: &[String]) -> Vec<Signal> {
     let known = names.iter().filter_map(|name| Signal::from_name(name));
     known.take(MOST).collect()
 }
 
-/// The latest rows, copied so that the bench is held for a moment only. Keeps its room from frame to
-/// frame.
+/// The latest rows, copied so that the bench is locked for a moment only. The buffers are used again in each frame.
 #[derive(Debug, Default)]
 pub struct Rows {
     times_s: Vec<f64>,
@@ -67,7 +66,7 @@ impl Rows {
         self.values.resize_with(signals.len(), Vec::new);
         self.values.iter_mut().for_each(Vec::clear);
         let before_s = |at: protocol::Instant| -live.now.since(at).as_secs();
-        // One row beyond the left edge: its values hold until the next.
+        // One row before the left edge is taken, too: its values hold until the next row.
         let rows = &live.rows.rows();
         let first = rows.partition_point(|row| before_s(row.at) < -span_s);
         for row in rows.range(first.saturating_sub(1)..) {
@@ -76,7 +75,7 @@ impl Rows {
                 values.push(row.value(*signal));
             }
         }
-        // What was last holds now.
+        // The values of the last row hold until now.
         if self.times_s.last().is_some_and(|last| *last < 0.0) {
             self.times_s.push(0.0);
             for values in &mut self.values {

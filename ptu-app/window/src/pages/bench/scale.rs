@@ -2,7 +2,7 @@
 
 /// Steps of the dial's numbers, km/h.
 const STEP_KMH: f64 = 20.0;
-/// Room above the highest limit: an overspeed must still be on the dial.
+/// Room above the highest limit, km/h: an overspeed must still be on the dial.
 const ROOM_KMH: f64 = 15.0;
 
 /// The dial's scale.
@@ -13,7 +13,7 @@ pub struct Dial {
 }
 
 impl Dial {
-    /// A dial for a unit whose highest limit this is.
+    /// A dial for a unit with this highest limit, km/h.
     pub fn up_to(highest_kmh: f64) -> Self {
         let steps = ((highest_kmh + ROOM_KMH) / STEP_KMH).ceil().max(1.0);
         Self {
@@ -21,25 +21,25 @@ impl Dial {
         }
     }
 
-    /// Where a speed is, 0 at standstill and 1 at the end, beyond which nothing is.
+    /// Position of a speed on the dial: 0 at standstill, 1 at the last number and above.
     pub fn share(self, kmh: f64) -> f32 {
         (kmh / self.full_kmh).clamp(0.0, 1.0) as f32
     }
 
-    /// Numbers that are written.
+    /// Speeds at which the dial has a number, km/h.
     pub fn numbers(self) -> impl Iterator<Item = f64> {
         let count = (self.full_kmh / STEP_KMH).round() as u32;
         (0..=count).map(|place| f64::from(place) * STEP_KMH)
     }
 
-    /// Strokes between the numbers.
+    /// Speeds at which the dial has a stroke, km/h: at each number, and three between two numbers.
     pub fn strokes(self) -> impl Iterator<Item = f64> {
         let count = (self.full_kmh / STEP_KMH).round() as u32 * 4;
         (0..=count).map(|place| f64::from(place) * STEP_KMH / 4.0)
     }
 }
 
-/// Length of a bar from its middle, −1 to 1.
+/// Length of a bar from its middle, −1 to 1; ±1 at `full` and beyond.
 pub fn from_middle(value: f64, full: f64) -> f32 {
     (value / full).clamp(-1.0, 1.0) as f32
 }

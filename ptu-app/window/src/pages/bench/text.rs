@@ -5,7 +5,7 @@ use protocol::signal::{Kind, Signal};
 use super::live_copy::BenchSnapshot;
 use ptu_report::words::{Bench, fill};
 
-/// Shown in place of an unknown value.
+/// Text of an unknown value.
 pub const UNKNOWN: &str = "—";
 
 /// A signal's value: a word, or a number with its unit.
@@ -37,7 +37,7 @@ pub fn known(words: &Bench, signal: Signal, value: f64) -> String {
     }
 }
 
-/// The bits that are set, by name; none of them = "none".
+/// Names of the bits that are set; "none" if no bit is set.
 pub fn bits(words: &Bench, signal: Signal, seen: &BenchSnapshot) -> String {
     let Some(bits) = seen.bits(signal) else {
         return UNKNOWN.to_owned();
@@ -56,7 +56,7 @@ pub fn bits(words: &Bench, signal: Signal, seen: &BenchSnapshot) -> String {
     set.join(", ")
 }
 
-/// The lever by its notch. A half notch is told as a whole one by the unit's input.
+/// Text of the master controller's notch; the unit's input tells no half notches.
 pub fn controller(seen: &BenchSnapshot) -> String {
     match seen.value(Signal::Controller) {
         None => UNKNOWN.to_owned(),

@@ -1,4 +1,4 @@
-//! Positions of markers, stop point and train as fractions of the section, for the track strip.
+//! Positions of markers, stop point and train on the track strip, as fractions of its length.
 
 use btu_rig::stimulus::StationData;
 use protocol::line::{Line, Section};
@@ -6,14 +6,14 @@ use protocol::signal::Signal;
 
 use super::live_copy::BenchSnapshot;
 
-/// Room before the start and behind the end that is shown, m.
+/// Length shown before the start and after the end of the section, m.
 const AROUND_M: f64 = 60.0;
 
-/// The section on the track strip.
+/// The section on the track strip; positions are fractions of the strip, 0 to 1.
 #[derive(Debug, PartialEq)]
 pub struct Strip {
     pub section: u16,
-    /// Stations it begins and ends at.
+    /// Stations at which the section begins and ends.
     pub stations: (u16, u16),
     pub start: f32,
     /// PSM1 to PSM4.
@@ -21,16 +21,16 @@ pub struct Strip {
     pub stop: f32,
     /// The train, if the section lies along its way.
     pub train: Option<f32>,
-    /// Where the unit believes it is.
+    /// Position of the train according to the unit.
     pub unit: Option<f32>,
-    /// True way to the stop point, m.
+    /// True distance to the stop point, m.
     pub to_stop_m: Option<f64>,
-    /// Marker the unit detected last, 1 to 4.
+    /// Marker that the unit detected last, 1 to 4.
     pub detected: Option<u8>,
 }
 
 impl Strip {
-    /// The section that was laid by hand, or else that of which the wayside tells.
+    /// Track strip of the section laid by hand, or else of the section that the wayside's frames tell.
     pub fn of(line: &Line, laid: Option<u16>, seen: &BenchSnapshot) -> Option<Self> {
         let by_hand = laid.and_then(|number| line.section(number));
         let section = by_hand.or_else(|| section_of_wayside(line, seen))?;
@@ -54,7 +54,7 @@ impl Strip {
     }
 }
 
-/// The section that begins or ends at the loop the wayside sends.
+/// The section that begins or ends at the loop named in the wayside's frames.
 fn section_of_wayside<'a>(line: &'a Line, seen: &BenchSnapshot) -> Option<&'a Section> {
     let number = |signal| seen.value(signal).map(|value| value as u16);
     let loop_id = number(Signal::WaysideLoop)?;
@@ -67,8 +67,8 @@ fn section_of_wayside<'a>(line: &'a Line, seen: &BenchSnapshot) -> Option<&'a Se
     departing.or_else(|| sections.iter().find(|s| ends((s.to_station, s.to_loop))))
 }
 
-/// Fields of the wayside's frame that no signal tells: taken from the stimulus given by hand as
-/// long as the wayside still sends that, else from the line.
+/// Fields of the wayside's frame that no signal shows: from the stimulus given by hand, as long as the wayside still
+/// sends it, else from the line.
 #[derive(Debug, Default, PartialEq)]
 pub struct WaysideFrame {
     pub next_station: Option<u16>,

@@ -1,4 +1,5 @@
-//! The part's place in the structure: parts in a row from the sensor to what the check judges, the failing way marked.
+//! Drawing of the chain of parts from the sensor to the signal that the check judges; the failing part and all after
+//! it are marked.
 
 use eframe::egui::{
     Color32, FontId, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
@@ -18,7 +19,7 @@ const TEXT: f32 = 13.5;
 
 /// A box of the picture.
 struct Shown {
-    /// Parts, the suspected one first.
+    /// Names of parts, the suspected one first.
     parts: String,
     makes: String,
     mark: Mark,
@@ -41,7 +42,7 @@ impl Mark {
     }
 }
 
-/// Draws the way on which `part` is, in as many rows as it takes.
+/// Draws the chain that contains `part`, in as many rows as are needed.
 pub fn chain(ui: &mut Ui, chain: &Chain, part: &str, names: &PartNames, words: &Words) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
@@ -105,7 +106,7 @@ fn draw(ui: &mut Ui, shown: &Shown, has_arrow: bool, words: &Words) {
     let painter = ui.painter_at(all);
     let rect = Rect::from_min_max(pos2(all.left() + arrow, all.top()), all.max);
     if has_arrow {
-        // What fails goes on from the suspected part.
+        // The failure continues from the suspected part along the arrows.
         let colour = match shown.mark {
             Mark::FailsWithIt => bad,
             Mark::None | Mark::Suspected => palette.quiet,
@@ -155,8 +156,8 @@ mod tests {
     use ptu_report::words::Language;
     use ptu_runs::structure::Link;
 
-    /// Goal: a technician does not take out the part next to the suspected one. Method: it and what comes after it are marked by words, what
-    /// comes before is not.
+    /// Goal: a technician does not take out the part next to the suspected one. Method: the suspected part and
+    /// the parts after it are marked by words, the parts before it are not.
     #[test]
     fn the_part_and_all_after_it_are_marked_by_words() {
         let link = |signal, parts: &[&str]| Link {

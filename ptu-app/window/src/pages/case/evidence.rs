@@ -24,7 +24,7 @@ use ptu_runs::structure::{Chain, Structure};
 /// Signals of the check that are drawn, at most.
 const SIGNALS: usize = 4;
 
-/// Data that are read, and drawings made of them.
+/// The evidence as read from the database, and the drawing of the trace.
 pub struct Evidence {
     part: String,
     read: Request<Read>,
@@ -49,7 +49,7 @@ struct Read {
 }
 
 impl Evidence {
-    /// Asks for what shows that `part` failed in this run; `trace` is shown where the check that names it has none.
+    /// Requests the evidence that `part` failed in this run; `trace` is shown if the part's failed check has no trace.
     pub fn ask(
         part: &str,
         (run, trace): (Id, Option<Id>),
@@ -132,7 +132,7 @@ fn failed_checks(run: &Progress) -> Vec<FailedCheck> {
     run.procedures.iter().flat_map(of).collect()
 }
 
-/// The first failed check that names the part, or else the first one that the part is on the way of.
+/// Reads the evidence of the first failed check that names the part, or else whose chain contains the part.
 fn read(
     paths: &DataPaths,
     run: Id,

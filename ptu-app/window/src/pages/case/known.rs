@@ -16,7 +16,7 @@ const MOST: u32 = 50;
 /// Number of lines of each kind that are shown.
 const SHOWN: usize = 5;
 
-/// The history of one unit, read when it is asked for.
+/// The history of one unit.
 #[derive(Default)]
 pub struct KnownUnit {
     /// Serial number of the unit.
@@ -27,32 +27,32 @@ pub struct KnownUnit {
 #[derive(Default)]
 struct History {
     open: Vec<FaultSummary>,
-    /// When and what, the latest first.
+    /// Repairs with their time, µs since 1970, the latest first.
     repairs: Vec<(i64, RepairRecord)>,
     parts: PartNames,
 }
 
 impl KnownUnit {
-    /// Reads the history of this unit unless it is known.
+    /// Reads the history of this unit, unless it is read and the data are unchanged.
     pub fn keep_up(&mut self, serial: &str, context: &PageContext<'_>) {
         self.of = Some(serial.to_owned());
         (self.history).keep_up((serial.to_owned(), true), context, read);
     }
 
-    /// Serial number of the part that is in the unit, as its last repair has it.
+    /// Serial number of the part in the unit, according to the part's last repair.
     pub fn serial_of(&self, part: &str) -> Option<String> {
         let repairs = &self.history.get().value()?.repairs;
         let last = repairs.iter().find(|(_, repair)| repair.part == part);
         last.and_then(|(_, repair)| repair.serial_new.clone())
     }
 
-    /// Name of a part, for people.
+    /// Name of a part in the window's language.
     pub fn part_name<'a>(&'a self, id: &'a str, words: &Words) -> &'a str {
         let history = self.history.get().value();
         history.map_or(id, |known| known.parts.name(id, words.language))
     }
 
-    /// Numbers of open faults and of repairs.
+    /// Draws the numbers of open faults and of repairs.
     pub fn facts(&self, ui: &mut Ui, words: &Words) {
         if let Some(history) = self.history.get().value() {
             let number = |n: usize| match n {
@@ -129,7 +129,7 @@ fn read(paths: &DataPaths, serial: String) -> Result<History, Failure> {
         ..FaultFilter::default()
     };
     let faults = match store.faults(&filter) {
-        // A unit that was never here.
+        // The database does not know this unit.
         Err(StoreError::NotFound { .. }) => return Ok(history),
         faults => faults?,
     };
@@ -142,7 +142,7 @@ fn read(paths: &DataPaths, serial: String) -> Result<History, Failure> {
         }
     }
     history.repairs.sort_by_key(|(at_us, _)| -at_us);
-    // A repair of a case is written at each of its faults.
+    // The repair of a case is stored with each fault of the case, so it occurs several times.
     history.repairs.dedup();
     Ok(history)
 }

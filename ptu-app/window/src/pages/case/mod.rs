@@ -1,4 +1,4 @@
-//! One case in ten clicks: connect, symptom, test, result, repair, proof, sheet.
+//! The page Case leads through one case in ten clicks: connect, symptom, test, result, repair, proof, sheet.
 
 mod chain;
 mod evidence;
@@ -34,7 +34,7 @@ pub use steps::wide as case_steps;
 use symptom::SymptomTiles;
 pub use verdict::{Told, named};
 
-/// Width of a window that has the strip beside the step, and that of the strip, points.
+/// Least width of a window with the strip beside the page, and width of the strip, points.
 const STRIP: [f32; 2] = [1200.0, 232.0];
 
 #[derive(Default)]
@@ -45,7 +45,7 @@ pub struct CasePage {
     known: KnownUnit,
     units: SeenUnits,
     tiles: SymptomTiles,
-    /// Last run of the case that was looked at.
+    /// Last run whose result was taken.
     seen: Option<Id>,
     found: Option<Found>,
     repair: Repair,
@@ -53,7 +53,7 @@ pub struct CasePage {
 }
 
 impl CasePage {
-    /// Takes what has come, whatever page is in front; `concluded` is what is said of the chosen unit's last run.
+    /// Takes results that have arrived, whichever page is shown; `concluded`: conclusion of the chosen unit's last run.
     pub fn poll(
         &mut self,
         concluded: Option<(Id, &Request<Concluded>)>,
@@ -74,7 +74,7 @@ impl CasePage {
         if self.repair.is_undone(context) && self.stage == Stage::Prove {
             self.stage = Stage::Repair;
         }
-        // A run that goes on blanks the result it had.
+        // While the case's run goes on, an earlier result is not shown.
         let run = context.units.chosen().run_of_case();
         if self.stage == Stage::Result && run.is_some_and(Progress::is_running) {
             (self.found, self.stage) = (None, Stage::Find);
@@ -84,7 +84,7 @@ impl CasePage {
         }
     }
 
-    /// The case is about the connected unit; another unit is another case.
+    /// Begins a new case when another unit is connected.
     fn follow_unit(&mut self, context: &PageContext<'_>) {
         let unit = context.units.chosen();
         let Some(serial) = unit.serial().filter(|_| unit.is_connected()) else {
@@ -99,7 +99,7 @@ impl CasePage {
         }
     }
 
-    /// A case about nothing yet; the last run of the unit belongs to no case.
+    /// Begins an empty case; an earlier run of the unit does not belong to it.
     fn begin(&mut self, unit: &Unit) {
         *self = Self {
             seen: unit.run.as_ref().and_then(Progress::id),
@@ -107,7 +107,7 @@ impl CasePage {
         };
     }
 
-    /// Goes on when the run of this stage is over and its outcome is known.
+    /// Goes to the next stage when the run of this stage has ended and its conclusion is known.
     fn take_run(
         &mut self,
         concluded: Option<(Id, &Request<Concluded>)>,
@@ -134,7 +134,7 @@ impl CasePage {
         let next = self.stage.after_run(outcome.exit, proven);
         if next == Stage::Result {
             self.found = Some(Found::of(outcome, run, said, context));
-            // Another repair is to be fitted and proved.
+            // The next repair has to be fitted and proved anew.
             self.proof = RepairProof::default();
         } else {
             self.proof.ran(said, (run, outcome, proven), context.words);
@@ -142,7 +142,7 @@ impl CasePage {
         self.stage = next;
     }
 
-    /// Draws it; the sheet that is to be drawn.
+    /// Draws the page; returns the sheet that is to be drawn on it.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -225,7 +225,7 @@ impl CasePage {
         None
     }
 
-    /// The way back, why the accent button is off, and it.
+    /// Foot of the page: Back or Stop, and the accent button with the reason if it is disabled.
     fn foot(&mut self, ui: &mut Ui, has_orders: bool, context: &mut PageContext<'_>) {
         let words = &context.words.case;
         let place = ActionPlace::new(ui, "case back", self.stage);
@@ -351,7 +351,7 @@ impl CasePage {
         }
     }
 
-    /// Name of the person who works on the case, where the strip does not say it.
+    /// Field for the operator's name, in a window without the strip.
     fn name(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         if ui.ctx().content_rect().width() < STRIP[0] {
             ui.horizontal(|ui| name_field(ui, context));

@@ -1,4 +1,4 @@
-//! The part is fitted: the unit is connected again, a run shows that the fault is gone, and its sheet is signed.
+//! Proof of a repair: the part is fitted, the unit connected again, a run shows no fault, the sheet is signed.
 
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -28,12 +28,12 @@ pub struct RepairProof {
     /// The part was fitted; the unit is connected again as soon as it is disconnected.
     reconnects: bool,
     fitted: bool,
-    /// Statement of the last run on the repair, or its own outcome.
+    /// What the last run says about the repair; if nothing, the outcome of the run.
     said: Option<String>,
     verdict: Option<Verdict>,
-    /// The verdict in a word or two.
+    /// The verdict in the window's words.
     word: Option<&'static str>,
-    /// Answers with the run that was signed, by whom, and whether with a key.
+    /// Response: the run that was signed, the signer, and whether a key signed.
     signing: Request<(Id, String, bool)>,
     sign: Option<Sign>,
 }
@@ -45,7 +45,7 @@ impl RepairProof {
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         let locked = context.settings.is_locked();
         if locked || context.settings.page != Page::Case {
-            // A PIN that was typed is its owner's alone.
+            // A typed PIN must not remain for the next person.
             self.sign = None;
         }
         let unit = context.units.chosen_mut();
@@ -57,7 +57,7 @@ impl RepairProof {
             return;
         }
         match (&self.signing, &mut self.sign) {
-            // What was chosen stays; the PIN is typed again.
+            // The chosen key stays; the PIN is typed again.
             (Request::Failed(_), Some(sign)) => sign.pin.clear(),
             (Request::Failed(why), None) => {
                 let said = context.words.case.not_signed;
@@ -67,7 +67,7 @@ impl RepairProof {
         }
     }
 
-    /// A proof run has ended so.
+    /// Takes the outcome of a proof run; `proven` = the run proved the repair.
     pub fn ran(
         &mut self,
         said: Option<&Concluded>,
@@ -99,7 +99,7 @@ impl RepairProof {
         }
     }
 
-    /// Buttons that fit the part, prove the repair, and show the sheet; true when the last was clicked.
+    /// Buttons: the part is fitted, prove the repair, to the sheet; true when the last was clicked.
     pub fn foot(
         &mut self,
         ui: &mut Ui,
@@ -117,7 +117,7 @@ impl RepairProof {
             false => Look::Secondary,
         };
         let why_not = why_not(unit, context.words);
-        // Before it is fitted, the other button is the reason.
+        // Before the part is fitted, the reason is the other button's text.
         let first = if fitted { why_not } else { words.fitted };
         let prove = Face::new(look(fitted), words.prove);
         let prove = prove.because((!may).then_some(first)).show(ui);
@@ -133,7 +133,7 @@ impl RepairProof {
         if place.clicked(&face.show(ui)) {
             let part = &repair.part;
             let unit = context.units.chosen_mut();
-            // In practice the part takes the faults with it that were injected into it; others stay.
+            // In practice the new part has no injected faults; faults of other parts stay.
             let choice = &mut unit.choice;
             choice
                 .faults
@@ -146,7 +146,7 @@ impl RepairProof {
         passed && place.clicked(&Face::new(Look::Secondary, words.to_sheet).show(ui))
     }
 
-    /// Foot of the sheet: who checked it, or the button that asks.
+    /// Foot of the sheet: who signed the sheet, or the button that opens the dialog to sign.
     pub fn sign_foot(&mut self, ui: &mut Ui, run: Option<Id>, context: &mut PageContext<'_>) {
         let words = &context.words.case;
         if let Some((_, who, with_key)) = self.signing.value().filter(|(of, ..)| Some(*of) == run) {
@@ -202,7 +202,7 @@ impl RepairProof {
                 self.signing = Request::Pending(context.queries.run(move |paths| {
                     let store = paths.open()?;
                     let signer = key.map(|(key, pin)| keys::signer(&key, &pin)).transpose()?;
-                    // A key signs in its own name.
+                    // A key signs in its owner's name.
                     let (who, with_key) = match &signer {
                         Some(signer) => (signer.who().to_owned(), true),
                         None => (who, false),
@@ -224,7 +224,7 @@ impl RepairProof {
 struct Sign {
     /// Key files of this computer, once they were looked for.
     keys: Option<Vec<(PathBuf, String)>>,
-    /// The one that signs, and in whose name.
+    /// The key file that signs, and its owner.
     chosen: Option<(PathBuf, String)>,
     pin: String,
 }

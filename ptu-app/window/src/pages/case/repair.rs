@@ -20,7 +20,7 @@ use ptu_runs::failure::Failure;
 /// Width of a field, points.
 const FIELD: f32 = 300.0;
 
-/// The form, and what becomes of it.
+/// The form of a repair, and the repair that was stored.
 #[derive(Default)]
 pub struct Repair {
     run: Option<Id>,
@@ -32,13 +32,13 @@ pub struct Repair {
     serial_old: String,
     serial_new: String,
     note: String,
-    /// Answers with a fault of the case, and when the repair was written.
+    /// Response: a fault of the case, and when the repair was written.
     saving: Request<Option<Written>>,
     written: Option<Written>,
 }
 
 impl Repair {
-    /// Fills in what is known: the part that was found, and the serial number it has by its last repair.
+    /// Fills in the part that was found, and its serial number from the part's last repair.
     pub fn prepare(&mut self, found: &Found, known: &KnownUnit) {
         if self.run == Some(found.run) {
             return;
@@ -53,7 +53,7 @@ impl Repair {
         };
     }
 
-    /// True once it has been stored.
+    /// Takes the response; true when the repair has been stored with this call.
     pub fn poll(&mut self, known: &KnownUnit, context: &mut PageContext<'_>) -> bool {
         if !self.saving.poll() {
             return false;
@@ -78,17 +78,17 @@ impl Repair {
         }
     }
 
-    /// A fault that was repaired: its case is this one.
+    /// A fault of this case that was repaired.
     pub fn fault(&self) -> Option<Id> {
         self.written.map(|written| written.fault)
     }
 
-    /// The repair is stored, and was not taken back.
+    /// The repair is stored, and was not undone.
     pub fn is_written(&self) -> bool {
         self.written.is_some()
     }
 
-    /// The part and the serial number that was put in, once that is stored.
+    /// The part and its new serial number, once the repair is stored; else empty.
     pub fn said(&self) -> String {
         if !self.is_written() {
             return String::new();
@@ -103,13 +103,13 @@ impl Repair {
         self.serial_new.trim()
     }
 
-    /// True once if the repair was taken back.
+    /// Whether the repair has been undone since the last call.
     pub fn is_undone(&mut self, context: &PageContext<'_>) -> bool {
         let is_undone = |written: &mut Written| context.messages.was_taken_back(*written);
         self.written.take_if(is_undone).is_some()
     }
 
-    /// A part was put in, or it is said what else was done.
+    /// The form has the serial number of a new part, or a note on what else was done.
     fn says_what(&self) -> bool {
         !self.serial_new.trim().is_empty() || !self.note.trim().is_empty()
     }
@@ -168,8 +168,8 @@ impl Repair {
     }
 }
 
-/// Writes the repair at each fault of the run that is still to be repaired, and so at their cases, at one time, by which
-/// it is undone; the first of them.
+/// Writes the repair for each fault of the run that is still to be repaired, and for its case, all with one time
+/// stamp, which the undo uses; returns the first fault.
 fn store(
     paths: &DataPaths,
     run: Id,
@@ -187,7 +187,7 @@ fn store(
     let mut first = None;
     let mut done = BTreeSet::new();
     for fault in faults {
-        // A fault of a case that was just repaired is repaired with it; it needs no second repair.
+        // A fault whose case was just repaired needs no repair of its own.
         let state = store.fault(fault)?.fault.state;
         if !done.contains(&fault) && state.next(FaultAction::Repair).is_ok() {
             let (named, rest) = store.repair_case(fault, repair, who, at_us)?;

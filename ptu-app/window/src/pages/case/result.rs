@@ -30,17 +30,17 @@ const MOST_BARS: usize = 2;
 /// Findings of a run.
 pub struct Found {
     pub run: Id,
-    /// When it ended, µs since 1970.
+    /// When the run ended, µs since 1970.
     pub ended_us: i64,
     pub told: Told,
     /// Headline in the language of the window.
     headline: String,
-    /// The conclusion of the diagnosis, likewise.
+    /// The conclusion of the diagnosis in the language of the window.
     concluded: String,
     /// Parts in the order of their probability.
     pub parts: Vec<String>,
     answer: Option<Arc<Answer>>,
-    /// The first measured values that were out of their limits, with their step.
+    /// Name of the first step with a value out of its limits, and those values.
     shown_by: Option<(String, Vec<Measurement>)>,
     /// Counts of the steps by outcome.
     pub counts: StepCounts,
@@ -90,7 +90,7 @@ impl Found {
     }
 }
 
-/// A part of a result that is looked at.
+/// The part of a result that is shown.
 #[derive(Clone, Copy, Default, PartialEq)]
 pub enum Part {
     #[default]
@@ -113,7 +113,7 @@ pub fn headline(
         let mut results = run.procedures.iter().rev().flat_map(|of| &of.results);
         let result = results.find(error);
         let of_step = result.map(|result| words.findings(&result.findings));
-        // Without a step that says why, a finding outside the steps does.
+        // If no step tells the reason, a finding outside the steps does.
         let outside = run
             .procedures
             .iter()
@@ -136,7 +136,7 @@ pub fn headline(
 /// Procedures of a run that did not pass.
 fn not_passed(run: &Progress) -> BTreeSet<String> {
     let bad = |verdict: Verdict| !matches!(verdict, Verdict::Passed | Verdict::Skipped);
-    // The run as a whole is none.
+    // The entry for the run as a whole has no steps and is no procedure.
     let procedures = (run.procedures.iter()).filter(|of| !of.procedure.steps.is_empty());
     let failed = procedures.filter(|procedure| {
         procedure.verdict.is_some_and(bad) || procedure.results.iter().any(|step| bad(step.verdict))
@@ -144,7 +144,7 @@ fn not_passed(run: &Progress) -> BTreeSet<String> {
     failed.map(|failed| failed.procedure.id.clone()).collect()
 }
 
-/// Values of the first step that failed by one.
+/// Name and failed values of the first step in which a value failed.
 fn shown_by(run: &Progress) -> Option<(String, Vec<Measurement>)> {
     let results = run.procedures.iter().flat_map(|progress| &progress.results);
     let bad = |measured: &&Measurement| measured.verdict == Verdict::Failed;
@@ -175,7 +175,7 @@ impl Found {
         }
     }
 
-    /// Draws the result; `names_run`: no strip beside it says of which run the result is.
+    /// Draws the result; `names_run`: with run and time, because no strip beside the result names them.
     pub fn show(&mut self, ui: &mut Ui, names_run: bool, words: &Words) {
         let said: [(&str, &dyn std::fmt::Display); 2] = [
             ("id", &self.run.short()),
@@ -243,7 +243,7 @@ impl Found {
         let time = check.map(|check| format!("{:.0} s", check.cost_s.ceil()));
         let is_first = |way| way == first;
         let case = &words.case;
-        // Some are offered only where they are the first.
+        // A way without a condition (`false`) is offered only as the first.
         let mut ways = [
             (Next::Repair, case.record_repair, failed),
             (Next::Check, case.run_next, check.is_some()),
@@ -267,7 +267,7 @@ impl Found {
             };
             let why_not = (runs && !unit.may_run()).then(|| why_not(unit, words));
             let button = Face::new(look, text).off(why_not);
-            // A way that has no room here is reached by the steps above.
+            // An action whose button has no room here can be reached by the list of steps.
             if !is_first(*way) && button.wide(ui) > ui.available_width() {
                 continue;
             }
@@ -279,7 +279,7 @@ impl Found {
     }
 }
 
-/// Shows the check that would tell the diagnosis most, and what of.
+/// Shows the check that would tell the diagnosis most, and the parts it would tell apart.
 fn next_check(ui: &mut Ui, found: &Found, words: &Words) {
     let Some((answer, next)) = found.answer.as_ref().zip(found.next_check()) else {
         return;

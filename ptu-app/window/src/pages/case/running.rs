@@ -1,4 +1,4 @@
-//! A run of the case under way: what happens now, the unit live, and failures as they come.
+//! A run of the case under way: the current step, the unit live, and failures as they occur.
 
 use btu_rig::procedure::Verdict;
 use eframe::egui::Ui;
@@ -16,7 +16,7 @@ use ptu_runs::bench_worker::{Phase, Progress};
 const FAILURES: usize = 4;
 
 impl CasePage {
-    /// A run of the case goes on, or is about to.
+    /// Whether a run of the case is under way or about to begin.
     pub(super) fn is_running(&self, has_orders: bool, context: &PageContext<'_>) -> bool {
         let runs = context
             .units
@@ -26,14 +26,13 @@ impl CasePage {
         runs || has_orders
     }
 
-    /// The run, what it was, or that there is none.
+    /// Draws the run, or that its result is being worked out or that no run began.
     pub(super) fn running(&mut self, ui: &mut Ui, has_orders: bool, context: &mut PageContext<'_>) {
         let words = context.words;
         let unit = context.units.chosen();
         let waits = has_orders || self.is_over(context);
         let Some(run) = unit.run_of_case().filter(|_| !waits) else {
-            // The run is about to begin, or has ended and its result is being worked out, or never
-            // began.
+            // The run is about to begin, or its result is being worked out, or it never began.
             title(
                 ui,
                 match waits || unit.phase() == Phase::Running {
@@ -54,7 +53,7 @@ impl CasePage {
         }
     }
 
-    /// The run that is to prove the repair, or what is to be done before it.
+    /// Draws the run that is to prove the repair, or what has to be done before that run.
     pub(super) fn prove(&mut self, ui: &mut Ui, has_orders: bool, context: &mut PageContext<'_>) {
         if self.is_running(has_orders, context) {
             self.running(ui, has_orders, context);
@@ -67,14 +66,14 @@ impl CasePage {
         ui.label(words.prove_hint);
     }
 
-    /// The last run has ended and was not looked at yet.
+    /// Whether the case has a run whose result was not taken yet.
     pub(super) fn is_over(&self, context: &PageContext<'_>) -> bool {
         let id = context.units.chosen().run_of_case().and_then(Progress::id);
         id.is_some() && id != self.seen
     }
 }
 
-/// Speed, limit and brakes as they are now.
+/// Draws the present speed, limit and brakes.
 fn live(ui: &mut Ui, words: &Words, sample: &Sample) {
     let bench = &words.bench;
     let signals = [

@@ -1,4 +1,4 @@
-//! The units seen last: a click fills in where one is reached and its serial number.
+//! The units of the latest runs: a click on one fills in its endpoint and serial number.
 
 use eframe::egui::Ui;
 use fault_db::{RunFilter, RunSummary};
@@ -10,23 +10,23 @@ use ptu_report::naming::DOT;
 use ptu_runs::clock;
 use ptu_runs::run::BenchChoice;
 
-/// Number of runs that are looked at, the latest first.
+/// Number of runs that are searched for units, the latest first.
 const MOST: u32 = 200;
 /// Number of units that are offered.
 const SHOWN: usize = 4;
-/// Least height of one, points.
+/// Least height of a unit's button, points.
 const HIGH: f32 = 40.0;
-/// The fault of the demonstration: a check shows it, and its part can be replaced and proved.
+/// Injected fault of the demonstration: a check finds it, and the repair of its part can be proved.
 const DEMONSTRATED: &str = "eb_relay.slow";
 
-/// Units of the history, each with the run that saw it last.
+/// The units of the latest runs, each with its latest run.
 #[derive(Default)]
 pub struct SeenUnits {
     runs: FollowingResponse<(), Vec<RunSummary>>,
 }
 
 impl SeenUnits {
-    /// Shows them while no unit is connected; where none was ever tested, a demonstration is offered.
+    /// Shows the units while no unit is connected; if no unit was ever tested, offers a demonstration.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_up(context);
         if self.runs.items().is_empty() {
@@ -79,7 +79,7 @@ impl SeenUnits {
     }
 }
 
-/// The whole way of a case, on the simulated unit with a fault.
+/// Button that begins a demonstration: a whole case on the simulated unit with an injected fault.
 fn demonstration(ui: &mut Ui, context: &mut PageContext<'_>) {
     let words = &context.words.case;
     ui.add_space(8.0);
@@ -96,7 +96,7 @@ fn demonstration(ui: &mut Ui, context: &mut PageContext<'_>) {
     }
 }
 
-/// A unit can be reached there; a record that was read from a file, or lock step, is no place.
+/// Whether a unit can be reached at this source of a run, unlike a file or lock step.
 fn is_place(source: &str) -> bool {
     source == "sim" || source.starts_with("serial:") || source.starts_with("tcp:")
 }

@@ -1,20 +1,20 @@
-//! Where a case is on its way, and where it goes from there.
+//! The stages of a case, and the stage that follows a run.
 
 use ptu_report::words::Words;
 use ptu_runs::failure::Exit;
 
-/// A place on the way of a case.
+/// A stage of a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
     /// No unit is connected.
     #[default]
     Start,
-    /// The unit is there: what is known of it, and its symptom.
+    /// The unit is connected: its history is shown, and a person chooses its symptom.
     Unit,
     /// A run looks for the part.
     Find,
     Result,
-    /// The repair is written down.
+    /// The repair is recorded.
     Repair,
     /// The part is fitted, and a run shows whether the fault is gone.
     Prove,
@@ -23,7 +23,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// All, in order.
+    /// All stages, in order.
     pub const ALL: [Self; 7] = [
         Self::Start,
         Self::Unit,
@@ -47,12 +47,12 @@ impl Stage {
         }
     }
 
-    /// Where a case is after a run that ended so; `proven` = it proved all repairs before it.
+    /// Stage of a case after a run that ended with `exit`; `proven` = the run proved all earlier repairs.
     pub fn after_run(self, exit: Exit, proven: bool) -> Self {
         match (self, exit) {
             (Self::Find, _) => Self::Result,
             (Self::Prove, Exit::Passed) if proven => Self::Sheet,
-            // The fault is still there, or another one.
+            // The fault is still present, or another fault is.
             (Self::Prove, Exit::Failed) => Self::Result,
             (stage, _) => stage,
         }

@@ -1,4 +1,4 @@
-//! The seven steps beside the page, where each can be gone to, and the strip that says of what the case is.
+//! The seven steps of a case beside the page, each a way to its stage, and the strip that names unit, run and operator.
 
 use eframe::egui::{Align, Layout, RichText, ScrollArea, Ui};
 use egui_material_icons::icons::{ICON_ADD_CIRCLE, ICON_DESCRIPTION, ICON_LOCK};
@@ -14,7 +14,7 @@ use ptu_runs::clock;
 /// Height of a step, and of one in a low window, points.
 const HIGH: [f32; 2] = [64.0, 48.0];
 
-/// Width of the steps in a window of this one, points: numbers alone where it is narrow.
+/// Width of the list of steps for a window of width `screen`, points; a narrow window shows numbers alone.
 pub fn wide(screen: f32) -> f32 {
     match screen {
         narrow if narrow < 1000.0 => 64.0,
@@ -90,7 +90,7 @@ impl CasePage {
         }
     }
 
-    /// Does what was chosen of a result.
+    /// Does the action that was chosen below a result.
     pub(super) fn next(&mut self, way: Next, context: &mut PageContext<'_>) {
         let Some(found) = &self.found else {
             return;
@@ -120,7 +120,7 @@ impl CasePage {
         }
     }
 
-    /// Reason for which this stage cannot be gone to.
+    /// Reason for which a click cannot lead to this stage; none = it can.
     fn blocked(&self, stage: Stage, context: &PageContext<'_>) -> Option<&'static str> {
         let words = &context.words.case;
         let unit = context.units.chosen();
@@ -128,8 +128,8 @@ impl CasePage {
             .found
             .as_ref()
             .is_some_and(|found| found.told.is_failed());
-        // A run that goes on is looked at where it goes on.
-        // A run that is over counts as well until its result is taken, which only these two steps do.
+        // During a run only its own stage is shown. A run that has ended counts as under way until its result is taken,
+        // which happens in the stages Find and Prove alone.
         let takes = matches!(self.stage, Stage::Find | Stage::Prove);
         let runs =
             unit.run_of_case().is_some_and(Progress::is_running) || takes && self.is_over(context);

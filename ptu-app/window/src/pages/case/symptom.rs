@@ -1,4 +1,4 @@
-//! The unit and its symptom: what is known, tiles to choose from, and the search for the part.
+//! The unit and its symptom: the unit's history, tiles of symptoms, and the button that begins the search for the part.
 
 use eframe::egui::Ui;
 use egui_material_icons::icons::ICON_ARROW_FORWARD;
@@ -9,26 +9,26 @@ use crate::{Destination, PageContext, Sizes, Wanted};
 use ptu_report::words::Words;
 use ptu_runs::symptoms::{self, Symptom};
 
-/// Least width and height of a tile, and between two, points.
+/// Least width and height of a tile, and gap between two tiles, points.
 const WIDE: f32 = 230.0;
 const HIGH: f32 = 44.0;
 const GAP: f32 = 8.0;
 
-/// The symptoms of the scripts directory, and the one chosen.
+/// The symptoms in the scripts directory, and the chosen symptom.
 #[derive(Default)]
 pub struct SymptomTiles {
     symptoms: Request<Vec<Symptom>>,
-    /// `Some(None)` = it is not known.
+    /// `None` = nothing chosen yet; `Some(None)` = the symptom is unknown.
     chosen: Option<Option<Symptom>>,
 }
 
 impl SymptomTiles {
-    /// The one chosen, if it is known.
+    /// The chosen symptom; none if unknown or not chosen.
     pub fn symptom(&self) -> Option<Symptom> {
         self.chosen.clone().flatten()
     }
 
-    /// The one chosen, in words.
+    /// The chosen symptom as text.
     pub fn said(&self, words: &Words) -> String {
         match &self.chosen {
             Some(Some(symptom)) => words.content(&symptom.name).into_owned(),
@@ -79,7 +79,7 @@ impl SymptomTiles {
 }
 
 impl SymptomTiles {
-    /// The button that has the part looked for; true when it was clicked.
+    /// The button that begins the search for the part; true when it was clicked.
     pub fn foot(&self, ui: &mut Ui, context: &mut PageContext<'_>) -> bool {
         let words = &context.words.case;
         let may = context.units.chosen().may_run();

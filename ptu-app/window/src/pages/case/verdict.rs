@@ -16,11 +16,11 @@ use ptu_report::words::Case;
 /// Result of a case, as the page tells it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Told {
-    /// A check failed, and this part has.
+    /// A check failed, and the diagnosis found the failed part.
     Part,
-    /// A check failed, and one of few parts has, one of which is likelier than all others.
+    /// A check failed; one of a few parts has failed, the first with a probability over 0.5.
     Few,
-    /// A check failed, and more than one part may have.
+    /// A check failed; more than one part may have failed.
     Unsure,
     /// A check failed, and no part explains it.
     NoPart,
@@ -31,7 +31,7 @@ pub enum Told {
     NoFault,
 }
 
-/// Act of the accent button of a result.
+/// Next action after a result, which the accent button offers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next {
     Repair,
@@ -67,11 +67,11 @@ impl Told {
         matches!(self, Self::Part | Self::Few | Self::Unsure | Self::NoPart)
     }
 
-    /// `all` = every step was run.
+    /// The action to offer first; `all` = every step was run.
     pub fn next(self, all: bool) -> Next {
         match self {
             Self::Part | Self::Few => Next::Repair,
-            // A check by itself is no run of the case.
+            // A single next check is not offered here: its run would not be the run of the case.
             Self::Unsure if !all => Next::WholeSuite,
             Self::Unsure | Self::NoPart => Next::ShowFailed,
             Self::NotAll => Next::WholeSuite,
@@ -136,8 +136,8 @@ mod tests {
     use diagnosis::{Measure, PartProbability};
     use ptu_report::words::Language;
 
-    /// Goal: a diagnosis makes no failed run a sound unit, and no other run a part. Method: every pair of a run's verdict and what
-    /// a diagnosis comes to, against the table of the design.
+    /// Goal: no diagnosis turns a failed run into a sound unit, or names a part after any other run. Method: every pair
+    /// of a run's verdict and a diagnosis's conclusion, against the table of the design.
     #[test]
     fn the_run_decides_and_a_diagnosis_adds_a_part_to_one_that_failed() {
         let words = &Language::English.words().case;

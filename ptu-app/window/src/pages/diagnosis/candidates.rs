@@ -11,7 +11,7 @@ use crate::{Destination, PageContext, Palette};
 use ptu_report::diagnosis::{MOST_PARTS, MOST_REASONS, Possible, probability_of};
 use ptu_report::words::{Diagnosis, fill};
 
-/// List of the possible causes, the likeliest first, and behind it the other faults.
+/// List of the possible causes, the likeliest first; the other faults are shown on demand.
 pub fn ranked(ui: &mut Ui, context: &mut PageContext<'_>, named: &NamedAnswer) {
     let words = &context.words.diagnosis;
     let diagnosis = &named.answer.diagnosis;
@@ -48,7 +48,7 @@ fn at_once<T>(all: &[T]) -> (&[T], &[T]) {
     all.split_at(all.len().min(MOST_REASONS))
 }
 
-/// Parts of the page that are shown on demand.
+/// A part of the page that is shown on demand.
 fn behind_more(
     ui: &mut Ui,
     words: &Diagnosis,
@@ -70,7 +70,7 @@ fn likely(ui: &mut Ui, probability: f64, text: &str) {
     });
 }
 
-/// A part by its likeliest fault, with the probability of the part; or one of the other faults.
+/// A part by its likeliest fault mode; `of_part` = probability of the part, none for one of the other fault modes.
 fn show(
     ui: &mut Ui,
     context: &mut PageContext<'_>,
@@ -82,14 +82,14 @@ fn show(
     ui.horizontal_wrapped(|ui| {
         let probability = of_part.unwrap_or(candidate.probability);
         share_bar(ui, probability, Palette::of(ui).accent);
-        // A share of its own beside the part's name would be a second probability of the part.
+        // The part's name stands only beside its own probability, not beside that of a single fault mode.
         if of_part.is_some() {
             let (part, language) = (candidate.lru.as_str(), context.words.language);
             let name = RichText::new(named.parts.name(part, language));
             ui.label(name.strong().size(17.0));
         }
         ui.label(context.words.fault_text(&candidate.text));
-        // The name of the fault as it is typed on the command line.
+        // The fault mode's name as typed on the command line.
         let typed = RichText::new(&candidate.fault).small();
         ui.label(typed.color(Palette::of(ui).quiet));
     });

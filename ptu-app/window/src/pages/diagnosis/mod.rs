@@ -27,11 +27,11 @@ pub struct DiagnosisPage {
     answer: Request<NamedAnswer>,
 }
 
-/// An answer, what people call the parts, and what the run's traces show.
+/// An answer of the diagnosis, the names of parts, and what the run's traces show.
 pub struct NamedAnswer {
     answer: Answer,
     parts: PartNames,
-    /// Faults that have a trace, each with what was seen.
+    /// Occurrences of faults that have a trace, each with its findings.
     traced: Vec<(RunOccurrence, Findings)>,
 }
 

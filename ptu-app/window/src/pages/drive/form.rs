@@ -10,7 +10,7 @@ use ptu_report::words::Words;
 use ptu_runs::drive::{Fixed, Request, S1, SectionChoice};
 use ptu_runs::failure::Failure;
 
-/// Line with which the command line begins, too.
+/// First choices of the form; they are the defaults of the command line, too.
 const LINE: &str = "line8";
 const SECTION: u16 = 61;
 const TRAIN: &str = "line6";
@@ -64,7 +64,7 @@ impl Default for Form {
 }
 
 impl Form {
-    /// The lists to choose from.
+    /// Draws the lists to choose from.
     pub fn show(&mut self, ui: &mut Ui, words: &Words, offered: &Offered) {
         let said = &words.drive;
         let line = self.line.clone();
@@ -96,7 +96,7 @@ impl Form {
         choose(ui, said.disturbance, &mut self.disturbed, disturbances);
     }
 
-    /// Request for a drive, as the command line makes one.
+    /// Request for a drive, as `ptu drive` would make it.
     pub fn request(&self) -> Result<Request, Failure> {
         let disturbance = self.disturbed.then_some(S1);
         Ok(Request {

@@ -1,5 +1,5 @@
-//! Automatic runs of a whole train on a simulated unit, from station to station: what `ptu drive` does, with its figures and
-//! plots in the window.
+//! Automatic runs of a whole train with a simulated unit, from station to station, as `ptu drive` does them; figures
+//! and plots are shown in the window.
 
 mod form;
 
@@ -19,7 +19,7 @@ use ptu_runs::drive::{Driven, drive_all};
 use ptu_runs::pool::cores;
 use ptu_runs::pool::held;
 
-/// Slot into which the thread that drives puts its results.
+/// Slot into which the thread that computes the drives puts its results.
 type Slot = Arc<Mutex<Option<Vec<Driven>>>>;
 
 #[derive(Default)]
@@ -29,7 +29,7 @@ pub struct DrivePage {
     job: Job,
     driven: Slot,
     sheet: Option<Arc<Results>>,
-    /// Counts sheets: another one is looked at from its top.
+    /// Number of the sheet; a new sheet is shown from its top.
     number: usize,
     pages: Request<Vec<Page>>,
     language: Option<Language>,
@@ -57,7 +57,7 @@ impl DrivePage {
         });
     }
 
-    /// Form of the drive, and the button that begins it; true when it was clicked.
+    /// Form of the drive, and the button that begins it; true when the button was clicked.
     fn form(&mut self, ui: &mut Ui, context: &PageContext<'_>) -> bool {
         let words = context.words;
         let why_not = self.job.is_under_way().then_some(words.drive.under_way);
@@ -75,7 +75,7 @@ impl DrivePage {
         asked
     }
 
-    /// Takes what has come, and has it laid out in the window's language.
+    /// Takes results that have arrived, and has their sheet laid out in the window's language.
     fn poll(&mut self, context: &mut PageContext<'_>) {
         if self.offered.is_idle() {
             self.offered = Request::Pending(context.queries.run(Offered::read));

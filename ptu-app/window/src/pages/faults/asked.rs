@@ -1,4 +1,5 @@
-//! The dialog before faults are closed, or a repair of them is recorded: every fault that goes with one, and what is to be written of it.
+//! The dialog before faults are closed or their repair is recorded: all faults that the change affects, and the
+//! entries to be made.
 
 use eframe::egui::{Grid, RichText, Ui};
 use fault_db::{FaultAction, FaultDetail, FaultState, FaultSummary};
@@ -10,7 +11,7 @@ use ptu_report::words::{Faults, Words, fill};
 /// Width of a field, points.
 const FIELD: f32 = 260.0;
 
-/// Entries that are made before a fault is brought to a state.
+/// Entries of a person before a fault is brought to another state.
 pub struct Asked {
     pub to: FaultState,
     reason: Option<usize>,
@@ -26,7 +27,8 @@ pub enum Chosen {
     Write(String),
 }
 
-/// The faults that go with one to a state, itself first: those of its case that can, and of those that close the ones as far as it.
+/// The fault, and the faults of its case that change to state `to` with it: for a repair all for which it is allowed,
+/// for a closing those in the fault's present state.
 pub fn going_with(detail: &FaultDetail, to: FaultState) -> Vec<&FaultSummary> {
     let state = detail.fault.state;
     let follows = |fault: &&FaultSummary| {
@@ -39,7 +41,7 @@ pub fn going_with(detail: &FaultDetail, to: FaultState) -> Vec<&FaultSummary> {
 }
 
 impl Asked {
-    /// A dialog with a note that is there already.
+    /// A dialog that begins with this note.
     pub fn new(to: FaultState, note: &str) -> Self {
         Self {
             to,
@@ -50,7 +52,7 @@ impl Asked {
         }
     }
 
-    /// Draws it over the page; what was chosen.
+    /// Draws the dialog over the page; the button that was clicked.
     pub fn show(
         &mut self,
         ui: &Ui,
@@ -133,7 +135,7 @@ impl Asked {
         ui.add(field).labelled_by(label.id);
     }
 
-    /// Text to be written down; none while something is missing.
+    /// Text to be stored; none while an entry is missing.
     fn note(&self, said: &Faults, of_verified: bool) -> Option<String> {
         let note = self.note.trim().to_owned();
         if self.to == FaultState::Repaired {

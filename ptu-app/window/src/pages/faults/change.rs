@@ -21,23 +21,23 @@ const TOWARDS: [FaultState; 5] = [
     FaultState::Repaired,
 ];
 
-/// The form, and what becomes of it.
+/// The form for a change, and the change that is being stored.
 #[derive(Default)]
 pub struct Change {
-    /// The fault that is written about.
+    /// The fault that the form is about.
     of: Option<Id>,
     note: String,
     asked: Option<Asked>,
-    /// Answers with the fault that was changed, and when.
+    /// Response: the fault that was changed, and when.
     under_way: Request<Written>,
     /// Change under way, as its button names it.
     what: &'static str,
-    /// Whether what is being recorded takes a closing back, so that no undo is offered for it.
+    /// The change under way withdraws a closing; no undo is offered for a withdrawal.
     takes_back: bool,
 }
 
 impl Change {
-    /// The fault a change of which has just been stored.
+    /// Takes the response: the fault whose change has just been stored.
     pub fn poll(&mut self, context: &mut PageContext<'_>) -> Option<Id> {
         let words = &context.words.faults;
         let changed = self.under_way.take(words.not_changed, context.messages)?;
@@ -52,8 +52,8 @@ impl Change {
         Some(changed.fault)
     }
 
-    /// Shows the changes that the fault's state allows; none while that state is being read again, and none of a
-    /// closed fault that was seen again since.
+    /// Shows the changes that the fault's state allows. `is_stale`: the state is being read again, none is possible.
+    /// `seen_since`: the closed fault was seen again, so its closing cannot be withdrawn.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -68,7 +68,7 @@ impl Change {
             return;
         }
         if self.of != Some(fault.id) {
-            // What was begun about another fault is not meant for this one.
+            // Text typed about another fault is not meant for this one.
             (self.of, self.note, self.asked) = (Some(fault.id), String::new(), None);
         }
         let who = context.settings.operator.trim().to_owned();
@@ -99,7 +99,7 @@ impl Change {
         }
         ui.horizontal_wrapped(|ui| {
             for state in TOWARDS {
-                // Reopening takes the closing back, while nothing rests on that.
+                // Reopening withdraws the closing, as long as nothing recorded later depends on the closing.
                 let reopens = (fault.state, state) == (FaultState::Closed, FaultState::Open);
                 let taken_back = reopens && was_closed_last(detail) && !seen_since;
                 if fault.state.next(FaultAction::towards(state)).is_err() && !taken_back {
@@ -150,7 +150,7 @@ impl Change {
         let was_closed = fault.state == FaultState::Closed;
         self.takes_back = was_closed;
         let undone = words.faults.reopen;
-        // What is typed stays until it is written.
+        // The typed text stays until it is stored.
         let asked = self.asked.as_ref();
         let repair = RepairRecord {
             part: fault.cause().to_owned(),
@@ -174,7 +174,7 @@ impl Change {
     }
 }
 
-/// Whether the last entry of a person is that the fault is closed.
+/// Whether the last entry by a person closed the fault.
 fn was_closed_last(detail: &FaultDetail) -> bool {
     let mut written = detail.events.iter().rev();
     let last = written.find(|event| !event.who.is_empty());

@@ -14,7 +14,7 @@ use ptu_runs::clock;
 
 /// Occurrences shown at most; the command line shows all.
 const MOST: usize = 50;
-/// Where a freeze frame has two signals beside each other, points.
+/// Width from which on a freeze frame has two columns of signals, points.
 const TWO_BESIDE: f32 = 560.0;
 
 /// Name and state of the fault.
@@ -52,7 +52,7 @@ pub fn head(
         ui.label(RichText::new(words.common.unit).color(palette.quiet));
         serial_link(ui, words, &fault.unit_serial, go_to);
     });
-    // The others are lines of text, and nothing to click.
+    // The rows below are text that cannot be clicked, so they are as low as a line of text.
     let target = std::mem::replace(&mut ui.spacing_mut().interact_size.y, 0.0);
     for (what, value) in [
         (words.faults.cause, &*part),
@@ -68,7 +68,7 @@ pub fn head(
     ui.spacing_mut().interact_size.y = target;
 }
 
-/// The part that it points at, the one that it comes from, and how many other faults do.
+/// Text: the part that the fault points at, the part that is its cause, and the number of other faults of that cause.
 fn part(words: &Words, detail: &FaultDetail, parts: &PartNames) -> String {
     let fault = &detail.fault;
     let part = parts.name(&fault.lru, words.language);
@@ -95,7 +95,7 @@ pub fn rest(
 ) {
     ui.separator();
     ui.label(RichText::new(words.faults.what_was_done).strong());
-    // What a run found was not done by anybody, and stands above.
+    // Events from a run's diagnosis are no action of a person, and are shown above.
     let is_finding =
         |event: &&FaultEvent| (event.cause.as_ref()).is_some_and(|of| of.run.is_some());
     let events = detail.history().into_iter();

@@ -1,4 +1,4 @@
-//! Which faults are shown.
+//! The filter of the page Faults.
 
 use fault_db::{FaultState, FaultSummary};
 
@@ -9,17 +9,16 @@ use crate::settings::FaultsQuestion;
 pub struct Filter {
     pub lru: Option<String>,
     pub state: Option<FaultState>,
-    /// Days to look back.
+    /// Days to look back; none = all there is.
     pub days: Option<i64>,
-    /// Something its code, name, part, unit or severity contains.
+    /// Text that a fault's code, name, part, unit or severity contains.
     pub text: String,
-    /// Choice of a bar of the statistics, until it is cleared.
+    /// Faults of a bar of the statistics that was clicked, until the choice is cleared.
     pub of_bar: FaultsOf,
 }
 
 impl Filter {
-    /// Choices of the filter, as they are saved with the unit; the choice of a bar of the
-    /// statistics is not saved.
+    /// Choices of the filter and the unit, to be saved; the choice of a bar of the statistics is not saved.
     pub fn question(&self, unit: Option<&str>) -> FaultsQuestion {
         FaultsQuestion {
             unit: unit.map(str::to_owned),

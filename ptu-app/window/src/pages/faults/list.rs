@@ -35,7 +35,7 @@ pub fn filters(ui: &mut Ui, words: &Words, filter: &mut Filter, history: &Histor
     look_back::look_back_list(ui, words, &mut filter.days);
 }
 
-/// `called` says what people call one of them.
+/// A list from which one value or none is chosen; `called` gives the shown name of a value.
 fn choose<T: Clone + PartialEq>(
     ui: &mut Ui,
     words: &Words,
@@ -48,7 +48,7 @@ fn choose<T: Clone + PartialEq>(
     pick(ui, (what, FIELD), chosen, std::iter::once(any).chain(all));
 }
 
-/// Choice of a bar of the statistics, with a button that clears it.
+/// Shows the filter set by a bar of the statistics, with a button that clears it.
 pub fn of_bar(ui: &mut Ui, words: &Words, filter: &mut Filter, parts: &PartNames) {
     let of = &filter.of_bar;
     let cause = of.cause.as_deref().map(|cause| {
@@ -65,7 +65,7 @@ pub fn of_bar(ui: &mut Ui, words: &Words, filter: &mut Filter, parts: &PartNames
     }
 }
 
-/// The faults; the one that was clicked.
+/// Draws the faults; returns the fault that was clicked.
 pub fn table(
     ui: &mut Ui,
     words: &Words,
@@ -123,7 +123,7 @@ fn of_today<'a>(when: &'a str, today: &str) -> &'a str {
     }
 }
 
-/// The part, what was seen of it last, its cause, the unit and when.
+/// Text: the part, its latest finding, its cause, the unit and the time.
 fn title(fault: &FaultSummary, parts: &PartNames, words: &Words) -> String {
     let mut said = parts.fault(&fault.lru, (&fault.findings, &fault.message), words);
     if fault.cause() != fault.lru {
@@ -145,7 +145,7 @@ fn state_look(state: FaultState, palette: &Palette) -> (MaterialIcon, Color32) {
     }
 }
 
-/// A fault's state.
+/// Draws a fault's state.
 pub fn state_chip(ui: &mut Ui, words: &Words, state: FaultState) {
     let (icon, colour) = state_look(state, &Palette::of(ui));
     chip(ui, (icon, words.fault_state(state)), colour);

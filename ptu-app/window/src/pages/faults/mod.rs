@@ -25,10 +25,10 @@ use ptu_runs::clock;
 
 /// Number of faults that are listed.
 const MOST: u32 = 20_000;
-/// Width of one fault in a window of this one, points; in a narrower one it takes the place of the table.
+/// Least window width, and width of the panel of one fault, points; in a narrower window it replaces the table.
 const DETAIL: [[f32; 2]; 2] = [[1600.0, 440.0], [1100.0, 344.0]];
 
-/// Faults of the history that the filter lets through, and names of their parts.
+/// Faults of the span that the filter asks for, and names of parts.
 struct History {
     faults: Vec<FaultSummary>,
     parts: PartNames,
@@ -37,15 +37,15 @@ struct History {
 #[derive(Default)]
 pub struct FaultsPage {
     filter: Filter,
-    /// Name for a question, as it is typed.
+    /// Name under which the question is to be saved, as typed.
     question: String,
     units: UnitFilter,
-    /// The faults of so many days.
+    /// The faults of the last days; the question is the number of days.
     history: FollowingResponse<Option<i64>, History>,
     chosen: Option<Id>,
     detail: FollowingResponse<Id, FaultDetail>,
     change: Change,
-    /// The detail is being read again because of a change made here: what was offered before may no longer be.
+    /// The detail is being read again after a change made on this page; changes offered before may not be allowed now.
     changed_here: bool,
     /// The log of the chosen unit.
     unit_log: MemoryReader,
@@ -97,7 +97,7 @@ impl FaultsPage {
         };
     }
 
-    /// Asks again when the data or the span are others.
+    /// Reads again when the data, the span or the chosen fault have changed.
     fn keep_up(&mut self, context: &mut PageContext<'_>) {
         let days = (self.filter.days, true);
         self.history.keep_up(days, context, |paths, days| {
@@ -119,7 +119,7 @@ impl FaultsPage {
         self.changed_here &= self.detail.is_stale();
     }
 
-    /// Takes what has been stored, whatever page is in front.
+    /// Takes the response to a change, whichever page is shown.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         if let Some(changed) = self.change.poll(context) {
             self.history.read_again();
@@ -171,7 +171,7 @@ impl FaultsPage {
     }
 
     fn chosen(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
-        // A change by others takes no click away; the store refuses one that it no longer allows.
+        // A change by another program disables no button; the store refuses a change that is no longer allowed.
         let stale = self.changed_here;
         let none = PartNames::default();
         let parts = self
@@ -200,7 +200,7 @@ impl FaultsPage {
     }
 }
 
-/// Whether another fault is the closed one, seen again.
+/// Whether `other` is the closed fault, seen again.
 fn takes_its_place(other: &FaultSummary, closed: &FaultSummary) -> bool {
     let of = |fault: &FaultSummary| (fault.unit_serial.clone(), fault.code, fault.lru.clone());
     other.state != FaultState::Closed && of(other) == of(closed)

@@ -1,4 +1,4 @@
-//! Conclusion of an ended run: its diagnosis, or what it proves of repairs.
+//! Conclusion of an ended run: its diagnosis, or its proof of earlier repairs.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use ptu_runs::stored::findings;
 
 /// Conclusion of an ended run.
 pub struct Concluded {
-    /// The conclusion, or what the run says of repairs before it.
+    /// Conclusion of the diagnosis, or what the run says about earlier repairs.
     pub text: String,
     /// The diagnosis of a run that failed.
     pub answer: Option<Arc<Answer>>,
@@ -21,7 +21,7 @@ pub struct Concluded {
 }
 
 impl ProceduresPage {
-    /// Requests the diagnosis of a run that failed, and of one that passed what it says of repairs.
+    /// Requests the diagnosis of a failed run, or what a passed run says about earlier repairs.
     pub(super) fn conclude(&mut self, context: &PageContext<'_>) {
         self.conclusion.poll();
         self.traced.poll();
@@ -48,7 +48,7 @@ impl ProceduresPage {
                     let conclusion = words.concluded(&answer);
                     let text = match answer.attribute(&store) {
                         Ok(()) => conclusion,
-                        // The part is known all the same.
+                        // The part is told even though it could not be stored as the cause of the faults.
                         Err(failure) => {
                             format!("{conclusion} ({})", words.trouble(&failure.message))
                         }

@@ -34,11 +34,11 @@ use selection::Selection;
 
 /// Least height of the live signals, points.
 const LIVE_LEAST: f32 = 140.0;
-/// Height above the live signals beside their buttons: margins and a space, points.
+/// Height of margins and space above the live signals, without their buttons, points.
 const LIVE_HEADING: f32 = 24.0;
-/// Least height that is left to the run above them, points.
+/// Least height of the run above the live signals, points.
 const RUN_LEAST: f32 = 120.0;
-/// Share of the page that they take until the divider is dragged.
+/// Share of the page's height that the live signals take until the divider is dragged.
 const LIVE_SHARE: f32 = 0.3;
 
 #[derive(Default)]
@@ -50,18 +50,18 @@ pub struct ProceduresPage {
     selection: Option<Selection>,
     parts: Request<PartNames>,
     find: String,
-    /// How what is chosen here is run.
+    /// Settings with which the chosen procedures are run.
     how: RunSettings,
     orders: Vec<PendingOrder>,
-    /// Times everything had been stopped when these were looked at last.
+    /// Count of stops (`Units::stops`) when `orders` were checked last.
     stops: u64,
-    /// Procedures to run as soon as the suite is there, and the number of the unit.
+    /// Run to order as soon as the suite is loaded, and the number of its unit.
     wanted: Option<(Wanted, u64)>,
     shown: ResultsView,
     /// The conclusion of the diagnosis of the last run.
     conclusion: Request<Concluded>,
     concluded: Option<fault_db::Id>,
-    /// Findings of that run's faults, with their traces.
+    /// Findings of the last run's faults, with their traces.
     traced: Request<Vec<(Findings, fault_db::Id)>>,
     note: RunNoteForm,
     plot: Plot,
@@ -69,7 +69,7 @@ pub struct ProceduresPage {
 
 /// An order that is being prepared.
 struct PendingOrder {
-    /// The unit it is for, by its own number.
+    /// Number of the unit that the order is for.
     unit: u64,
     /// The run belongs to the unit's case.
     of_case: bool,
@@ -84,7 +84,7 @@ impl ProceduresPage {
             wide: [300.0, 320.0],
             at_right: false,
         };
-        // Several are chosen in it.
+        // Stays open, because several procedures are chosen one after the other.
         tree.show_open(ui, |ui| self.tree(ui, context));
         CentralPanel::default().show(ui, |ui| {
             self.controls(ui, context);
@@ -98,7 +98,7 @@ impl ProceduresPage {
             let room = ui.available_height();
             let live =
                 context.settings.live_plot && context.units.chosen().phase() != Phase::Offline;
-            // A low window has them at the top of what scrolls.
+            // In a low window the live signals scroll with the run, above it.
             let scrolls = live && room < LIVE_LEAST + RUN_LEAST;
             if live && !scrolls {
                 let panel = Panel::bottom("live signals").resizable(true);
@@ -110,7 +110,7 @@ impl ProceduresPage {
                         live_signals(ui, &mut self.plot, height, context);
                     });
             }
-            // What is said of a run scrolls as one, so that each part of it is reached in a low window.
+            // All parts of a run scroll together, so that each can be reached in a low window.
             ScrollArea::vertical()
                 .id_salt("run")
                 .auto_shrink(false)
@@ -130,7 +130,7 @@ impl ProceduresPage {
         suite.map_or(&[], |suite| &suite.procedures)
     }
 
-    /// Chooses this step and no other.
+    /// Chooses this step alone.
     pub fn choose_step(&mut self, procedure: &str, step: &str) {
         let all = self
             .suite
@@ -142,7 +142,7 @@ impl ProceduresPage {
         }
     }
 
-    /// Something is about to be run.
+    /// A run is about to begin.
     pub fn has_orders(&self) -> bool {
         self.wanted.is_some() || !self.orders.is_empty()
     }
@@ -152,7 +152,7 @@ impl ProceduresPage {
         Some((self.concluded?, &self.conclusion))
     }
 
-    /// Scripts are loaded for the unit's configuration, line and train: again when these change.
+    /// Loads the scripts for the unit's configuration, line and train, again when one of the three changes.
     fn keep_loaded(&mut self, context: &PageContext<'_>) {
         let choice = &context.units.chosen().choice;
         let loaded_for = self.loaded_for.as_ref();
@@ -176,10 +176,10 @@ impl ProceduresPage {
         );
     }
 
-    /// Takes what has come, whatever page is in front.
+    /// Takes responses that have arrived and begins runs, whichever page is shown.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         if self.stops != context.units.stops() || context.settings.is_locked() {
-            // Nothing begins by itself after everything was stopped, nor while no name has been given.
+            // After a stop of all units no ordered run begins by itself, nor while the window is locked.
             self.stops = context.units.stops();
             self.orders.clear();
             self.wanted = None;
@@ -220,7 +220,7 @@ impl ProceduresPage {
         }
     }
 
-    /// `of_case`: the run is one of the case that the unit is in.
+    /// Prepares an order for the unit of number `id`; `of_case`: the unit's case orders the run.
     fn order_of(
         &mut self,
         (id, of_case): (u64, bool),
@@ -252,7 +252,7 @@ impl ProceduresPage {
         });
     }
 
-    /// Begins what is ready, unless something else has taken the bench meanwhile.
+    /// Begins the runs whose orders are ready, unless something else has taken the bench meanwhile.
     fn poll_orders(&mut self, context: &mut PageContext<'_>) {
         let words = &context.words.procedures;
         for mut ordered in std::mem::take(&mut self.orders) {
@@ -291,15 +291,14 @@ impl ProceduresPage {
             ui.label(words.procedures.choose_and_run);
             return;
         };
-        // The text of other scripts would show another line than the one that ran.
+        // Only scripts of the same checksum are shown: in other scripts the wrong line would be marked.
         let suite = self.suite.value();
         let texts = suite.filter(|suite| suite.sha256 == run.scripts_sha256);
         let texts = texts.map(|suite| &suite.texts);
         let answer = present::present(ui, words, run, texts, true);
         let note = (&mut self.note, context.settings.operator.as_str());
         results::after_run(ui, (words, context.queries), run, note, context.go_to);
-        // The conclusion comes later, in a place kept for it, below what is written and clicked
-        // meanwhile.
+        // The conclusion arrives later; it stands below the note and the buttons, so that these do not move.
         let conclusion = match &self.conclusion {
             Request::Ready(concluded) => Some(concluded.text.as_str()),
             Request::Pending(_) => Some(words.common.loading),
@@ -320,14 +319,14 @@ impl ProceduresPage {
     }
 }
 
-/// The chosen signals of the last seconds below the run, as on the page Bench.
+/// Plot of the chosen signals over the last seconds, as on the page Bench.
 fn live_signals(ui: &mut Ui, plot: &mut Plot, height: f32, context: &mut PageContext<'_>) {
     let unit = context.units.chosen();
     let seen = BenchSnapshot::of(&unit.bench);
     let plotted = &mut context.settings.plotted;
     let signals = chosen(plotted);
     plot.take(&unit.bench, &signals);
-    // The panel grows without end if this is less than what is there.
+    // A heading height less than the real one would make the panel grow with each frame.
     let heading = Sizes::of(ui).target + LIVE_HEADING;
     let height = height.max(LIVE_LEAST) - heading;
     plot.show(ui, height, &signals, plotted, (context.words, &seen));

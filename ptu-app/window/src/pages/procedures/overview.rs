@@ -6,7 +6,7 @@ use crate::parts::{progress, progress_text, verdict_chip};
 use crate::{PageContext, Palette};
 use ptu_runs::bench_worker::Phase;
 
-/// A line for each unit when there are several.
+/// Draws a line for each unit, if there are several.
 pub fn overview(ui: &mut Ui, context: &mut PageContext<'_>) {
     if context.units.count() < 2 {
         return;

@@ -18,11 +18,11 @@ pub struct RunSettings {
     pub repeat: u32,
     /// End after the first step that does not pass.
     pub stop_on_fail: bool,
-    /// The run takes as few steps as it takes to find the part.
+    /// Adaptive run: only as many steps as are needed to find the part.
     pub adaptive: bool,
     /// Symptom reported with the unit.
     pub symptom: Option<Symptom>,
-    /// The run that broke off, of which this is the rest.
+    /// The run that broke off, if this run is its rest.
     pub continues: Option<fault_db::Id>,
 }
 
@@ -39,7 +39,7 @@ impl Default for RunSettings {
     }
 }
 
-/// Evaluates the scripts as they are on the disk now, for this unit.
+/// Evaluates the scripts, as they are on the disk now, for this choice of unit.
 ///
 /// # Errors
 /// A file cannot be read, or a chosen file is missing.
@@ -48,7 +48,7 @@ pub fn load(paths: &DataPaths, choice: &BenchChoice) -> Result<Suite, Failure> {
     Suite::load(&paths.scripts, &[], &setup)
 }
 
-/// The suite on the page, and the choice of the unit it was evaluated for.
+/// The suite on the page, and the choice of unit for which it was evaluated.
 #[derive(Clone)]
 pub struct ShownSuite {
     pub suite: Arc<Suite>,
@@ -175,8 +175,8 @@ mod tests {
         order(paths, choice, unit, &selection, how, shown).expect("prepared")
     }
 
-    /// Goal: what was shown is what is run. Method: an order from unchanged files, then from each kind of file
-    /// changed on the disk, then for a unit on another line.
+    /// Goal: the procedures that were shown are run. Method: an order from unchanged files, then from each kind of
+    /// file changed on the disk, then for a unit on another line.
     #[test]
     fn the_shown_procedures_are_run_unless_one_of_their_files_has_changed() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! The current step: what it waits for, its prompt, its script line and its measurements.
+//! The current step of a run: what the step waits for, its prompt, its script line and its measurements.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -13,13 +13,13 @@ use crate::{Palette, Sizes};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Progress, RunPosition};
 
-/// Height of the bar of a run, points.
+/// Height of the progress bar of a run, points.
 const BAR: f32 = 8.0;
-/// Lines shown before and after the script's present one.
+/// Script lines shown before the current line, and after it (end excluded).
 const AROUND: Range<u32> = 2..5;
 
-/// Progress of the run, and the step under way, with the text of its script if there is one, or without the script's
-/// path for an operator; what the operator answers.
+/// Shows the progress of the run and the current step, with its script line (`texts`) and the procedure's
+/// id (`with_path`); returns the operator's answer to a prompt.
 pub fn present(
     ui: &mut Ui,
     words: &Words,
@@ -125,7 +125,7 @@ fn prompt(ui: &mut Ui, words: &Words, present: &RunPosition) -> Option<bool> {
             ui.label(RichText::new(words.procedures.asked).color(warn).small());
             ui.label(RichText::new(&prompt.what).size(17.0));
             ui.horizontal(|ui| {
-                // Evidence: no key and no colour suggests it.
+                // The answer is evidence: no key and no colour suggests one.
                 for (text, yes) in [(words.procedures.yes, true), (words.procedures.no, false)] {
                     if place.clicked(&Face::new(Look::Secondary, text).show(ui)) {
                         answer = Some(yes);

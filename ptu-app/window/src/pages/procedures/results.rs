@@ -24,7 +24,7 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::{Progress, outside_place};
 use ptu_runs::run::CHECK_FAILED;
 
-/// Lines shown before and after a step's.
+/// Script lines shown before a step's line, and after it (end excluded).
 const AROUND: Range<u32> = 1..4;
 /// Room for the button that leads to a trace, points.
 const TO_TRACE: f32 = 50.0;
@@ -37,7 +37,7 @@ pub struct ResultsView {
     chosen: Option<(usize, usize)>,
 }
 
-/// Ways on from a run that is over, and what `who` has to say about it.
+/// Buttons that lead on from an ended run, and the field for a note on the run by `who`.
 pub fn after_run(
     ui: &mut Ui,
     (words, queries): (&Words, &QueryWorker),
@@ -46,7 +46,7 @@ pub fn after_run(
     go_to: &mut Vec<Destination>,
 ) {
     let Some(id) = run.id() else { return };
-    // A name of its own: what comes and goes above takes neither the focus nor a click away.
+    // An id of its own: widgets that come and go above take neither the focus nor a click away.
     let named = UiBuilder::new().scope_id(Id::unique(("after run", id)));
     let row = |ui: &mut Ui| {
         let found = !run.faults.is_empty() || run.not_passed > 0;
@@ -62,7 +62,7 @@ pub fn after_run(
     ui.scope_builder(named, |ui| ui.horizontal_wrapped(row));
 }
 
-/// Steps that did not pass, or all, and faults.
+/// Shows the faults and the steps: those that did not pass, or all.
 pub fn results(
     ui: &mut Ui,
     (words, parts): (&Words, &PartNames),
@@ -107,7 +107,7 @@ pub fn results(
     faults(ui, (words, parts), run);
 }
 
-/// A line of the table: a procedure, or the place of one of its results.
+/// A line of the table: index of a procedure, and for a result its index and itself; without a result a heading.
 type Line<'a> = (usize, Option<(usize, &'a StepResult)>);
 
 fn table(
@@ -163,7 +163,7 @@ fn columns(words: &Words) -> [Column<'static>; 6] {
     ]
 }
 
-/// The procedure of the rows that follow.
+/// Heading of a procedure, above the rows of its results.
 fn group(ui: &mut Ui, procedure: &Procedure, words: &Words) {
     let size = vec2(ui.available_width(), Table::high(ui));
     let quiet = Palette::of(ui).quiet;
@@ -175,7 +175,7 @@ fn group(ui: &mut Ui, procedure: &Procedure, words: &Words) {
     });
 }
 
-/// The trace that shows a step of the run's procedure of this place.
+/// The trace that shows a step of the run's procedure at index `procedure`.
 fn trace_of(
     run: &Progress,
     procedure: usize,
@@ -191,7 +191,7 @@ fn trace_of(
     )
 }
 
-/// A result, with the value that decided it, or what was found where none did.
+/// Row of a result, with the value that decided the verdict, or else the finding.
 fn row(
     ui: &mut Ui,
     words: &Words,
@@ -300,7 +300,7 @@ pub fn measurements(ui: &mut Ui, words: &Words, measured: &[Measurement]) {
     });
 }
 
-/// The script around a line, which is marked; an operator reads no source.
+/// Shows the script around a marked line, in an engineer's window only.
 pub fn source(
     ui: &mut Ui,
     texts: Option<&BTreeMap<String, String>>,

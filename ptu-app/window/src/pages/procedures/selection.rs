@@ -17,12 +17,12 @@ pub enum Share {
     All,
 }
 
-/// Whether a connection can do a procedure: one of a bench needs its harness.
+/// Whether a procedure can run over a connection: a procedure for the bench needs the bench's harness.
 pub fn possible(procedure: &Procedure, connection: Connection) -> bool {
     procedure.needs.lacks(connection).is_none()
 }
 
-/// Chosen steps by name, by procedure, so that they stay chosen when scripts are loaded again.
+/// Names of the chosen steps of each procedure; names stay valid when scripts are loaded again.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Selection(BTreeMap<String, BTreeSet<String>>);
 
@@ -39,7 +39,7 @@ impl Selection {
         usual
     }
 
-    /// Procedures that show whether a repair of `part` holds: these, and those that suspect the part somewhere.
+    /// Procedures that show whether a repair of `part` holds: the failed ones, and those with a step that suspects it.
     pub fn proof(
         procedures: &[Arc<Procedure>],
         connection: Connection,
@@ -59,7 +59,7 @@ impl Selection {
         proof
     }
 
-    /// One step of a procedure; nothing if there is none of that name.
+    /// One step of a procedure; nothing if the procedure has no step of this name.
     pub fn only(procedure: &Procedure, step: &str) -> Self {
         let mut only = Self::default();
         if let Some(place) = procedure.steps.iter().position(|known| known.name == step) {
@@ -68,8 +68,8 @@ impl Selection {
         only
     }
 
-    /// Rest of a run that broke off: of the procedure under way the broken-off step and the steps after it, as the
-    /// procedure is set up again, and all procedures still to come.
+    /// Rest of a run that broke off: from the procedure under way, which is set up again, the broken-off step and the
+    /// steps after it; and all procedures still to come.
     pub fn rest(run: &Progress) -> Self {
         let mut rest = Self::default();
         for of in &run.procedures {
@@ -139,7 +139,7 @@ impl Selection {
         }
     }
 
-    /// Tasks of the choice, in order; procedures of which nothing is chosen are left out.
+    /// Tasks for the chosen steps, in order; procedures without a chosen step are left out.
     pub fn tasks(
         &self,
         procedures: &[Arc<Procedure>],
@@ -162,7 +162,7 @@ impl Selection {
         procedures.iter().filter_map(task).collect()
     }
 
-    /// Chosen steps and their worst-case time, each once.
+    /// Number of chosen steps, and their worst-case time without repetition.
     pub fn extent(&self, procedures: &[Arc<Procedure>]) -> (usize, Duration) {
         procedures
             .iter()
@@ -175,7 +175,7 @@ impl Selection {
             })
     }
 
-    /// Places of a procedure's chosen steps.
+    /// Indices of a procedure's chosen steps.
     fn places(&self, procedure: &Procedure) -> Vec<usize> {
         (0..procedure.steps.len())
             .filter(|place| self.has(procedure, *place))

@@ -16,7 +16,7 @@ use crate::request::Request;
 use crate::{PageContext, Palette};
 use ptu_report::words::{Words, fill};
 
-/// Act on the whole tree.
+/// Action on the whole tree.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Choice {
     All,
@@ -37,7 +37,7 @@ impl ProceduresPage {
                 (Choice::All, said.all),
                 (Choice::None, said.none),
             ];
-            // Before the procedures are loaded there is nothing to choose from.
+            // Before the procedures are loaded, only reloading is offered.
             let offered = match self.suite {
                 Request::Ready(_) => &all[..],
                 _ => &all[..1],
@@ -123,7 +123,7 @@ fn show_folder(
         });
 }
 
-/// A procedure that this connection cannot do: why it would be skipped.
+/// Shows a procedure that needs a harness, which this connection lacks: it would be skipped.
 fn show_skipped(ui: &mut Ui, words: &Words, procedure: &Procedure) {
     let said = format!("{}: {}", words.title(procedure), words.common.skipped);
     let text = RichText::new(said);
@@ -139,7 +139,7 @@ fn show_procedure(ui: &mut Ui, words: &Words, procedure: &Procedure, chosen: &mu
     let id = ui.make_persistent_id(&procedure.id);
     collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, false)
         .show_header(ui, |ui| {
-            // What is on request stands at the end, and the title is cut before it.
+            // "On request" stands at the right end; a long title is cut before it.
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if procedure.on_request {
                     let said = RichText::new(words.procedures.on_request).small();
@@ -169,7 +169,7 @@ fn show_procedure(ui: &mut Ui, words: &Words, procedure: &Procedure, chosen: &mu
         });
 }
 
-/// A box for something of which a part may be chosen.
+/// A checkbox with a third state: chosen in part.
 fn tick(ui: &mut Ui, share: Share, text: RichText) -> Response {
     let mut on = share == Share::All;
     ui.add(Checkbox::new(&mut on, text).indeterminate(share == Share::Some))
@@ -184,7 +184,7 @@ fn matches(procedure: &Procedure, find: &str) -> bool {
         || procedure.steps.iter().any(|step| has(&step.name))
 }
 
-/// Seconds as `3:07`.
+/// Seconds as minutes and seconds, like `3:07`.
 pub fn minutes(seconds: f64) -> String {
     let seconds = seconds.round().max(0.0) as u64;
     format!("{}:{:02}", seconds / 60, seconds % 60)

@@ -8,7 +8,7 @@ use crate::{PageContext, Wanted};
 use ptu_report::words::fill;
 
 impl ProceduresPage {
-    /// The scripts are those of the run that broke off.
+    /// Whether the scripts are still those of the run that broke off.
     pub fn goes_on(&self, context: &PageContext<'_>) -> bool {
         let suite = self.suite.value();
         let waiting = context.units.chosen().waiting_run();
@@ -18,7 +18,7 @@ impl ProceduresPage {
         same.unwrap_or_default()
     }
 
-    /// Runs this on the chosen unit; a step only if the unit is the one that the step is meant for.
+    /// Orders this run on the chosen unit; a step only if it is meant for that unit.
     pub fn want(&mut self, wanted: Wanted, context: &mut PageContext<'_>) {
         let chosen = context.units.chosen();
         if let Wanted::Step { unit, .. } = &wanted {
@@ -35,7 +35,7 @@ impl ProceduresPage {
         self.keep_loaded(context);
     }
 
-    /// Runs what another page asked for, once the suite is there; what is chosen here stays chosen.
+    /// Orders the run that another page asked for, once the suite is loaded; the selection on this page stays.
     pub(super) fn run_wanted(&mut self, context: &mut PageContext<'_>) {
         let Some(suite) = self.suite.value() else {
             return;
@@ -77,7 +77,7 @@ impl ProceduresPage {
                 (Selection::usual(all, connection), String::new())
             }
             Wanted::Rest => {
-                // Another unit does not continue the run.
+                // The rest is not run on another unit.
                 let Some((rest, continued)) = rest else {
                     return;
                 };

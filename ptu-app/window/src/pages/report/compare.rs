@@ -1,4 +1,4 @@
-//! The run that the shown one is compared with, chosen among those of its unit.
+//! Choice of a second run of the same unit, with which the shown run is compared.
 
 use eframe::egui::Ui;
 use fault_db::{Id, RunSummary};
@@ -14,14 +14,14 @@ const MOST: usize = 50;
 
 #[derive(Default)]
 pub struct ComparedWith {
-    /// The run it was chosen for, and the two in the order in which they were made.
+    /// The run to compare, and it and the chosen run, the earlier first.
     chosen: Option<(Id, [Id; 2])>,
     /// Steps that passed in both runs are shown, too.
     all: bool,
 }
 
 impl ComparedWith {
-    /// The sheet to show of this run: alone, or beside the one chosen for it.
+    /// The sheet of this run alone, or of its comparison with the run chosen for it.
     pub fn sheet_of(&self, run: Id) -> SheetOf {
         match self.chosen {
             Some((of, [before, after])) if of == run => SheetOf::Compared {
@@ -33,7 +33,7 @@ impl ComparedWith {
         }
     }
 
-    /// The choice, beside the sheet that is shown.
+    /// Draws the list from which the second run is chosen.
     pub fn show(&mut self, ui: &mut Ui, words: &Words, of: SheetOf, runs: &RunList) {
         let run = match (of, self.chosen) {
             (SheetOf::Compared { .. }, Some((run, _))) => run,

@@ -9,10 +9,10 @@ use ptu_report::run::{CaseSheet, RunComparison};
 use ptu_report::{self, Target};
 use ptu_runs::failure::Failure;
 
-/// Endings a typed name may have; the one of the format asked for takes its place.
+/// Extensions that a typed name may have; the extension of the chosen format replaces them.
 const ENDINGS: [&str; 3] = [".html", ".pdf", ".csv"];
 
-/// A name for this sheet, in the folder of the file named before.
+/// Proposed path for this sheet, in the folder of the file `before`.
 pub fn named_after(of: SheetOf, before: &str) -> String {
     let folder = Path::new(before.trim()).parent();
     let folder = folder.map_or_else(usual_folder, Path::to_path_buf);
@@ -25,7 +25,7 @@ pub fn named_after(of: SheetOf, before: &str) -> String {
     folder.join(name).to_string_lossy().into_owned()
 }
 
-/// Typed path, with this ending and from the root; none if the field is empty.
+/// Typed path, made absolute, with this extension; none if the field is empty.
 pub fn with_ending(typed: &str, ending: &str) -> Option<PathBuf> {
     let typed = typed.trim();
     let lower = typed.to_ascii_lowercase();
@@ -36,7 +36,7 @@ pub fn with_ending(typed: &str, ending: &str) -> Option<PathBuf> {
     named.then(|| std::path::absolute(&path).unwrap_or(path))
 }
 
-/// Writes the report of a run or a case to the file wanted, or beside it if that is there already; which it was.
+/// Writes the report to the file `wanted`, or under a similar name if that file exists; returns the file's path.
 ///
 /// # Errors
 /// The file cannot be written, or the database not be read.

@@ -24,25 +24,25 @@ pub use sheet_of::SheetOf;
 #[derive(Default)]
 pub struct ReportPage {
     runs: RunList,
-    /// The sheet asked for, and the one shown until that is there.
+    /// The requested sheet, and the sheet shown until the requested one has arrived.
     asked: Request<Shown>,
     shown: Option<Shown>,
     asked_for: Option<Asked>,
-    /// Version of the data it was asked for.
+    /// Version of the data at the request.
     version: (usize, u64),
-    /// When the page was last shown, in passes of the window.
+    /// Number of the window's drawing pass in which the page was last shown.
     pass: u64,
     /// Language of the sheet; none = the window's.
     language: Option<Language>,
     file: String,
     writing: Request<PathBuf>,
-    /// The file written last of the run that is shown.
+    /// File to which the shown sheet was written last.
     written: Option<PathBuf>,
     note: RunNoteForm,
     with: ComparedWith,
 }
 
-/// Data of a sheet besides the stored ones.
+/// Choice of a sheet: what it is of, its language and its depot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Asked {
     of: SheetOf,
@@ -55,7 +55,7 @@ struct Shown {
     pages: Vec<Page>,
     /// Traces of the run, each with the faults it shows.
     traces: Vec<(Id, String)>,
-    /// Something in it did not pass.
+    /// A step did not pass, or the run has faults.
     faulty: bool,
 }
 
@@ -84,7 +84,7 @@ impl ReportPage {
         self.ask(SheetOf::Run(run), context);
     }
 
-    /// This sheet, without the list of runs.
+    /// Shows this sheet, without the list of runs.
     pub fn show_one(&mut self, of: SheetOf, ui: &mut Ui, context: &mut PageContext<'_>) {
         self.keep_up(ui, context, Some(of));
         if self.shown.is_some() {
@@ -93,8 +93,8 @@ impl ReportPage {
         self.sheet(ui, context);
     }
 
-    /// Asks when another run is to be shown, and again when something may have been added to this one:
-    /// the data have changed, or the page was away.
+    /// Requests the sheet of another run, and the same sheet again when something may have been added to it: the data
+    /// have changed, or the page was not shown for a while.
     fn keep_up(&mut self, ui: &Ui, context: &PageContext<'_>, of: Option<SheetOf>) {
         let pass = ui.ctx().cumulative_pass_nr();
         let away = pass > self.pass + 1;
@@ -159,7 +159,7 @@ impl ReportPage {
         }));
     }
 
-    /// The run that is shown or will be, alone or as the end of a case.
+    /// The run of the requested sheet: alone, or the last run of a case.
     fn run(&self) -> Option<Id> {
         self.asked_for.as_ref().map(|asked| asked.of.run())
     }
@@ -177,7 +177,7 @@ impl ReportPage {
         self.language.unwrap_or(context.words.language)
     }
 
-    /// Takes what has come, whatever page is in front.
+    /// Takes responses that have arrived, whichever page is shown.
     pub fn poll(&mut self, context: &mut PageContext<'_>) {
         if self.asked.poll() {
             match std::mem::take(&mut self.asked) {

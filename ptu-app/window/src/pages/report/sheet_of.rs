@@ -5,12 +5,12 @@ use fault_db::Id;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SheetOf {
     Run(Id),
-    /// A fault's case, after this run.
+    /// The case of a fault, up to this run.
     Case {
         fault: Id,
         run: Id,
     },
-    /// Two runs of a unit; with what passed in both, if wanted.
+    /// Comparison of two runs of a unit; `all` = with the steps that passed in both.
     Compared {
         before: Id,
         after: Id,
@@ -19,7 +19,7 @@ pub enum SheetOf {
 }
 
 impl SheetOf {
-    /// The run it ends with.
+    /// The run of the sheet; of several the last.
     pub fn run(self) -> Id {
         match self {
             Self::Run(run) | Self::Case { run, .. } | Self::Compared { after: run, .. } => run,

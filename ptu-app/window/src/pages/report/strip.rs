@@ -1,4 +1,4 @@
-//! The strip beside the sheet: its language, what it is compared with, ways on, a note, and files.
+//! The strip beside the sheet: its language, the run to compare with, links, a note, and files.
 
 use eframe::egui::{Label, Popup, RichText, ScrollArea, Ui};
 use egui_material_icons::icons::{
@@ -15,7 +15,7 @@ use crate::request::Request;
 use crate::{Destination, PageContext, Palette};
 use ptu_report::words::{Language, Words, fill};
 
-/// Files that can be written; the first is the main button.
+/// File types that can be written; the first has the main button.
 const ENDINGS: [(Look, &str); 3] = [
     (Look::Primary, ".pdf"),
     (Look::Secondary, ".html"),
@@ -52,7 +52,7 @@ impl ReportPage {
         });
     }
 
-    /// Writes and prints it, in one row.
+    /// Draws the buttons that write the sheet, in one row, and below them the written file.
     pub(super) fn files(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         ui.horizontal(|ui| {
@@ -79,7 +79,7 @@ impl ReportPage {
         }
     }
 
-    /// File that was written, with buttons to see and to print it.
+    /// The written file, with a button to open it, for reading or printing.
     fn open_written(&self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = &context.words.report;
         let Some(path) = &self.written else { return };

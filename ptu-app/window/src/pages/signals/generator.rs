@@ -1,4 +1,4 @@
-//! The generator: a code or TWC with level and noise, how it looks, and the orders to save or play it.
+//! The generator: a speed code or TWC frame with level and noise, a sketch of it, and buttons to save or play it.
 
 use std::sync::Arc;
 
@@ -14,13 +14,13 @@ use ptu_report::signal::sketch;
 use ptu_report::words::Words;
 use ptu_runs::signal::{self, SAMPLE_HZ, Strength, Wave};
 
-/// Room for the value beside a slider, points.
+/// Width for the value beside a slider, points.
 const VALUE: f32 = 72.0;
 /// Length of the sketched waveform, s.
 const SKETCHED_S: f64 = 0.5;
 /// Height of the sketch, points.
 const SKETCH: f32 = 320.0;
-/// Longest code, s, and most bytes.
+/// Longest duration of a speed code, s, and most bytes of a TWC frame.
 const LONGEST_S: f64 = 600.0;
 const MOST_BYTES: usize = 200;
 const SEED: u64 = 1;
@@ -52,7 +52,7 @@ impl Default for Generator {
     }
 }
 
-/// Act on the waveform that was made.
+/// Action on the generated waveform.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Order {
     Save,
@@ -66,7 +66,7 @@ pub struct GeneratedSignal {
 }
 
 impl Generator {
-    /// The orders, of which playing comes first; what is ordered.
+    /// Draws the buttons, play first; returns the waveform with the action that was chosen.
     pub fn orders(
         &self,
         ui: &mut Ui,

@@ -21,14 +21,14 @@ use ptu_runs::sound::{self, DeviceFound};
 
 struct Offered {
     unit: Arc<UnitConfig>,
-    /// Devices for sound, or why there are none.
+    /// Sound devices, or why they cannot be listed.
     devices: Result<Vec<DeviceFound>, Trouble>,
 }
 
 #[derive(Default)]
 pub struct SignalsPage {
     offered: Request<Offered>,
-    /// A waveform is made, and none read.
+    /// The page generates a waveform instead of reading one.
     makes: bool,
     source: Source,
     generator: Generator,

@@ -1,5 +1,4 @@
-//! View of a recording: detected signals as a list, and below them the pictures of a channel, as in the
-//! report.
+//! View of a recording: list of detected signals, and below it the pictures of one channel, as in the report.
 
 use std::sync::{Arc, Mutex};
 
@@ -18,11 +17,11 @@ use ptu_report::signal as report;
 use ptu_report::words::{Language, Words, fill};
 use ptu_runs::signal::{Picture, Reading};
 
-/// Most rows of what was heard.
+/// Most rows of detected signals.
 const MOST: usize = 200;
 /// Number of drawings in view at once.
 const IN_VIEW: f32 = 3.0;
-/// The bar by which they are scrolled, points.
+/// Width of the scroll bar beside the drawings, points.
 const BAR: f32 = 16.0;
 
 /// Reading of a file or recording, with a picture of each channel.
@@ -34,7 +33,7 @@ pub struct Seen {
 /// Slot into which a thread that reads or records puts its latest picture.
 pub type Slot = Arc<Mutex<Option<Seen>>>;
 
-/// Shown reading, and its channel.
+/// The reading that is shown, and the chosen channel.
 #[derive(Default)]
 pub struct View {
     seen: Option<Seen>,
@@ -42,7 +41,7 @@ pub struct View {
     drawn: Option<Drawn>,
 }
 
-/// The drawings of a channel in a language and with so much room for each, and the picture of their cells.
+/// Drawings of a channel, made for a language and a size of each drawing, and the picture of their cells.
 struct Drawn {
     of: (usize, Language, Vec2),
     drawings: (Page, f32),
@@ -80,7 +79,7 @@ impl Drawn {
 }
 
 impl View {
-    /// Takes what is to be shown from now on.
+    /// Takes a reading, which is shown from now on.
     pub fn take(&mut self, seen: Seen) {
         self.channel = self.channel.min(seen.pictures.len().saturating_sub(1));
         self.seen = Some(seen);
@@ -135,7 +134,7 @@ impl View {
     }
 }
 
-/// List of detected signals; a narrow table goes without what is seldom looked at.
+/// List of detected signals; a narrow table leaves out columns of less use.
 fn heard(ui: &mut Ui, reading: &Reading, words: &Words) {
     let [channel, from, to, kind, what, carrier, rate, level, snr] = report::heads(words);
     let number = |name, wide| Column::new(name, wide).right();

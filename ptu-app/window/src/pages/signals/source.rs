@@ -1,4 +1,4 @@
-//! Sources to open, record, save or play: a file, a device, and the work on them.
+//! Opens, records, saves and plays waveforms: the choice of file and device, and the work on them.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -20,10 +20,10 @@ use ptu_runs::sound::{
     self, CHANNELS, Calibrations, DeviceFound, Direction, Lead, SAMPLE_HZ, Side,
 };
 
-/// While it is recorded the picture is made again after so many samples: twice a second.
+/// Number of samples after which the picture is made again during a recording: half a second.
 const AGAIN: usize = SAMPLE_HZ as usize / 2;
 
-/// The file and the devices that are chosen.
+/// The chosen file and devices.
 pub struct Source {
     file: String,
     input: String,
@@ -42,7 +42,7 @@ impl Default for Source {
     }
 }
 
-/// Act on the file.
+/// Action on the file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Asked {
     Open,
@@ -50,7 +50,7 @@ pub enum Asked {
 }
 
 impl Source {
-    /// The file, and the device that plays or is recorded.
+    /// Draws the fields for the file, and for the device that plays (`plays`) or records.
     pub fn fields(
         &mut self,
         ui: &mut Ui,
@@ -100,7 +100,7 @@ impl Source {
         asked
     }
 
-    /// Reads or records, and puts how it looks into the slot.
+    /// Begins to read or record, and puts the pictures into the slot.
     pub fn begin(
         &self,
         asked: Asked,
@@ -169,7 +169,7 @@ impl Source {
         });
     }
 
-    /// Saves or plays what the generator makes.
+    /// Begins to save or play the generated waveform.
     pub fn begin_made(
         &self,
         made: GeneratedSignal,
@@ -237,7 +237,7 @@ fn name(channel: Side) -> &'static str {
     }
 }
 
-/// Channels that nobody has calibrated.
+/// Note that names the channels without a calibration, if there are any.
 fn uncalibrated(
     known: &Calibrations,
     device: &str,

@@ -1,4 +1,4 @@
-//! A measured value over time with its control limits: of one unit value by value, of all units day by day.
+//! Control chart: a measured value over time with control limits; each value of one unit, or all units day by day.
 
 use eframe::egui::{
     Align2, FontId, Rect, RichText, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
@@ -20,17 +20,17 @@ use ptu_report::words::{Words, fill};
 use ptu_runs::clock;
 use ptu_runs::failure::Failure;
 
-/// Height of the chart, and room for the values beside it, points.
+/// Height of the chart, and width for the values at its axis, points.
 const HIGH: f32 = 170.0;
 const GUTTER: f32 = 56.0;
-/// Room for what is said of the lines.
+/// Width for the names of the lines, points.
 const BESIDE: f32 = 130.0;
 const DOT_RADIUS: f32 = 2.5;
 /// Widths of the lists of measurements and of steps, points.
 const NAMES: f32 = 160.0;
 const STEPS: f32 = 240.0;
 
-/// Choices, and the trend of the chosen measurement.
+/// Measurements and steps to choose from, and the trend of the chosen measurement.
 struct Known {
     names: Vec<String>,
     steps: Vec<TrendStep>,
@@ -39,13 +39,13 @@ struct Known {
 
 #[derive(Default)]
 pub struct ControlChart {
-    /// Choice of a person.
+    /// The measurement and step that a person chose.
     pub of: Measured,
     known: FollowingResponse<(Measured, Asked), Known>,
 }
 
 impl ControlChart {
-    /// Asks again when the data or what is asked for are others.
+    /// Reads again when the data or the choice have changed.
     pub fn keep_up(&mut self, asked: Asked, context: &PageContext<'_>) {
         let wanted = ((self.of.clone(), asked), true);
         self.known.keep_up(wanted, context, read);
@@ -111,7 +111,7 @@ fn read(paths: &DataPaths, (of, asked): (Measured, Asked)) -> Result<Known, Fail
     Ok(known)
 }
 
-/// The measurement, and the step that measures it.
+/// Lists from which the measurement and its step are chosen.
 fn choose(ui: &mut Ui, words: &Words, of: &mut Measured, known: &Known) {
     let said = &words.statistics;
     let mut name = of.measurement.clone();
@@ -132,7 +132,7 @@ fn choose(ui: &mut Ui, words: &Words, of: &mut Measured, known: &Known) {
     pick(ui, (words.common.step, STEPS), &mut of.step, steps);
 }
 
-/// Mean and control limits, and capability.
+/// Text: mean, control limits and capability.
 fn summary(words: &Words, trend: &Trend) -> String {
     let said = &words.statistics;
     let Some(process) = &trend.process else {
@@ -158,7 +158,7 @@ fn summary(words: &Words, trend: &Trend) -> String {
     text.join(". ")
 }
 
-/// Signs that chance does not explain, and the day on which a limit will be crossed.
+/// Texts: patterns that chance does not explain, and the day on which a limit is expected to be crossed.
 fn signs(words: &Words, trend: &Trend) -> Vec<String> {
     let said = &words.statistics;
     let Some(process) = &trend.process else {
@@ -178,7 +178,7 @@ fn signs(words: &Words, trend: &Trend) -> Vec<String> {
     text
 }
 
-/// The values as dots, those beyond control marked; mean, control limits and limits as lines.
+/// Draws the values as dots, those beyond the control limits marked; mean, control limits and limits as lines.
 fn chart(ui: &mut Ui, words: &Words, trend: &Trend) {
     let samples = trend.course.samples();
     let size = vec2(ui.available_width(), HIGH);
@@ -233,7 +233,7 @@ fn chart(ui: &mut Ui, words: &Words, trend: &Trend) {
             true => painter.extend(Shape::dashed_line(&[from, to], stroke, 4.0, 4.0)),
             false => drop(painter.line_segment([from, to], stroke)),
         }
-        // Names of two lines that are close would be written over each other.
+        // A name too close to an earlier one is left out, or the two would overlap.
         if named.iter().all(|other| (other - y).abs() > TEXT) {
             let text = fill(name, &[("n", &short(level))]);
             let at = to + vec2(8.0, 0.0);

@@ -1,4 +1,4 @@
-//! Counts of the history, made by the query thread.
+//! Counts of the fault history, computed on the query thread.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -33,13 +33,13 @@ pub struct Counted {
     pub all: FaultStat,
     /// Faults by month, the oldest first.
     pub months: Vec<Month>,
-    /// Distances of trains in the months, or why they cannot be read; none for a single unit.
+    /// Distances that the trains ran in each month, or why they cannot be read; none for a single unit.
     pub on_the_way: Option<Result<BTreeMap<String, OnTheWay>, Trouble>>,
     pub parts: PartNames,
 }
 
 impl Counted {
-    /// The answers of `ptu faults stats` and of `ptu faults stats --by month`.
+    /// Counts as `ptu faults stats` and `ptu faults stats --by month` do.
     pub fn read(paths: &DataPaths, asked: Asked) -> Result<Self, Failure> {
         let parts = PartNames::of(&paths.scripts);
         let mut counted = Self {
@@ -83,7 +83,7 @@ impl Counted {
     }
 }
 
-/// Whether the history has this unit; a new unit has nothing to count.
+/// Whether the history has this unit; true without a unit.
 pub fn is_known(store: &Store, unit: Option<&str>) -> Result<bool, Failure> {
     let Some(unit) = unit else { return Ok(true) };
     Ok(store.known_units()?.iter().any(|known| known == unit))

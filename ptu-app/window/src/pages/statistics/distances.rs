@@ -1,4 +1,4 @@
-//! Faults for each 10 000 km by month, and the file with the odometer readings they are computed of.
+//! Faults for each 10 000 km by month, and the file of odometer readings from which they are computed.
 
 use std::collections::BTreeMap;
 
@@ -13,14 +13,14 @@ use crate::{PageContext, Palette};
 use ptu_report::fault_months::{Month, OnTheWay};
 use ptu_report::words::{Words, fill};
 
-/// The file, as it is typed.
+/// Path of the file, as typed.
 #[derive(Default)]
 pub struct DistancesFile {
     typed: Option<String>,
 }
 
 impl DistancesFile {
-    /// The chart, and the field below it; true when the file is to be read again.
+    /// Draws the chart, and below it the field for the file; true when the file is to be read again.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -57,7 +57,7 @@ impl DistancesFile {
     }
 }
 
-/// The month whose bar was clicked.
+/// Draws the chart; returns the month whose bar was clicked.
 fn chart<'a>(
     ui: &mut Ui,
     words: &Words,

@@ -1,4 +1,4 @@
-//! The figures of all causes together, each with what it is computed of.
+//! The figures of all causes together, each with the counts from which it is computed.
 
 use eframe::egui::{RichText, Ui};
 use fault_db::FaultStat;
@@ -13,7 +13,7 @@ const LEAST_DAYS: f64 = 7.0;
 /// Least width of a card in an engineer's window, points.
 const LEAST_WIDE: f32 = 175.0;
 
-/// A card each: as many in a row as there is room for.
+/// Draws a card for each figure, as many in a row as there is room for.
 pub fn figures(ui: &mut Ui, words: &Words, all: &FaultStat) {
     let said = &words.statistics;
     let n = |number: u32, text: &str| fill(text, &[("n", &number)]);
@@ -63,12 +63,12 @@ fn figure(ui: &mut Ui, name: &str, value: &str, of: &str) {
     });
 }
 
-/// The units were there for so many days that their faults tell how often they come.
+/// The units were observed for at least [`LEAST_DAYS`], so that a mean time between faults says something.
 fn observed(all: &FaultStat, mtbf_days: f64) -> bool {
     mtbf_days * f64::from(all.faults) >= LEAST_DAYS
 }
 
-/// A length of time in the unit that fits.
+/// A time as text, in minutes, hours or days, whichever fits.
 fn length(words: &Words, days: Option<f64>) -> String {
     let said = &words.statistics;
     match days {

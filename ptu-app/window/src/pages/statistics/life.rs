@@ -1,4 +1,4 @@
-//! The life of a unit, a train or a part, by its serial number.
+//! The history of a unit, a train or a part, by its serial number.
 
 use eframe::egui::{Grid, Key, RichText, ScrollArea, TextWrapMode, Ui};
 use egui_material_icons::icons::{ICON_ARROW_BACK, ICON_SEARCH};
@@ -16,7 +16,7 @@ use ptu_runs::clock;
 /// Width of the field, points.
 const FIELD: f32 = 190.0;
 
-/// The search field, and the lives that were found.
+/// The search field, and the histories that were found.
 #[derive(Default)]
 pub struct LifeView {
     typed: String,
@@ -26,13 +26,13 @@ pub struct LifeView {
 }
 
 impl LifeView {
-    /// Shows the life of what has this serial number.
+    /// Shows the history of the unit, train or part with this serial number.
     pub fn open(&mut self, serial: &str) {
         serial.clone_into(&mut self.typed);
         self.of = typed(serial);
     }
 
-    /// The field, and the button.
+    /// Draws the search field and its button.
     pub fn search(&mut self, ui: &mut Ui, words: &Words) {
         let field = find_edit(ui, &mut self.typed, words.life.search, FIELD);
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
@@ -43,7 +43,7 @@ impl LifeView {
         }
     }
 
-    /// Draws it in place of the statistics; false if no serial number is asked for.
+    /// Draws the history in place of the statistics; false if no serial number was entered.
     pub fn show(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) -> bool {
         let Some(serial) = self.of.clone() else {
             return false;
@@ -88,7 +88,7 @@ fn show(
     ui.label(RichText::new(words.life.stored).strong());
     let count = life.events.len();
     rows(ui, ui.spacing().interact_size.y, count, |ui, range| {
-        // The latest first, as every list has it.
+        // The latest first, as in every list.
         for entry in life.events.iter().rev().skip(range.start).take(range.len()) {
             row(ui, (words, parts), (life.of, entry), go_to);
         }
@@ -155,7 +155,7 @@ fn row(
         ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
         let said = life::happened(entry, words, parts);
         let row = ui.selectable_label(false, &said);
-        // Longer than the row.
+        // The tooltip has the whole text, which may be longer than the row.
         if row.on_hover_text(said).clicked() {
             go_to.extend(to);
         }

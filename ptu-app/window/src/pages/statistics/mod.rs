@@ -27,7 +27,7 @@ use ptu_report::words::{Words, fill};
 const MOST_CAUSES: usize = 10;
 /// Number of months that are shown, the last ones.
 const MOST_MONTHS: usize = 24;
-/// A page narrower than this has the charts one above the other, points.
+/// Page width below which the charts stand one above the other, points.
 const BESIDE: f32 = 900.0;
 
 #[derive(Default)]
@@ -39,9 +39,9 @@ pub struct StatisticsPage {
     pub life: life::LifeView,
     control: control::ControlChart,
     distances: distances::DistancesFile,
-    /// Months are compared by what the trains ran in them.
+    /// The chart by month shows faults per distance run, not counts.
     by_distance: bool,
-    /// Name for a question, as it is typed.
+    /// Name under which the question is to be saved, as typed.
     question: String,
 }
 
@@ -83,7 +83,7 @@ impl StatisticsPage {
         }
     }
 
-    /// Figures, causes, and beside them months.
+    /// Draws the figures, the chart of causes, and beside it the chart of months.
     fn charts(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let words = context.words;
         let said = &words.statistics;
@@ -144,7 +144,7 @@ impl StatisticsPage {
         }
     }
 
-    /// Questions that were given a name.
+    /// Draws the saved questions; a click on one asks it.
     fn questions(&mut self, ui: &mut Ui, context: &mut PageContext<'_>) {
         let now = StatisticsQuestion {
             days: self.days,
@@ -157,14 +157,14 @@ impl StatisticsPage {
         }
     }
 
-    /// Asks again when the data, the span or the unit are others.
+    /// Counts again when the data, the span, the unit or the file of distances have changed.
     fn keep_up(&mut self, context: &PageContext<'_>) {
         let asked = Asked {
             unit: self.units.taken.as_deref().map(str::to_owned),
             days: self.days,
             distances: context.settings.distances.clone(),
         };
-        // Counts of another unit are not shown as this one's meanwhile.
+        // The counts of another question are not shown while the new ones are read.
         (self.counted).keep_up((asked.clone(), false), context, Counted::read);
         self.control.keep_up(asked, context);
     }

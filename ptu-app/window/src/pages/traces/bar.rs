@@ -11,12 +11,12 @@ use crate::{PageContext, Palette, Sizes};
 use ptu_report::trace_view::{Axis, Cursor, Kind, TracePlot};
 use ptu_report::words::{Traces, fill};
 
-/// Least width of the toolbar in which its buttons have words, in heights of a letter.
+/// Least width of the toolbar in which its buttons have words, multiples of the font size.
 const WORDS: f32 = 62.0;
-/// Factor of one zoom.
+/// Factor of one zoom step.
 pub const ZOOM: f64 = 0.7;
 
-/// True if there is room for words.
+/// Draws axis, zoom and cursors; true if there is room for words on the buttons.
 pub fn view(
     ui: &mut Ui,
     scene: &mut TracePlot,
@@ -84,7 +84,7 @@ pub fn view(
     roomy
 }
 
-/// Distance by which the train's place was moved back to fit the axis of distances.
+/// Shows, on an axis of distance, how far the train moved backward; its rows then lie at the farthest point.
 pub fn moved_back(ui: &mut Ui, scene: &TracePlot, words: &Traces) {
     if let Axis::Distance {
         rows_back, back_m, ..
@@ -103,12 +103,12 @@ pub fn moved_back(ui: &mut Ui, scene: &TracePlot, words: &Traces) {
     }
 }
 
-/// A place on the axis, as `−9.55 s`.
+/// A row's value on the axis as text, like `−9.55 s`.
 pub fn place(scene: &TracePlot, row: usize) -> String {
     length(scene, scene.axis.at(row))
 }
 
-/// A length on the axis.
+/// A length on the axis as text, s or m.
 pub fn length(scene: &TracePlot, length: f64) -> String {
     let text = match scene.axis.kind() {
         Kind::Time => format!("{length:.2} s"),

@@ -1,4 +1,4 @@
-//! Chooses the trace shown behind: that of a good unit, or another trace with an offset.
+//! Choice of the trace behind: the trace of the good twin, another trace or a file, with an offset.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -15,11 +15,11 @@ use ptu_report::naming::DOT;
 use ptu_report::trace_view::{FirstDifference, Overlay, OverlaySource, OverlayTrace, TracePlot};
 use ptu_report::words::fill;
 
-/// Traces offered to compare with.
+/// Most traces offered for comparison.
 const OFFERED: usize = 100;
-/// Width of the box in which one is chosen, points.
+/// Width of the box in which the trace is chosen, points.
 const CHOICE: f32 = 110.0;
-/// Lanes shown of those that deviate.
+/// Most deviating signals of which lanes are shown.
 const DEVIATING: usize = 12;
 
 #[derive(Default)]
@@ -30,7 +30,7 @@ pub struct OverlayRequest {
 }
 
 impl OverlayRequest {
-    /// Takes what has come, and asks where the traces part when that is not known.
+    /// Takes responses that have arrived, and requests where the traces deviate while that is unknown for this offset.
     pub fn poll(&mut self, scene: &mut TracePlot, context: &mut PageContext<'_>) {
         if self.overlay.poll() {
             match std::mem::take(&mut self.overlay) {
@@ -70,22 +70,22 @@ impl OverlayRequest {
         }
     }
 
-    /// Asks for the good twin behind the trace.
+    /// Requests the good twin's trace behind the shown one.
     pub fn ask_twin(&mut self, scene: &mut TracePlot, context: &PageContext<'_>) {
         self.ask(Some(OverlaySource::Twin), scene, context);
     }
 
-    /// Asks for a file behind the trace.
+    /// Requests the trace in a file behind the shown one.
     pub fn ask_file(&mut self, file: &Path, scene: &mut TracePlot, context: &PageContext<'_>) {
         self.ask(Some(OverlaySource::File(file.into())), scene, context);
     }
 
-    /// The trace to compare with is being made or read.
+    /// Whether the trace behind is being made or read.
     pub fn is_pending(&self) -> bool {
         matches!(self.overlay, Request::Pending(_))
     }
 
-    /// Chooses what the trace is compared with: nothing, a sound twin, or another trace.
+    /// Draws the choice of the trace behind: none, the good twin, a file, or another trace.
     pub fn bar(
         &mut self,
         ui: &mut Ui,
@@ -120,7 +120,7 @@ impl OverlayRequest {
         }
     }
 
-    /// Result of the comparison, and its offset.
+    /// Draws the result of the comparison, and the field for the offset.
     pub fn said(&self, ui: &mut Ui, scene: &mut TracePlot, context: &mut PageContext<'_>) {
         if self.is_pending() {
             ui.spinner();

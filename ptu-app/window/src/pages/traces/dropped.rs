@@ -1,4 +1,4 @@
-//! A file that is dropped on the page: what can be read is laid behind the open trace.
+//! A file that is dropped on the page: a readable trace is shown behind the open one.
 
 use std::path::PathBuf;
 
@@ -8,10 +8,10 @@ use crate::messages::told;
 use crate::{PageContext, Palette};
 use ptu_report::trace_io::is_importable;
 
-/// Size of what is said while a file is over the page, points.
+/// Font size of the text that is shown while a file is over the page, points.
 const TEXT: f32 = 22.0;
 
-/// The file that was dropped here and can be read; what cannot is told.
+/// The dropped file, if it can be read; a message tells about others.
 pub fn file(ui: &Ui, context: &mut PageContext<'_>) -> Option<PathBuf> {
     let words = &context.words.traces;
     let (over, mut dropped) = ui.input(|input| {

@@ -15,11 +15,11 @@ use ptu_report::words::Words;
 
 /// Size of a flag, points.
 pub const FLAG: f32 = 14.0;
-/// Height of the strip above the lanes.
+/// Height of the strip above the lanes, points.
 pub const STRIP: f32 = 34.0;
 /// Rows of names in the strip.
 const ROWS: usize = 2;
-/// Links shown at most; a fault that comes every second would fill the page.
+/// Most links shown; a fault that occurs every second would fill the page.
 const LINKS: usize = 40;
 
 /// Events of the trace, each a link to its place.
@@ -46,7 +46,7 @@ pub fn links(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
     });
 }
 
-/// Flags in the strip, with lines down through the lanes; the cursors above all.
+/// Draws flags of events in the strip, with lines down through the lanes; the cursors' flags lie over the others.
 pub fn flags(painter: &Painter, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
     let Sheet {
         scene,
@@ -66,12 +66,12 @@ pub fn flags(painter: &Painter, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
             Some(_) => palette.bad,
         };
         painter.vline(x, strip.top()..=lanes.bottom(), Stroke::new(1.0, colour));
-        // A name that would lie over another one is left out; the links have them all.
+        // A name that would cover another one is left out; the links show all names.
         if let Some(row) = free.iter().position(|free| x > *free) {
             let y = strip.top() + row as f32 * STRIP / ROWS as f32;
             let at = pos2(x + 3.0, y);
             let font = FontId::proportional(lane::TEXT);
-            // The part alone; the links say the rest.
+            // Only the name of the part; the link has the whole text.
             let name = name(event, words).split(DOT).next().unwrap_or_default();
             let text = painter.text(at, Align2::LEFT_TOP, name, font, colour);
             free[row] = text.right() + 6.0;
@@ -100,7 +100,7 @@ pub fn flags(painter: &Painter, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
     }
 }
 
-/// A square with a letter or a number in it; returns its place.
+/// Draws a square with a letter or a number in it; returns its area.
 pub fn flag(painter: &Painter, corner: Pos2, text: &str, ground: Color32, ink: Color32) -> Rect {
     let flag = Rect::from_min_size(corner, vec2(FLAG, FLAG));
     painter.rect_filled(flag, 2.0, ground);

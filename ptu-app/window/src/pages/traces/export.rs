@@ -17,18 +17,18 @@ use ptu_report::trace_view::{Kind, TracePlot};
 use ptu_report::words::fill;
 use ptu_runs::new_file::{NewFile, cannot_write};
 
-/// Choice of the export, and its work.
+/// File name of the export, and exports under way.
 #[derive(Default)]
 pub struct Export {
-    /// Path without its ending.
+    /// Path without extension.
     pub name: String,
-    /// The window's picture, the part of it wanted, and its pixels per point.
+    /// Screenshot of the window that was requested, the part of it to save, and its pixels per point.
     picture: Option<(Receiver<Arc<ColorImage>>, Rect, f32)>,
     writing: Vec<Pending<PathBuf>>,
 }
 
 impl Export {
-    /// The menu that saves; `rect` is what the picture is of.
+    /// The menu that saves; `rect` = part of the window for the picture.
     pub fn bar(
         &mut self,
         ui: &mut Ui,
@@ -50,13 +50,13 @@ impl Export {
         let edit = edit.on_hover_text(words.file_name);
         let named = !self.name.trim().is_empty();
         if ui.add_enabled(named, Button::new(words.save_png)).clicked() {
-            // What has the keyboard is not part of the picture.
+            // The text cursor is not to be part of the picture.
             edit.surrender_focus();
             ui.close();
             let (sender, receiver) = mpsc::channel();
             let wake = context.queries.wake.clone();
             ui.ctx().request_screenshot(move |image| {
-                // Another trace may have been opened since.
+                // The receiver is gone if another trace was opened meanwhile.
                 let _ = sender.send(image);
                 wake();
             });
@@ -122,13 +122,13 @@ impl Export {
     }
 }
 
-/// The usual name for what is exported of a trace.
+/// Proposed path for exports of a trace, without extension.
 pub fn usual_name(id: Id) -> String {
     let file = usual_folder().join(format!("trace-{}", id.short()));
     file.display().to_string()
 }
 
-/// The name with this ending, which may have been typed with it.
+/// The name with this extension, added unless it was typed.
 fn with_ending(name: &str, ending: &str) -> PathBuf {
     let name = name.trim();
     let name = name.strip_suffix(&format!(".{ending}")).unwrap_or(name);

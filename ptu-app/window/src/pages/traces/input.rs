@@ -6,13 +6,13 @@ use super::bar::ZOOM;
 use crate::parts::lane;
 use ptu_report::trace_view::{Cursor, TracePlot};
 
-/// Zoom for one point of the wheel.
+/// Zoom for one point of wheel movement.
 const WHEEL: f64 = 0.005;
-/// Share of the view one press of an arrow moves.
+/// Share of the view by which one press of an arrow key moves it.
 const PAN: f64 = 0.1;
-/// A stretch shorter than this share of the view was a click.
+/// Least stretch to zoom to, as a share of the view; a shorter one counts as a click.
 const SHORTEST: f64 = 0.01;
-/// A cursor nearer than that to the pointer is taken along.
+/// Distance from the pointer within which a cursor is dragged along, points.
 const NEAR: f32 = 6.0;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -20,7 +20,7 @@ pub enum Drag {
     #[default]
     View,
     Cursor(Cursor),
-    /// A stretch to zoom to, from this place of the axis on.
+    /// A stretch to zoom to, which begins at this value of the axis.
     Stretch(f64),
 }
 
@@ -90,12 +90,12 @@ pub fn pointer(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot, 
     }
 }
 
-/// A click that was made with Shift, whatever the keyboard did since.
+/// Whether this is a release of the pointer's button with Shift held at that moment.
 fn shifted_click(event: &Event) -> bool {
     matches!(event, Event::PointerButton { pressed: false, modifiers, .. } if modifiers.shift)
 }
 
-/// Keys, unless something else has the keyboard.
+/// Acts on keys, unless another widget has the keyboard focus.
 pub fn keys(ui: &Ui, response: &Response, rect: Rect, scene: &mut TracePlot) {
     let filter = EventFilter {
         horizontal_arrows: true,

@@ -1,16 +1,16 @@
-//! Where the parts of the picture are, from left to right: names, lanes, and values under the cursors.
+//! Horizontal positions of the columns of a trace view: names, lanes, and values at the cursors.
 
 use eframe::egui::{Rect, Ui};
 
-/// Room for names left of the lanes, and for the values beside their axes.
+/// Widths left of the lanes: names, and values beside the axes, points.
 const NAMES: f32 = 150.0;
 pub const TICKS: f32 = 52.0;
-/// Room for a value under a cursor.
+/// Width of a column of values, points.
 const VALUE: f32 = 92.0;
-/// Narrowest lanes.
+/// Least width of the lanes, points.
 const NARROWEST: f32 = 50.0;
 
-/// Where the parts of the picture are, from left to right.
+/// Horizontal positions of the columns, points.
 #[derive(Clone, Copy)]
 pub struct LaneColumns {
     /// Left edge of the names.
@@ -24,7 +24,7 @@ pub struct LaneColumns {
 }
 
 impl LaneColumns {
-    /// Where the values of a column are, at the height of `beside`.
+    /// Area of a value in this column of values, at the height of `beside`.
     pub fn value(&self, column: usize, beside: Rect) -> Rect {
         let right = self.right + (column + 1) as f32 * VALUE;
         Rect::from_x_y_ranges(right - VALUE + 6.0..=right - 2.0, beside.y_range())

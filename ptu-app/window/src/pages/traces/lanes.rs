@@ -1,4 +1,4 @@
-//! The lanes: names and values at their sides, curves in the middle, the shared axis below.
+//! The lanes of a trace: names at the left, curves in the middle, values at the right, the shared axis below.
 
 use eframe::egui::{
     Align2, CursorIcon, FontId, Painter, Pos2, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind,
@@ -20,7 +20,7 @@ use ptu_runs::clock;
 
 /// Layout that painting keeps from one frame to the next.
 pub struct LaneCache {
-    /// Where the lanes with all around them were painted.
+    /// Area in which the lanes with names, values and axis were painted.
     pub rect: Rect,
     drag: Drag,
     scratch: Scratch,
@@ -37,7 +37,7 @@ impl Default for LaneCache {
 }
 
 impl LaneCache {
-    /// Shows them in all the room there is.
+    /// Shows the lanes in all the available room.
     pub fn lanes(&mut self, ui: &mut Ui, scene: &mut TracePlot, notes: &TraceNotes, words: &Words) {
         let palette = Palette::of(ui);
         let all = ui.available_rect_before_wrap();
@@ -101,7 +101,7 @@ impl LaneCache {
         lane::x_axis(&painter, below, scene.window(), unit, &palette);
     }
 
-    /// One above the other; only those in view are painted.
+    /// Draws the lanes one above the other; only lanes in view are painted.
     fn stack(&mut self, ui: &mut Ui, sheet: &Sheet<'_>, middle: Rect) {
         let right = ui.max_rect().right();
         let whole = Rect::from_x_y_ranges(sheet.places.names..=right, middle.y_range());
@@ -124,8 +124,7 @@ impl LaneCache {
     }
 }
 
-/// Name of the shown trace, and in grey of the trace behind it, for a picture kept without the
-/// window.
+/// Names of the shown trace and, in grey, of the trace behind it, so that an exported picture tells what it shows.
 fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
     let opened = &sheet.scene.opened;
     let line = |row: f32, text: String, colour| {
@@ -149,7 +148,7 @@ fn title(painter: &Painter, sheet: &Sheet<'_>, strip: Rect) {
     }
 }
 
-/// Values at the right, under the cursors or else under the pointer: heads, and rows of the values.
+/// Headings of the value columns at the right, and the rows whose values they show: at the cursors, else the pointer.
 fn told(scene: &TracePlot, pointer_row: Option<usize>) -> (Vec<String>, [Option<usize>; 2]) {
     let at = |row: usize| bar::place(scene, row);
     match [Cursor::A, Cursor::B].map(|cursor| scene.cursor(cursor)) {

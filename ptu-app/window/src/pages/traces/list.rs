@@ -14,20 +14,20 @@ use ptu_report::trace_view::listing::{self, ListedRun, ListedTrace, RUNS};
 use ptu_report::words::{Words, fill};
 use ptu_runs::stored::from_stored;
 
-/// The list's own state.
+/// The list and its filters.
 #[derive(Default)]
 pub struct TraceList {
     runs: FollowingResponse<(), Vec<ListedRun>>,
     filter: String,
     units: UnitFilter,
-    /// Runs and traces that fit the filter; computed again when either changes.
+    /// Rows that fit the filter: index of a run, and of one of its traces; none = the run's heading.
     shown: Vec<(usize, Option<usize>)>,
-    /// The run record of the chosen unit.
+    /// Button that reads the run record of the chosen unit.
     unit_record: MemoryReader,
 }
 
 impl TraceList {
-    /// Shows it; the trace that was clicked, and its run.
+    /// Shows the list; returns the trace that was clicked, and its run.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -61,7 +61,7 @@ impl TraceList {
         }
         let mut clicked = None;
         ui.style_mut().wrap_mode = Some(TextWrapMode::Truncate);
-        // Both kinds of row are as tall, or scrolling would jump.
+        // Rows of runs and of traces have the same height, or scrolling would jump.
         let height = super::ROW;
         ui.spacing_mut().interact_size.y = height;
         ScrollArea::vertical().auto_shrink(false).show_rows(
@@ -95,7 +95,7 @@ impl TraceList {
         Some((run.traces.first()?.id, run.id))
     }
 
-    /// Unit and date of a run; unknown ones are empty.
+    /// Unit and date of a run; empty for an unknown run.
     pub fn whose(&self, run: Option<Id>) -> (&str, &str) {
         let mut runs = self.runs.items().iter();
         let found = runs.find(|listed| Some(listed.id) == run);
@@ -110,7 +110,7 @@ impl TraceList {
             .flat_map(|run| run.traces.iter().map(move |trace| (run, trace)))
     }
 
-    /// Asks when it was not asked yet, and when the data have changed since.
+    /// Reads the list at first, and again when the data have changed.
     pub fn keep_up(&mut self, context: &PageContext<'_>) {
         if self.runs.keep_up(((), true), context, |paths, ()| {
             listing::list(&paths.read()?, &PartNames::of(&paths.scripts))

@@ -38,9 +38,9 @@ use ptu_runs::failure::Trouble;
 use record_comparison::RecordComparison;
 pub use small::SmallTrace;
 
-/// Height of a row of controls.
+/// Height of a row of controls, points.
 const ROW: f32 = 28.0;
-/// Between two of the toolbar, points.
+/// Gap between two controls of the toolbar, points.
 const BETWEEN: f32 = 4.0;
 
 #[derive(Default)]
@@ -54,7 +54,7 @@ pub struct TracesPage {
     notes: TraceNotes,
     painted: LaneCache,
     find_signal: String,
-    /// Name for a layout, as it is typed.
+    /// Name under which the layout is to be saved, as typed.
     layout_name: String,
     choosing: bool,
     told: bool,
@@ -72,7 +72,7 @@ impl TracesPage {
         };
         self.list.keep_up(context);
         let clicked = list.show(ui, |ui| self.list.show(ui, context, chosen));
-        // The latest trace is what most people come for.
+        // Without a choice the latest trace is opened: most people want that one.
         let nothing = self.scene.is_none() && self.opening.is_idle();
         if let Some((id, run)) = clicked.or_else(|| self.list.latest().filter(|_| nothing)) {
             self.read(id, Some(run), context);
@@ -137,7 +137,7 @@ impl TracesPage {
             }
             return;
         };
-        // Words stand on one line with what they name.
+        // Labels are as high as controls, so that both stand on one line.
         ui.spacing_mut().interact_size.y = ROW;
         let rect = self.painted.rect;
         ui.horizontal_wrapped(|ui| {
@@ -177,12 +177,12 @@ impl TracesPage {
     }
 }
 
-/// A trace that cannot be opened, and why, in one sentence.
+/// Text: the trace cannot be opened, and the reason.
 fn cannot_open(why: &Trouble, words: &Words) -> String {
     [words.traces.cannot_open, &*words.trouble(why)].join(": ")
 }
 
-/// Whose trace it is, what is amiss with it, and ways on from here.
+/// Heading: unit and time of the trace, a warning if something is wrong with it, and links to other pages.
 fn heading(ui: &mut Ui, scene: &TracePlot, list: &TraceList, context: &mut PageContext<'_>) {
     let words = context.words;
     let opened = &scene.opened;

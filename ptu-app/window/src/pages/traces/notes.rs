@@ -1,4 +1,4 @@
-//! Notes at places of the trace: a list, a flag at each place, and the field for one at cursor A.
+//! Notes at places of the trace: a list, a flag at each place, and a field for a new note at cursor A.
 
 use eframe::egui::{Rect, RichText, Sense, Stroke, Ui, pos2};
 use fault_db::{Id, TracePlace};
@@ -25,7 +25,7 @@ pub struct TraceNotes {
 }
 
 impl TraceNotes {
-    /// Reads them for another trace, after one was added, and when the database has changed.
+    /// Reads the notes when another trace is open, a note was added, or the database has changed.
     pub fn poll(&mut self, trace: Id, context: &mut PageContext<'_>) {
         let words = context.words;
         if self.form.poll(words, context.messages).is_some() {
@@ -37,7 +37,7 @@ impl TraceNotes {
             });
     }
 
-    /// The list, each a way to its place, and the field for another one where cursor A is.
+    /// The list of notes, each a link to its place, and the field for a new note at cursor A.
     pub fn bar(&mut self, ui: &mut Ui, scene: &mut TracePlot, context: &mut PageContext<'_>) {
         let words = context.words;
         let quiet = Palette::of(ui).quiet;
@@ -75,7 +75,7 @@ impl TraceNotes {
         });
     }
 
-    /// A flag with the note's number at each place in view; its tooltip says the note.
+    /// A flag with the note's number at each place in view; the tooltip has the text of the note.
     pub fn flags(&self, ui: &Ui, strip: Rect, lanes: Rect, sheet: &Sheet<'_>) {
         let ink = sheet.palette.ink;
         let ground = ui.visuals().window_fill;
@@ -89,7 +89,7 @@ impl TraceNotes {
             }
             let line = Stroke::new(1.0, ink);
             ui.painter().vline(x, strip.bottom()..=lanes.bottom(), line);
-            // Beside the flag of a cursor at the same place.
+            // To the right, so that a cursor's flag at the same place stays visible.
             let corner = pos2(x + FLAG / 2.0 + 1.0, strip.bottom() - FLAG);
             let flag = events::flag(ui.painter(), corner, &number.to_string(), ink, ground);
             let id = ui.scope_id().with(("note on the trace", number));
@@ -99,7 +99,7 @@ impl TraceNotes {
     }
 }
 
-/// The row at its time, if the trace has it.
+/// The row at the note's time, if the trace reaches that far.
 fn row_of(note: &TraceNote, view: &TraceView) -> Option<usize> {
     let data = &view.data();
     let rows = note.time_us.div_euclid(data.period_us);
@@ -107,7 +107,7 @@ fn row_of(note: &TraceNote, view: &TraceView) -> Option<usize> {
     usize::try_from(row).ok().filter(|row| *row < data.rows())
 }
 
-/// All of a note, with who wrote it.
+/// The whole note, with time and author.
 fn whole(note: &TraceNote) -> String {
     format!("{} · {}: {}", note.time(), note.who, note.text)
 }

@@ -1,4 +1,4 @@
-//! A run of a unit's own record beside what it should have been: the button, and what it found.
+//! Comparison of a run in a unit's run record with its target and a sound unit's run: the button, and the result.
 
 use eframe::egui::Ui;
 use fault_db::Id;
@@ -17,7 +17,7 @@ pub struct RecordComparison {
 }
 
 impl RecordComparison {
-    /// A button for a trace that is of a unit's run record, and what was found.
+    /// Draws the button, for a trace from a unit's run record, and the result.
     pub fn bar(&mut self, ui: &mut Ui, scene: &TracePlot, context: &mut PageContext<'_>) {
         let opened = &scene.opened;
         if self.of != Some(opened.id) {
@@ -27,7 +27,7 @@ impl RecordComparison {
             };
         }
         let has = |name: &str| opened.view.data().column(name).is_some();
-        // A bench records every signal, a unit its own target and no limit.
+        // A unit's run record has its target and no limit; a bench's trace has every signal.
         if !has("target") || has("limit") {
             return;
         }

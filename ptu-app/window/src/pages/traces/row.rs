@@ -16,7 +16,7 @@ use ptu_report::trace_view::{
 };
 use ptu_report::words::Words;
 
-/// Heights of lanes as usual.
+/// Usual heights of lanes, points.
 const QUANTITY: f32 = 74.0;
 const CHOICE: f32 = 26.0;
 const BIT: f32 = 24.0;
@@ -24,24 +24,24 @@ const BIT: f32 = 24.0;
 const TWO: f32 = 1.7;
 /// Greatest height of a quantity where there is room, as a multiple of the usual one.
 const TALLEST: f32 = 2.0;
-/// Height of a name among several in a lane.
+/// Height of one signal's line in a lane of several signals, points.
 const LINE: f32 = 28.0;
-/// Between lanes.
+/// Gap between lanes, points.
 pub const GAP: f32 = 4.0;
 
-/// Everything from which lanes are painted.
+/// The trace, layout and colours from which lanes are painted.
 pub struct Sheet<'a> {
-    /// The trace as it is looked at.
+    /// The trace, with its lanes and the visible span.
     pub scene: &'a TracePlot,
-    /// Where the parts of the picture are.
+    /// Horizontal positions of names, curves and values.
     pub places: LaneColumns,
-    /// Rows whose values are told.
+    /// Rows whose values are shown: at the cursors, or else at the pointer.
     pub rows: [Option<usize>; 2],
     pub words: &'a Words,
     pub palette: &'a Palette,
 }
 
-/// Room that every lane uses again.
+/// Buffers that each lane uses again, so that no memory is allocated for it.
 #[derive(Default)]
 pub struct Scratch {
     own: Edges,
@@ -50,7 +50,7 @@ pub struct Scratch {
     spans: Vec<Span>,
 }
 
-/// A signal with where its rows lie.
+/// A signal of one of the two traces, with the axis on which its rows lie.
 #[derive(Clone, Copy)]
 struct Source<'a> {
     view: &'a TraceView,
@@ -59,7 +59,7 @@ struct Source<'a> {
 }
 
 impl Scratch {
-    /// Finds the first rows of the columns of pixels, which all lanes share.
+    /// Finds the first row of each column of pixels; all lanes share these.
     pub fn edges(&mut self, scene: &TracePlot, width: f32) {
         let columns = width.round().max(1.0) as usize;
         scene.axis.edges(scene.window(), columns, &mut self.own);
@@ -70,13 +70,13 @@ impl Scratch {
 }
 
 impl Sheet<'_> {
-    /// Heights of all lanes; where there is room, quantities take it.
+    /// Heights of all lanes; lanes of quantities take the room that is left.
     pub fn heights(&self, room: f32) -> Vec<f32> {
         let groups = self.scene.groups();
         let lanes = &self.scene.lanes;
         let first = |group: &Range<usize>| &lanes[group.start];
         let height = |group: &Range<usize>| {
-            // Each name in it has a line.
+            // Each name in the group has a line.
             self.height(first(group)).max(group.len() as f32 * LINE)
         };
         let mut heights: Vec<f32> = groups.iter().map(height).collect();
@@ -170,7 +170,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// The signal at this place of the trace.
+    /// The signal at this index of the trace.
     fn own(&self, place: usize) -> Source<'_> {
         Source {
             view: self.scene.view(),
@@ -179,7 +179,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// This signal in the trace behind.
+    /// The signal of this name in the trace behind.
     fn other(&self, signal: &str) -> Option<Source<'_>> {
         let behind = self.scene.behind.as_ref()?;
         let view = &behind.overlay.view;
@@ -190,7 +190,7 @@ impl Sheet<'_> {
         })
     }
 
-    /// Curves on one axis, as long as all of them need.
+    /// Curves on one axis, whose range covers all of them.
     fn quantities(
         &self,
         ui: &Ui,
@@ -229,7 +229,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// The trace behind a state would hide its text, so it is drawn below.
+    /// Draws a state in the upper half and that of the trace behind in the lower: one over the other hides the text.
     fn two_states(
         &self,
         ui: &Ui,
@@ -279,7 +279,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// Name, unit, and a word where it deviates.
+    /// Name and unit of a signal, and a word where the signal deviates from the trace behind.
     fn name(&self, ui: &mut Ui, lane: &Lane, rect: Rect, colour: Color32) {
         let view = self.scene.view();
         let unit = lane.place.map_or("", |place| &view.channel(place).unit);
@@ -334,7 +334,7 @@ impl Sheet<'_> {
         for rows in stretches {
             let from = lane::x_at(rect, window, axis.at(rows.start));
             let to = lane::x_at(rect, window, axis.at(rows.end)).max(from + 1.0);
-            // What lies within a pixel that is painted already is painted.
+            // A stretch within a pixel that is painted already needs no painting.
             if to <= painted || from > rect.right() {
                 continue;
             }

@@ -10,7 +10,7 @@ use ptu_report::words::fill;
 /// Factor by which one press makes a lane taller.
 const TALLER: f32 = 1.25;
 
-/// Act at a lane.
+/// Action on a lane.
 enum LaneAction {
     Up(usize),
     Down(usize),
@@ -120,7 +120,7 @@ fn act(pressed: LaneAction, signals: &mut Vec<String>, scene: &mut TracePlot) {
         LaneAction::Down(i) if i + 1 < signals.len() => signals.swap(i, i + 1),
         LaneAction::Up(_) | LaneAction::Down(_) => {}
         LaneAction::Stretch(i, times) => scene.stretch(i, times),
-        // The last one stays: without any the usual ones would come back.
+        // The last lane cannot be hidden: without lanes the usual ones would come back.
         LaneAction::Hide(i) if signals.len() > 1 => {
             signals.remove(i);
         }

@@ -1,4 +1,4 @@
-//! A trace as a small picture in another page: some signals around the trigger, the good twin behind them.
+//! A trace as a small picture on another page: some signals around the trigger, and behind them the good twin's trace.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use ptu_report::words::Words;
 const BEFORE_S: f64 = 3.0;
 const AFTER_S: f64 = 1.5;
 
-/// The picture, and what paints it.
+/// The picture, and buffers to paint it.
 pub struct SmallTrace {
     scene: TracePlot,
     behind: OverlayRequest,
@@ -25,7 +25,7 @@ pub struct SmallTrace {
 }
 
 impl SmallTrace {
-    /// These signals of a trace; the good twin is asked for.
+    /// Picture of these signals of a trace; requests the good twin's trace behind them.
     pub fn beside_twin(opened: OpenTrace, signals: &[String], context: &PageContext<'_>) -> Self {
         let mut scene = TracePlot::new(Arc::new(opened), signals);
         scene.camera.show(-BEFORE_S, AFTER_S);
@@ -42,17 +42,17 @@ impl SmallTrace {
         self.behind.poll(&mut self.scene, context);
     }
 
-    /// The good twin is being made.
+    /// Whether the good twin's trace is being made.
     pub fn is_pending(&self) -> bool {
         self.behind.is_pending()
     }
 
-    /// The good twin is drawn.
+    /// Whether the good twin's trace is shown.
     pub fn has_twin(&self) -> bool {
         self.scene.behind.as_ref().is_some()
     }
 
-    /// Paints it as wide as there is room; `name` says what it is.
+    /// Paints the picture as wide as there is room; `name` is for screen readers.
     pub fn show(&mut self, ui: &mut Ui, name: &str, words: &Words) {
         let palette = Palette::of(ui);
         let heights = |sheet: &Sheet<'_>| sheet.heights(0.0);

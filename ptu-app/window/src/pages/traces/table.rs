@@ -8,7 +8,7 @@ use ptu_report::trace_view::value::{named, number};
 use ptu_report::trace_view::{Cursor, TracePlot};
 use ptu_report::words::{Words, fill};
 
-/// States told by share; a counter has as many as rows.
+/// Most states whose shares are listed; a counter could have as many states as rows.
 const STATES: usize = 4;
 
 pub fn statistics(ui: &mut Ui, scene: &mut TracePlot, words: &Words) {
@@ -97,7 +97,7 @@ fn row(ui: &mut Ui, scene: &TracePlot, place: usize, statistics: &Statistics, wo
     }
 }
 
-/// B − A of a quantity; empty for anything else.
+/// Text: value at cursor B minus value at cursor A of a quantity; empty for other signals.
 pub fn difference(scene: &TracePlot, place: usize) -> String {
     let channel = scene.view().channel(place);
     match scene.difference(place) {

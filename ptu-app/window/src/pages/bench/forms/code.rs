@@ -1,4 +1,4 @@
-//! The ATP signal.
+//! Form for the ATP signal in the track.
 
 use btu_rig::stimulus::{CodeSignal, Stimulus};
 use protocol::config::{SpeedCode, UnitConfig};
@@ -11,11 +11,11 @@ pub struct CodeForm {
     pub carrier_hz: f64,
     /// Code rate, Hz; 0 = unmodulated.
     pub rate_hz: f64,
-    /// Level, mV; of the codes of the table, too.
+    /// Level, mV; also used for the codes of the table.
     pub level_mv: f64,
-    /// Hz per second.
+    /// Drift of the code rate, Hz/s.
     pub rate_drift_hz_per_s: f64,
-    /// mV per second.
+    /// Drift of the level, mV/s.
     pub level_drift_mv_per_s: f64,
 }
 
@@ -35,17 +35,17 @@ impl CodeForm {
         }
     }
 
-    /// The signal as it is filled in.
+    /// A signal of the entered carrier, code rate and level.
     pub fn free(&self, way: StimulusPath) -> Stimulus {
         self.signal(self.carrier_hz, self.rate_hz, way)
     }
 
-    /// A code of the table at the level filled in.
+    /// A code of the table at the entered level.
     pub fn of_table(&self, code: &SpeedCode, way: StimulusPath) -> Stimulus {
         self.signal(code.carrier_hz, code.rate_hz, way)
     }
 
-    /// The signal drifts from where it is.
+    /// Lets the present signal drift.
     pub fn drift(&self) -> Stimulus {
         Stimulus::CodeDrift {
             rate_hz_per_s: self.rate_drift_hz_per_s,
@@ -62,7 +62,7 @@ impl CodeForm {
     }
 }
 
-/// The signal stays as it is from now on.
+/// Ends the drift; the signal stays as it is.
 pub const NO_DRIFT: Stimulus = Stimulus::CodeDrift {
     rate_hz_per_s: 0.0,
     level_mv_per_s: 0.0,

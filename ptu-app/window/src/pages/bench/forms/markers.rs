@@ -1,4 +1,4 @@
-//! Markers along the way.
+//! Form for the markers along the track.
 
 use btu_rig::stimulus::Stimulus;
 use protocol::line::Line;
@@ -8,12 +8,12 @@ pub struct MarkerForm {
     pub section: u16,
     /// Marker that is moved, 1 to 4.
     pub psm: u8,
-    /// Distance beyond the marker's place, m.
+    /// Distance by which the marker is moved beyond its place, m.
     pub by_m: f64,
 }
 
 impl MarkerForm {
-    /// The line's first section.
+    /// A form for the line's first section.
     pub fn new(line: &Line) -> Self {
         Self {
             section: line.sections.first().map_or(0, |first| first.section),
@@ -22,7 +22,7 @@ impl MarkerForm {
         }
     }
 
-    /// The section's markers lie along the way from here on.
+    /// Lays the section's markers along the way, from the train's present place.
     pub fn lay(&self) -> Stimulus {
         Stimulus::MarkersAlong {
             section: Some(self.section),

@@ -1,5 +1,5 @@
-//! Forms that are filled in by hand, and their stimuli. Speeds are km/h and accelerations km/h/s, as
-//! people say them; a stimulus has metres and seconds.
+//! Forms that a person fills in, and their stimuli. Forms have speeds in km/h and accelerations in km/h/s; stimuli
+//! have metres and seconds.
 
 mod code;
 mod markers;
@@ -31,18 +31,18 @@ pub struct Forms {
     pub markers: MarkerForm,
     pub station: StationForm,
     pub train: TrainForm,
-    /// The TEST board's signal.
+    /// The TEST board's ATP signal.
     pub test_code: CodeForm,
     /// The TEST board's speed.
     pub test_motion: MotionForm,
     /// The TEST board's TWC frame.
     pub test_station: StationForm,
-    /// Text by which stimuli are looked for.
+    /// Text of the search for stimuli.
     pub find: String,
 }
 
 impl Forms {
-    /// Filled in for the first section of a bench's line and its unit's code table.
+    /// Forms filled in for the first section of the bench's line and the unit's code table.
     pub fn new(setup: &BenchSetup) -> Self {
         let code = CodeForm::new(&setup.config.content);
         let station = StationForm::new(&setup.line.content);

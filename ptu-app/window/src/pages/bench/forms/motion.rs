@@ -1,9 +1,9 @@
-//! Speed signals: what the tachometer generators or the TEST board make.
+//! Form for the speed signals of the tachometer generators or the TEST board.
 
 use btu_rig::stimulus::{Stimulus, TachoCondition};
 use protocol::Speed;
 
-/// Bits of both inputs of the TEST board's speed signal.
+/// Both speed inputs that the TEST board can drive, as bits.
 const BOTH_CHANNELS: u8 = 0b11;
 
 #[derive(Clone, Debug)]
@@ -12,7 +12,7 @@ pub struct MotionForm {
     pub to_kmh: f64,
     /// Size of the acceleration, km/h/s; 0 = at once, on the TEST board only.
     pub accel_kmhps: f64,
-    /// Way to travel, m.
+    /// Distance to travel, m.
     pub distance_m: f64,
     /// Spurious pulses of a noisy channel, mean per second.
     pub noise_per_s: f64,
@@ -20,7 +20,7 @@ pub struct MotionForm {
     pub factor: f64,
     /// Inputs the TEST board drives: bit 0 = input 1, bit 1 = input 2.
     pub channels: u8,
-    /// The TEST board's signal turns backward.
+    /// The TEST board's signal stands for backward motion.
     pub backward: bool,
 }
 
@@ -47,7 +47,7 @@ impl MotionForm {
         self.to(Speed::ZERO)
     }
 
-    /// The way filled in, at the speed filled in.
+    /// Travel over the entered distance at the entered speed.
     pub fn travel(&self) -> Stimulus {
         Stimulus::Travel {
             distance_m: self.distance_m,
@@ -68,12 +68,12 @@ impl MotionForm {
         ]
     }
 
-    /// The TEST board's signal to the speed filled in.
+    /// Brings the TEST board's signal to the entered speed.
     pub fn test_go(&self) -> Stimulus {
         self.test_to(Speed::from_kmh(self.to_kmh))
     }
 
-    /// The TEST board's signal to standstill.
+    /// Brings the TEST board's signal to standstill.
     pub fn test_stand(&self) -> Stimulus {
         self.test_to(Speed::ZERO)
     }

@@ -6,20 +6,20 @@ use protocol::message::{DoorSide, RunningMode, TrainOrder};
 
 use super::StimulusPath;
 
-/// TWC station data. An ordered speed that is switched off keeps its number.
+/// TWC station data. The fixed speed keeps its number while it is switched off.
 #[derive(Clone, Debug)]
 pub struct StationForm {
-    /// Data but for the fixed speed.
+    /// Data without the fixed speed.
     pub data: StationData,
     pub ordered: bool,
     /// The fixed speed, km/h.
     pub fixed_speed_kmh: u8,
-    /// Station at which the train's run ends, for orders beside; 0 = none.
+    /// Destination station in train orders; 0 = none.
     pub destination: u16,
 }
 
 impl StationForm {
-    /// A train waiting at the start of the line's first section.
+    /// Data for a train that waits at the start of the line's first section.
     pub fn new(line: &Line) -> Self {
         let none = StationData {
             route: 0,
@@ -42,7 +42,7 @@ impl StationForm {
         }
     }
 
-    /// Fills in the data of a wayside at the start of a section; orders and the door side stay.
+    /// Fills in the data sent at the start of a section; orders and the door side stay.
     pub fn departing(&mut self, section: &Section) {
         let door_side = self.data.door_side;
         self.told(StationData {
@@ -51,7 +51,7 @@ impl StationForm {
         });
     }
 
-    /// Fills in the data of a wayside at the end of a section; orders stay.
+    /// Fills in the data sent at the end of a section; orders stay.
     pub fn arriving(&mut self, section: &Section, line: &Line) {
         let next = line.station_after(section);
         self.told(StationData::at_arrival(section, next));
@@ -73,7 +73,7 @@ impl StationForm {
         }
     }
 
-    /// An order beside the data, for their train and section.
+    /// A train order beside the station data, for the same train and section.
     pub fn order(&self, order: TrainOrder, line: &Line) -> Stimulus {
         let section = line.section(self.data.section);
         let length_m = section.map_or(0.0, |section| section.length_m);
@@ -84,7 +84,7 @@ impl StationForm {
         }))
     }
 
-    /// Sent on the way chosen.
+    /// Stimulus that sends the data, over the harness or the TEST board.
     pub fn send(&self, way: StimulusPath) -> Stimulus {
         match way {
             StimulusPath::Harness => Stimulus::Station(self.station()),

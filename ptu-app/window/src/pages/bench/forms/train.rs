@@ -1,4 +1,4 @@
-//! Cab desk, TCMS and the train's conditions.
+//! Form for cab desk, TCMS and the train's conditions.
 
 use btu_rig::lever::Lever;
 use btu_rig::stimulus::Stimulus;
@@ -6,7 +6,7 @@ use btu_rig::stimulus::Stimulus;
 /// Cab desk, TCMS and the train's conditions.
 #[derive(Clone, Debug)]
 pub struct TrainForm {
-    /// Place of the lever among all its positions, from full brake to full power.
+    /// Index of the lever's position in `Lever::ALL`, from full brake to full power.
     pub lever: usize,
     /// Voltage of the controller's potentiometer, V.
     pub volts: f64,
@@ -43,14 +43,14 @@ impl TrainForm {
         Lever::ALL.get(self.lever).copied().unwrap_or_default()
     }
 
-    /// The lever is put where it is filled in.
+    /// Puts the lever into the entered position.
     pub fn controller(&self) -> Stimulus {
         Stimulus::Controller {
             lever: self.lever(),
         }
     }
 
-    /// The train carries the passengers filled in.
+    /// Loads the train with the entered mass of passengers.
     pub fn load(&self) -> Stimulus {
         Stimulus::Load {
             passengers_kg: self.load_t * 1000.0,

@@ -10,12 +10,12 @@ use crate::pages::bench::live_copy::BenchSnapshot;
 use crate::pages::bench::text::{self, UNKNOWN};
 use ptu_report::words::Bench;
 
-/// Width of a name with its value.
+/// Width of a name with its value, points.
 const COLUMN: f32 = 240.0;
-/// Stands in the code table's place for no code.
+/// Value of [`Signal::CodeIndex`] while no code is received.
 const NO_CODE: usize = 255;
 
-/// The cab desk and what the unit makes of it.
+/// Draws the controls of the cab desk, and how the unit reads them.
 pub fn cab(ui: &mut Ui, view: &View<'_>, palette: &Palette) {
     let (words, seen) = (&view.words.bench, view.seen);
     let fact = |name, signal| Fact::new(name, text::value(words, signal, seen));
@@ -45,7 +45,7 @@ pub fn cab(ui: &mut Ui, view: &View<'_>, palette: &Palette) {
     });
 }
 
-/// The code received, by its name in the unit's table.
+/// Name of the received speed code in the unit's code table.
 fn code(view: &View<'_>, words: &Bench) -> String {
     let Some(index) = view.seen.value(Signal::CodeIndex) else {
         return UNKNOWN.to_owned();

@@ -7,16 +7,16 @@ use eframe::egui::{
 
 use crate::Palette;
 
-/// Height of a name with its value.
+/// Height of a name with its value, points.
 const LINE: f32 = 17.0;
-/// Size of names.
+/// Font size of names, points.
 const NAME: f32 = 12.0;
-/// Size of values.
+/// Font size of values, points.
 const VALUE: f32 = 14.0;
-/// Share of a column that its name may have, and the most that a name needs.
+/// Greatest share of a column's width for a name, and greatest width of a name, points.
 const NAME_SHARE: f32 = 0.52;
 const NAME_MOST: f32 = 118.0;
-/// Between columns.
+/// Gap between columns, points.
 const BETWEEN: f32 = 14.0;
 
 pub fn card(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
@@ -26,7 +26,7 @@ pub fn card(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A frame around what belongs together: a line and no ground, which would be most of what is painted of a live page.
+/// An outline around a group; a filled background would be most of the painting of a live page.
 pub fn framed(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     Frame::new()
         .stroke(Stroke::new(1.0, Palette::of(ui).grid))
@@ -48,12 +48,12 @@ pub fn heading(ui: &mut Ui, title: &str) {
 pub struct Fact {
     pub name: &'static str,
     pub value: String,
-    /// The value's colour; none = as text is.
+    /// The value's colour; none = the colour of text.
     pub colour: Option<Color32>,
 }
 
 impl Fact {
-    /// A value like any other.
+    /// A value in the colour of text.
     pub fn new(name: &'static str, value: impl Into<String>) -> Self {
         Self {
             name,
@@ -62,7 +62,7 @@ impl Fact {
         }
     }
 
-    /// A value that stands out.
+    /// Sets the value's colour, so that it stands out.
     pub fn coloured(mut self, colour: Option<Color32>) -> Self {
         self.colour = colour;
         self
@@ -98,7 +98,7 @@ pub fn facts(ui: &mut Ui, columns: usize, facts: &[Fact]) {
     }
 }
 
-/// One line of text from here on, cut where it has no room.
+/// Writes one line of text from this point to the right, cut at `width`.
 pub fn write(ui: &Ui, left_middle: Pos2, width: f32, text: RichText) {
     let galley = WidgetText::from(text).into_galley(
         ui,
@@ -119,13 +119,13 @@ pub fn named(ui: &Ui, rect: Rect, salt: impl AsIdSalt, name: impl Fn() -> String
     }
 }
 
-/// Text to the right of this place.
+/// Text to the right of this point.
 pub fn put_left(painter: &Painter, at: Pos2, size: f32, colour: Color32, text: &str) {
     let font = FontId::proportional(size);
     painter.text(at, Align2::LEFT_CENTER, text, font, colour);
 }
 
-/// Text around this place.
+/// Text centred on this point.
 pub fn put_centred(painter: &Painter, at: Pos2, size: f32, colour: Color32, text: &str) {
     let font = FontId::proportional(size);
     painter.text(at, Align2::CENTER_CENTER, text, font, colour);

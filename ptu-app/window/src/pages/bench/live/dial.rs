@@ -14,14 +14,14 @@ use crate::pages::bench::scale::Dial;
 use crate::pages::bench::text::UNKNOWN;
 use ptu_report::words::Bench;
 
-/// The dial begins here and goes round so far, clockwise from the right.
+/// Angle at which the dial begins, clockwise from the right, and angle that it spans, rad.
 const BEGIN: f32 = 0.81 * PI;
 const ROUND: f32 = 0.69 * TAU;
-/// Half the width of a mark's foot.
+/// Half the width of a mark's foot, points.
 const MARK: f32 = 7.0;
-/// Points of an arc.
+/// Number of points of an arc.
 const FINE: usize = 48;
-/// Width of the legend beside the dial.
+/// Width of the legend beside the dial, points.
 const LEGEND: f32 = 158.0;
 
 /// The dial's face.
@@ -43,7 +43,7 @@ impl DialFace {
         painter.add(Shape::line(points.collect(), stroke));
     }
 
-    /// A triangle that points at a speed, from outside or from inside.
+    /// Paints a triangle that points at a speed; `tip` and `foot` are distances from the centre.
     fn mark(&self, painter: &Painter, kmh: f64, tip: f32, foot: f32, colour: Color32) {
         let tip = self.at(kmh, tip);
         let foot = self.at(kmh, foot);
@@ -95,7 +95,7 @@ pub fn dial(ui: &mut Ui, size: Vec2, scale: Dial, view: &View<'_>, palette: &Pal
     legend(ui, area, speeds, colours, words, palette);
 }
 
-/// Marks at limit and target, needles at the true and the measured speed.
+/// Paints marks at limit and target, and needles at the true and the measured speed.
 fn paint_speeds(
     painter: &Painter,
     face: &DialFace,

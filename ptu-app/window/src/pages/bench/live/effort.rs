@@ -11,16 +11,16 @@ use crate::pages::bench::scale::from_middle;
 use crate::pages::bench::text::{self, UNKNOWN};
 use ptu_report::words::Bench;
 
-/// Full braking of ATO's and TCMS's value; full power is one less.
+/// Magnitude of ATO's and TCMS's effort at full braking (−1024); full power is 1023.
 const FULL_VALUE: f64 = 1024.0;
 /// Full effort of the train, N (S3: BE_max).
 const FULL_N: f64 = 443_000.0;
 const BAR: f32 = 20.0;
-/// Widths beside the bar: name and value.
+/// Widths of name and value beside the bar, points.
 const NAME: f32 = 92.0;
 const SAID: f32 = 84.0;
 
-/// The bars and the state of TCMS.
+/// Draws the bars and the state of TCMS.
 pub fn effort(ui: &mut Ui, view: &View<'_>, palette: &Palette) {
     let (words, seen) = (&view.words.bench, view.seen);
     for (name, bar) in [
@@ -63,7 +63,7 @@ pub fn effort(ui: &mut Ui, view: &View<'_>, palette: &Palette) {
     );
 }
 
-/// A bar: how far it goes from its middle, and the words beside it.
+/// A bar: its length from the middle, −1 to 1, none while unknown; and the text beside it.
 struct Bar {
     share: Option<f32>,
     said: String,

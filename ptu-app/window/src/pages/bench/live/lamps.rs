@@ -10,12 +10,12 @@ use crate::pages::bench::live_copy::BenchSnapshot;
 use crate::parts::dashed_outline;
 use ptu_report::words::Bench;
 
-/// Lamps beside each other.
+/// Number of lamps beside each other.
 const COLUMNS: usize = 2;
-/// Room between lamps.
+/// Gap between lamps, points.
 const BETWEEN: f32 = 4.0;
 
-/// State of a lamp; unknown without a unit.
+/// State of a lamp; unknown while no unit is connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LampState {
     On,
@@ -31,7 +31,7 @@ struct Lamp {
     colour: Color32,
 }
 
-/// All lamps in an area of this size.
+/// Draws all lamps in an area of this size.
 pub fn lamps(ui: &mut Ui, size: Vec2, seen: &BenchSnapshot, words: &Bench, palette: &Palette) {
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
     let lamps = of(seen, words, palette);
@@ -65,7 +65,7 @@ fn of(seen: &BenchSnapshot, words: &Bench, palette: &Palette) -> [Lamp; 10] {
         lit: lit(seen.on(signal), lit_at),
         colour,
     };
-    // Lit unless closed and locked.
+    // The lamp of a side's doors is lit unless they are closed and locked.
     let side_doors = |name, signal| {
         let state = seen.value(signal);
         let open = match state {

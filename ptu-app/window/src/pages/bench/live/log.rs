@@ -1,4 +1,4 @@
-//! The unit's own log and that of TCMS, the latest first.
+//! The unit's log and TCMS's log together, the latest entry first.
 
 use btu_rig::procedure::{EventSource, UnitEvent};
 use eframe::egui::{Color32, RichText, ScrollArea, Ui, pos2, vec2};
@@ -11,10 +11,10 @@ use crate::pages::bench::text::since_start;
 use ptu_report::words::Words;
 
 const LINE: f32 = 18.0;
-/// Width of the time.
+/// Width of the time, points.
 const TIME: f32 = 64.0;
 
-/// The log, its lines in this height.
+/// Draws the log; `height` = height of its lines without the heading.
 pub fn log(ui: &mut Ui, height: f32, view: &View<'_>) {
     let palette = Palette::of(ui);
     let words = &view.words.bench;
@@ -63,7 +63,7 @@ fn line(ui: &mut Ui, place: usize, entry: &UnitEvent, view: &View<'_>, palette: 
     named(ui, area, ("event", place), || format!("{time} {said}"));
 }
 
-/// An entry by its number and in words, and the colour of what is a fault.
+/// Text of an entry, with its number, and its colour if it is a fault.
 fn told(entry: &UnitEvent, words: &Words, palette: &Palette) -> (String, Option<Color32>) {
     let source = match entry.source {
         EventSource::Unit => "",

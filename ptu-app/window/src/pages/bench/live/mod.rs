@@ -32,22 +32,22 @@ pub struct View<'a> {
     pub setup: &'a BenchSetup,
     /// Section laid along the way by hand.
     pub laid: Option<u16>,
-    /// Station data given by hand last.
+    /// Station data last given by hand.
     pub given: Option<&'a StationData>,
-    /// The unit's log and that of TCMS.
+    /// The unit's log and TCMS's log, together.
     pub events: &'a VecDeque<UnitEvent>,
 }
 
-/// From this width on there are things beside each other.
+/// Width from which on cards stand beside each other, points.
 pub const WIDE: f32 = 640.0;
-/// Height of dial and lamps.
+/// Height of dial and lamps, points.
 const TOP_HEIGHT: f32 = 198.0;
-/// Height of effort and TWC beside each other.
+/// Height of effort and TWC beside each other, points.
 const MIDDLE_HEIGHT: f32 = 174.0;
-/// Share of the dial in the width.
+/// Share of the width that the dial takes.
 const DIAL_SHARE: f32 = 0.46;
 
-/// Everything but log and plot.
+/// Draws the live view, without log and plot.
 pub fn view(ui: &mut Ui, view: &View<'_>) {
     let palette = Palette::of(ui);
     let words = &view.words.bench;

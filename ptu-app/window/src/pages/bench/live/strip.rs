@@ -13,7 +13,7 @@ use crate::pages::bench::track::Strip;
 use ptu_report::words::{Bench, fill};
 
 const HEIGHT: f32 = 70.0;
-/// Markers whose places are nearer than this have their names one above the other.
+/// Distance of two markers below which their names stand one above the other, points.
 const NEAR: f32 = 34.0;
 
 pub fn strip(ui: &mut Ui, strip: Option<&Strip>, view: &View<'_>, palette: &Palette) {
@@ -100,7 +100,7 @@ fn paint(ui: &Ui, area: Rect, strip: &Strip, words: &Bench, palette: &Palette) {
     }
 }
 
-/// From the stop point backwards: the last markers are close to it and to each other.
+/// Paints the markers from the stop point backwards: the last markers lie close to it and to each other.
 fn paint_markers(
     painter: &Painter,
     strip: &Strip,

@@ -9,7 +9,7 @@ use crate::Palette;
 use crate::pages::bench::text::{self, UNKNOWN};
 use crate::pages::bench::track::WaysideFrame;
 
-/// Frames between wayside and unit.
+/// Draws the data of the TWC frames in both directions.
 pub fn twc(ui: &mut Ui, view: &View<'_>, sent: &WaysideFrame, palette: &Palette) {
     let (words, seen) = (&view.words.bench, view.seen);
     let fact = |name, signal| Fact::new(name, text::value(words, signal, seen));

@@ -1,4 +1,4 @@
-//! Stimuli that act at present, each with a button that takes it away.
+//! Stimuli in force, each with a button that takes it away.
 
 use btu_rig::stimulus::{DoorState, Stimulus, TachoCondition, WaysideCondition};
 use eframe::egui::{Align, Layout, RichText, Ui};
@@ -13,7 +13,7 @@ use crate::parts::{Face, Look, ground};
 use ptu_report::naming::DOT;
 use ptu_report::words::fill;
 
-/// Something given: its name, how it is, and what takes it away.
+/// A stimulus in force: its name, its state as text, and the stimulus that takes it away.
 type Given = (String, String, Stimulus);
 
 pub fn acting(ui: &mut Ui, forms: &Forms, hand: &mut StimulusPanel<'_>) {

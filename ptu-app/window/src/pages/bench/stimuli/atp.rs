@@ -9,11 +9,11 @@ use super::buttons::{StimulusPanel, named_number, number, row};
 use crate::pages::bench::forms::{CodeForm, NO_DRIFT, StimulusPath};
 use ptu_report::words::Bench;
 
-/// Largest value of a 16-bit field.
+/// Greatest values: carrier and level have 16 bits, Hz and mV; the code rate has 16 bits, 0.01 Hz.
 const MAX_HZ: f64 = 65_535.0;
 const MAX_RATE_HZ: f64 = 655.0;
 const MAX_MV: f64 = 65_535.0;
-/// Steeper drifts than these are steps.
+/// Greatest drifts; steeper ones would be steps.
 const MAX_DRIFT_HZ_PER_S: f64 = 100.0;
 const MAX_DRIFT_MV_PER_S: f64 = 10_000.0;
 

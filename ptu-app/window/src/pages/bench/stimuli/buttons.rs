@@ -17,13 +17,13 @@ use crate::{Messages, Palette};
 use ptu_report::words::{Words, fill};
 use ptu_runs::bench_worker::BenchWorker;
 
-/// Width of a row's name.
+/// Width of a row's name, points.
 const NAME: f32 = 94.0;
-/// Between two buttons of a row, and beside what stands on one.
+/// Gap between two buttons of a row, and between a button's edge and its text, points.
 const GAP: f32 = 3.0;
 const BESIDE: f32 = 5.0;
 
-/// Stimuli that the page remembers, because no signal tells them.
+/// Stimuli that the page remembers, because no signal shows whether they are in force.
 #[derive(Debug, Default)]
 pub struct StimuliGiven {
     pub laid: Option<u16>,
@@ -45,12 +45,12 @@ impl StimulusPanel<'_> {
         self.bench.live().connection.unwrap_or(Connection::Btu)
     }
 
-    /// A button that gives a stimulus, known by what stands on it.
+    /// A button that gives a stimulus; screen readers read its text.
     pub fn button(&mut self, ui: &mut Ui, text: &str, stimulus: Stimulus) {
         self.add(ui, Button::new(text), stimulus);
     }
 
-    /// A button among others of a row, known by the row's name, too; marked while it is in force.
+    /// A button of a row; screen readers read the row's name and the text. Marked while its stimulus is in force.
     pub fn choice(
         &mut self,
         ui: &mut Ui,
@@ -73,7 +73,7 @@ impl StimulusPanel<'_> {
         response.clicked()
     }
 
-    /// A row of buttons, each with what stands on it, whether it is in force, and what it gives.
+    /// A row of buttons; of each the text, whether its stimulus is in force, and the stimulus.
     pub fn choices<'t>(
         &mut self,
         ui: &mut Ui,
@@ -153,7 +153,7 @@ impl StimulusPanel<'_> {
     }
 }
 
-/// Rows that follow are shown if their name has this in it; one without a name with the row before it.
+/// From now on only rows whose name contains `sought` are shown; a row without a name goes with the row before it.
 pub fn seek(ui: &Ui, sought: &str) {
     ui.data_mut(|data| data.insert_temp(sought_id(), (sought.to_lowercase(), false)));
 }
@@ -190,7 +190,7 @@ pub fn row(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, Id)) {
     });
 }
 
-/// A number filled in, of a row that has only this.
+/// The only input field of a row, for a number.
 pub fn number<N: Numeric>(
     ui: &mut Ui,
     label: Id,
@@ -212,7 +212,7 @@ pub fn number<N: Numeric>(
     ui.add(drag).labelled_by(label)
 }
 
-/// A number filled in, of a row that has several: its unit says which it is.
+/// An input field for a number in a row of several; `name` is its tooltip and its name for screen readers.
 pub fn named_number<N: Numeric>(
     ui: &mut Ui,
     name: &str,
@@ -226,7 +226,7 @@ pub fn named_number<N: Numeric>(
     number(ui, label.id, value, range, unit).on_hover_text(name);
 }
 
-/// One of several, filled in.
+/// A list from which one value is chosen.
 pub fn one_of<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: Id,
@@ -245,7 +245,7 @@ pub fn one_of<T: PartialEq + Copy>(
     response.response.labelled_by(label);
 }
 
-/// Yes or no, filled in.
+/// A checkbox.
 pub fn check(ui: &mut Ui, text: &str, value: &mut bool) {
     ui.add(Checkbox::new(value, text));
 }

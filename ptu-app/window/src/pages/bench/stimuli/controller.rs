@@ -37,7 +37,7 @@ pub fn show(ui: &mut Ui, form: &mut TrainForm, hand: &mut StimulusPanel<'_>) {
     hand.choices(ui, words.contacts, contacts);
 }
 
-/// A slider that moves the lever as it is moved, and a button for each notch.
+/// A slider that moves the lever while it is dragged, and a button for each notch.
 fn lever(ui: &mut Ui, form: &mut TrainForm, hand: &mut StimulusPanel<'_>, words: &Bench) {
     row(ui, words.lever, |ui, label| {
         let may = hand.may(&form.controller());
@@ -63,7 +63,7 @@ fn lever(ui: &mut Ui, form: &mut TrainForm, hand: &mut StimulusPanel<'_>, words:
     });
     row(ui, "", |ui, _| {
         for (place, lever) in Lever::ALL.into_iter().enumerate() {
-            // The unit's input has no half notch: it shows as P1.
+            // The unit's input has no half notch: half power reads as P1, so its button is never marked.
             let in_force = lever != Lever::HalfPower
                 && hand.seen.is(Signal::Controller, f64::from(lever.wire()));
             let stimulus = Stimulus::Controller { lever };

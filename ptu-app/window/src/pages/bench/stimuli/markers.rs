@@ -9,7 +9,7 @@ use crate::pages::bench::forms::MarkerForm;
 
 /// The markers along a section, by their numbers from 1.
 pub const MARKERS: [&str; 4] = ["PSM1", "PSM2", "PSM3", "PSM4"];
-/// Farthest a marker can be moved, m.
+/// Greatest distance by which a marker can be moved, m.
 const MAX_MOVE_M: f64 = 100.0;
 
 pub fn show(ui: &mut Ui, form: &mut MarkerForm, line: &Line, hand: &mut StimulusPanel<'_>) {

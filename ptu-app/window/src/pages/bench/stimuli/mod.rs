@@ -36,7 +36,7 @@ enum Group {
 }
 
 impl Group {
-    /// All; the TEST board, which needs no harness, is the last.
+    /// All groups; the TEST board, which needs no harness, is the last.
     const ALL: [Self; 8] = [
         Self::Atp,
         Self::Speed,
@@ -61,7 +61,7 @@ impl Group {
         }
     }
 
-    /// Whether it is open until the person says otherwise: what is used first with this connection.
+    /// Whether the group is open at first: the groups of most use with this connection are.
     fn first_open(self, connection: Connection) -> bool {
         match connection {
             Connection::Ptu => self == Self::TestBoard,
@@ -70,7 +70,7 @@ impl Group {
     }
 }
 
-/// All groups; the TEST board's first for a laptop, which has nothing else.
+/// Draws all groups; on a PTU, which can use no other, the TEST board's group stands first.
 pub fn stimuli(ui: &mut Ui, forms: &mut Forms, setup: &BenchSetup, hand: &mut StimulusPanel<'_>) {
     let connection = hand.connection();
     let mut groups = Group::ALL;
@@ -88,7 +88,7 @@ pub fn stimuli(ui: &mut Ui, forms: &mut Forms, setup: &BenchSetup, hand: &mut St
         .show(ui, |ui| {
             for group in groups {
                 let name = group.name(words);
-                // A group that is looked for by its own name is shown whole.
+                // A group whose own name matches the search is shown whole.
                 let is_whole = name.to_lowercase().contains(&sought);
                 seek(ui, if is_whole { "" } else { &sought });
                 CollapsingHeader::new(RichText::new(name).strong())
@@ -101,7 +101,7 @@ pub fn stimuli(ui: &mut Ui, forms: &mut Forms, setup: &BenchSetup, hand: &mut St
         });
 }
 
-/// Scrolls the page to the field that the keyboard reaches.
+/// Scrolls the page to the field that has just got the keyboard focus.
 fn follow_focus(ui: &Ui) {
     let focused = ui.memory(|memory| memory.focused());
     let response = focused.and_then(|id| ui.ctx().read_response(id));

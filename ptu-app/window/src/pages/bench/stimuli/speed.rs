@@ -8,9 +8,9 @@ use super::buttons::{StimulusPanel, named_number, number, row};
 use crate::pages::bench::forms::MotionForm;
 use ptu_report::words::fill;
 
-/// Fastest the generators turn, km/h.
+/// Greatest speed of the tachometer generators, km/h.
 pub const MAX_KMH: f64 = 200.0;
-/// No train accelerates like this, km/h/s.
+/// Greatest acceleration that can be entered, more than any train reaches, km/h/s.
 pub const MAX_KMHPS: f64 = 360.0;
 const MAX_TRAVEL_M: f64 = 100_000.0;
 const MAX_NOISE_PER_S: f64 = 5_000.0;

@@ -7,7 +7,7 @@ use eframe::egui::Ui;
 use super::buttons::{StimulusPanel, number, row};
 use crate::pages::bench::forms::TrainForm;
 
-/// Adhesion beyond this is glue.
+/// Greatest coefficient of adhesion that can be entered.
 const MAX_ADHESION: f64 = 1.0;
 
 pub fn show(ui: &mut Ui, form: &mut TrainForm, train: &TrainData, hand: &mut StimulusPanel<'_>) {
@@ -56,7 +56,7 @@ pub fn show(ui: &mut Ui, form: &mut TrainForm, train: &TrainData, hand: &mut Sti
         (words.cut_brake, CutOut::Brake),
         (words.cut_inverter, CutOut::Inverter),
     ] {
-        // A trailer has no inverter.
+        // A trailer has no inverter to cut out.
         if what == CutOut::Inverter && !motor {
             continue;
         }

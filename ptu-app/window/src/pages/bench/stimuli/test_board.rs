@@ -1,4 +1,4 @@
-//! The unit's own TEST board: what a laptop on the maintenance port can give to an armed unit.
+//! The unit's TEST board: stimuli that a PTU on the maintenance port can give to an armed unit.
 
 use crate::pages::bench::stimuli::markers::MARKERS;
 use btu_rig::stimulus::Stimulus;
@@ -13,7 +13,7 @@ use crate::pages::bench::forms::{Forms, MotionForm, StimulusPath};
 use crate::pages::bench::text;
 use ptu_report::words::Bench;
 
-/// Greatest acceleration the request carries, km/h/s.
+/// Greatest acceleration that the message to the unit can carry, km/h/s.
 const MAX_KMHPS: f64 = 235.0;
 
 pub fn show(

@@ -17,7 +17,7 @@ const CONDITIONS: [WaysideCondition; 3] = [
     WaysideCondition::Good,
     WaysideCondition::Corrupt,
 ];
-/// Greatest speed that can be ordered, km/h: the next number stands for none.
+/// Greatest speed that can be ordered, km/h; in the frame 255 stands for no order.
 const MAX_ORDER_KMH: u8 = 254;
 
 pub fn show(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut StimulusPanel<'_>) {
@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut Stimulu
     orders(ui, form, line, hand);
 }
 
-/// Orders beside the data: sent until another is chosen, or none.
+/// Buttons for the train orders that are sent beside the station data until another order, or none, is chosen.
 fn orders(ui: &mut Ui, form: &mut StationForm, line: &Line, hand: &mut StimulusPanel<'_>) {
     let words = &hand.words.bench;
     row(ui, words.destination, |ui, label| {
@@ -90,7 +90,7 @@ pub fn fields(ui: &mut Ui, form: &mut StationForm, line: &Line, words: &Bench) {
     });
 }
 
-/// Buttons that fill in what the line says of a section's ends.
+/// Buttons that fill in the station data of the section's start or end from the line.
 fn fill_in(ui: &mut Ui, form: &mut StationForm, line: &Line, words: &Bench) {
     let Some(section) = line.section(form.data.section) else {
         return;
