@@ -9,8 +9,6 @@ use ptu_runs::failure::Trouble;
 pub struct Messages {
     /// Oldest first.
     pub all: Vec<Message>,
-    /// Index of the latest trouble, until the user acknowledges it.
-    unread: Option<usize>,
     /// Step that was undone last.
     taken_back: Option<Written>,
     /// Number of runs that had ended at the last call of [`undoable`](Self::undoable).
@@ -48,6 +46,8 @@ pub struct Message {
     about: Option<About>,
     /// The subject is over: the message is only listed.
     pub over: bool,
+    /// The user has acknowledged the trouble.
+    acknowledged: bool,
     /// Step that the message tells of; a button in the message undoes the step for [`UNDO_S`].
     written: Option<Written>,
     /// When the message was first shown, in the window's time, s.
@@ -55,6 +55,11 @@ pub struct Message {
 }
 
 impl Message {
+    /// Trouble that still holds and that the user has not acknowledged.
+    fn is_unread(&self) -> bool {
+        self.bad && !self.over && !self.acknowledged
+    }
+
     /// The message says how a run ended.
     pub fn is_of_run(&self) -> bool {
         matches!(self.about, Some(About::Run(_)))
@@ -156,7 +161,8 @@ impl Messages {
 
     /// The latest trouble that the user has not acknowledged.
     pub fn unread_trouble(&self) -> Option<&Message> {
-        self.all.get(self.unread?).filter(|message| !message.over)
+        let mut latest = self.all.iter().rev();
+        latest.find(|message| message.is_unread())
     }
 
     /// The newest message, for [`SHOWN_S`]; none if it is trouble, or over, or the message at index `but`.
@@ -177,7 +183,10 @@ impl Messages {
 
     /// Marks the latest trouble as acknowledged.
     pub fn acknowledge(&mut self) {
-        self.unread = None;
+        if let Some(text) = self.unread_trouble().map(|message| message.text.clone()) {
+            let alike = self.all.iter_mut().filter(|message| message.text == text);
+            alike.for_each(|message| message.acknowledged = true);
+        }
     }
 
     /// Hides the latest message; it stays listed.
@@ -189,16 +198,11 @@ impl Messages {
 
     pub fn clear(&mut self) {
         self.all.clear();
-        self.unread = None;
     }
 
     fn push(&mut self, text: String, detail: Trouble, bad: bool, about: Option<About>) {
         if self.all.len() == KEPT {
             self.all.remove(0);
-            self.unread = self.unread.and_then(|place| place.checked_sub(1));
-        }
-        if bad {
-            self.unread = Some(self.all.len());
         }
         self.all.push(Message {
             text,
@@ -207,6 +211,7 @@ impl Messages {
             at_us: clock::now_us(),
             about,
             over: false,
+            acknowledged: false,
             written: None,
             shown_at_s: None,
         });
@@ -216,6 +221,27 @@ impl Messages {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Goal: trouble that nobody has acknowledged is not hidden for good by later trouble.
+    #[test]
+    fn earlier_trouble_comes_back_when_later_trouble_is_acknowledged_or_over() {
+        let mut messages = Messages::default();
+        let shown = |messages: &Messages| messages.unread_trouble().map(|said| said.text.clone());
+        messages.trouble("outputs not confirmed safe", told(""));
+        for _ in 0..2 {
+            messages.trouble("the file is full", told(""));
+        }
+        messages.trouble_about(About::Connection(1), "connection lost", told(""));
+        messages.over(About::Connection(1));
+        assert_eq!(shown(&messages).as_deref(), Some("the file is full"));
+        messages.acknowledge();
+        assert_eq!(
+            shown(&messages).as_deref(),
+            Some("outputs not confirmed safe")
+        );
+        messages.acknowledge();
+        assert_eq!(shown(&messages), None);
+    }
 
     /// Goal: an undo is offered only while it is possible, and hides no newer message. Method: a written step, a note
     /// after it, and the end of a run whose result may rest on the step.

@@ -152,7 +152,7 @@ pub(super) fn database(file: &Path, words: &Words) -> Vec<Finding> {
         findings.push(Finding::wrong(subject, found, doctor.other_database));
     }
     if let Some(told) = owner_only::told_if_shared(file) {
-        let told = Words::shown().told(&told);
+        let told = words.told(&told);
         findings.push(Finding::warning(subject, told, doctor.keep_to_yourself));
     }
     let newest = store.resolve_run("latest").and_then(|id| store.run(id));
