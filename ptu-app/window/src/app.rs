@@ -151,13 +151,17 @@ impl App {
             true => self.pages.procedures.loaded(&page_context),
             false => &[],
         };
+        // A dialog that was asked for is shown, and bars what is below, in the same frame.
+        let asked = std::mem::take(page_context.go_to);
+        asked.iter().for_each(|to| self.frame.go_to(to));
         self.frame.over(ui, procedures, &mut page_context);
         if self.closing {
             let not_safe = page_context.units.any_not_safe() && !self.noted_not_safe;
             self.noted_not_safe |= self.frame.closing(ui, words, not_safe);
         }
-        for to in std::mem::take(page_context.go_to) {
-            self.frame.go_to(&to);
+        let asked_over = std::mem::take(page_context.go_to);
+        asked_over.iter().for_each(|to| self.frame.go_to(to));
+        for to in asked.into_iter().chain(asked_over) {
             page_context.settings.page = self.pages.go_to(to, &mut page_context);
             ui.ctx().request_repaint();
         }

@@ -185,7 +185,7 @@ impl Settings {
 
     /// Unlocks the window, once there is a name.
     pub fn unlock(&mut self) {
-        self.shift.locked = self.operator.trim().is_empty();
+        self.shift.locked &= self.operator.trim().is_empty();
     }
 
     pub fn is_locked(&self) -> bool {

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::filter::is_part;
 use super::{trend_plot, trend_text};
-use crate::cli::output::Output;
+use crate::cli::output::{Output, keys};
 use crate::cli::{ScriptsOption, at_least_one, check_unit};
 use ptu_report::trend::{TimeSeries, Trend};
 use ptu_report::words::Words;
@@ -81,7 +81,9 @@ impl TrendArguments {
         if self.output.form.is_json() {
             return crate::cli::print_json(&json(&trend));
         }
-        self.output.form.print(&rows(&trend), || {
+        let rows = rows(&trend);
+        let columns = rows.first().map_or(OF_DAYS.to_vec(), keys);
+        self.output.form.print_columns(&columns, &rows, || {
             trend_text::text(&trend, self.limit as usize)
         })
     }
@@ -180,6 +182,9 @@ fn page_file(text: &str) -> Result<PathBuf, String> {
         _ => Err("a trend is drawn on a page, in a file that ends in .html".to_owned()),
     }
 }
+
+/// Columns of a fleet's answer, also where nothing could be measured on any day.
+const OF_DAYS: [&str; 6] = ["day", "n", "mean", "least", "most", "not_passed"];
 
 /// Rows of the answer: one for each value of a unit, or for each day of a fleet.
 fn rows(trend: &Trend) -> Vec<Value> {

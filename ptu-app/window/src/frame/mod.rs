@@ -82,7 +82,7 @@ impl Frame {
     pub fn go_to(&mut self, to: &Destination) {
         match to {
             Destination::Setup => self.setup.open(),
-            Destination::History => self.care.toggle(),
+            Destination::History => self.care.open(),
             Destination::About => self.about.open(),
             _ => {}
         }

@@ -30,8 +30,8 @@ pub struct HistoryMaintenance {
 }
 
 impl HistoryMaintenance {
-    pub fn toggle(&mut self) {
-        self.open = !self.open;
+    pub fn open(&mut self) {
+        self.open = true;
     }
 
     /// Takes results that have arrived, and shows the dialog while it is open.

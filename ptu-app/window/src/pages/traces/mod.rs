@@ -22,7 +22,6 @@ use std::sync::Arc;
 use eframe::egui::{CentralPanel, Frame, Panel, RichText, Ui};
 use fault_db::Id;
 
-use crate::messages::told;
 use crate::parts::{Side, link};
 use crate::{Destination, PageContext, Palette};
 use compared_trace::OverlayRequest;
@@ -33,8 +32,7 @@ use notes::TraceNotes;
 use ptu_report::naming::PartNames;
 use ptu_report::trace_view::TracePlot;
 use ptu_report::trace_view::listing::{self, OpenTrace};
-use ptu_report::words::{Words, fill};
-use ptu_runs::failure::Trouble;
+use ptu_report::words::fill;
 use record_comparison::RecordComparison;
 pub use small::SmallTrace;
 
@@ -113,8 +111,8 @@ impl TracesPage {
                 failed => self.opening = failed,
             }
             if let Request::Failed(why) = &self.opening {
-                let said = cannot_open(why, context.words);
-                context.messages.trouble(said, told(""));
+                let said = context.words.traces.cannot_open;
+                context.messages.trouble(said, why.clone());
             }
         }
         if let Some(scene) = &mut self.scene {
@@ -131,7 +129,8 @@ impl TracesPage {
                 Request::Idle => drop(ui.label(words.traces.choose_one)),
                 Request::Failed(why) => {
                     let bad = Palette::of(ui).bad;
-                    ui.label(RichText::new(cannot_open(why, words)).color(bad));
+                    ui.label(RichText::new(words.traces.cannot_open).color(bad));
+                    ui.label(&*words.trouble(why));
                 }
                 Request::Pending(_) | Request::Ready(_) => drop(ui.label(words.common.loading)),
             }
@@ -175,11 +174,6 @@ impl TracesPage {
             .frame(Frame::NONE)
             .show(ui, |ui| self.painted.lanes(ui, scene, &self.notes, words));
     }
-}
-
-/// Text: the trace cannot be opened, and the reason.
-fn cannot_open(why: &Trouble, words: &Words) -> String {
-    [words.traces.cannot_open, &*words.trouble(why)].join(": ")
 }
 
 /// Heading: unit and time of the trace, a warning if something is wrong with it, and links to other pages.

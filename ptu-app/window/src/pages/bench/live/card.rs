@@ -119,7 +119,7 @@ pub fn named(ui: &Ui, rect: Rect, salt: impl AsIdSalt, name: impl Fn() -> String
     }
 }
 
-/// Text to the right of this point.
+/// Text that begins at this point.
 pub fn put_left(painter: &Painter, at: Pos2, size: f32, colour: Color32, text: &str) {
     let font = FontId::proportional(size);
     painter.text(at, Align2::LEFT_CENTER, text, font, colour);
