@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use fault_db::{Store, TrendQuery};
+use fault_db::{Store, TrendDay, TrendQuery};
 use serde_json::{Value, json};
 
 use super::filter::is_part;
@@ -199,16 +199,15 @@ fn rows(trend: &Trend) -> Vec<Value> {
                 })
             })
             .collect(),
-        TimeSeries::Days(days, _) => days
-            .iter()
-            .map(|day| {
-                json!({
-                    "day": rfc3339(day.day_us), "n": day.n, "mean": day.mean,
-                    "least": day.least, "most": day.most, "not_passed": day.not_passed,
-                })
-            })
-            .collect(),
+        TimeSeries::Days(days, _) => days.iter().map(row_of_day).collect(),
     }
+}
+
+fn row_of_day(day: &TrendDay) -> Value {
+    json!({
+        "day": rfc3339(day.day_us), "n": day.n, "mean": day.mean,
+        "least": day.least, "most": day.most, "not_passed": day.not_passed,
+    })
 }
 
 fn json(trend: &Trend) -> Value {
@@ -271,4 +270,23 @@ fn never_repaired(
         unit.to_string(),
         hint,
     )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fleet_without_a_value_has_the_columns_of_its_days() {
+        let day = TrendDay {
+            day_us: 0,
+            n: 1,
+            mean: 0.0,
+            sum_of_squares: 0.0,
+            least: 0.0,
+            most: 0.0,
+            not_passed: 0,
+        };
+        assert_eq!(keys(&row_of_day(&day)), OF_DAYS);
+    }
 }
