@@ -7,7 +7,7 @@ use protocol::Instant;
 use protocol::link::{End, Link, Received};
 use protocol::message::{Channel, Message};
 
-/// A port, in the order of the links in [`Ports`].
+/// A port, in the order of the links in `Ports`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Port {
     /// To I/O, TCMS and wayside, and to a tester that plays them.
