@@ -4,14 +4,14 @@
 use std::path::Path;
 
 use crate::common::{Bench, config, confirm};
-use crate::maintenance::{SESSION, answer_to, armed_with};
+use crate::maintenance::{SESSION, answer_within, armed_with};
 use ato_under_test::flash::RamFlash;
 use ato_under_test::{LOG_CAPACITY, RUN_ROWS};
 use protocol::link::{End, Link};
 use protocol::message::{
     Answer, ArmConfirm, ArmRefusal, ArmRequest, BIT_SETS, CATALOGUE, CoilSamples, ENUMS, FieldSpec,
     IoOutput, Message, MessageSpec, ModeSwitch, ReadStored, Status, StatusBits, Subscribe,
-    TcmsToAtcBits, TrainLines, TwcOrders, TwcReport,
+    TcmsToAtcBits, TrainLines, TwcOrders,
 };
 use protocol::{Duration, Instant};
 
@@ -221,12 +221,12 @@ fn the_test_board_refuses_what_it_cannot_make_and_nothing_else() {
                 _ => (vec![least, 1, most], vec![]),
             };
             for value in good.into_iter().filter(|_| field.name != "session") {
-                let answer = answer_to(&mut armed_with(&[]), at(value));
+                let answer = answer_within(0.02, &mut armed_with(&[]), at(value));
                 assert_eq!(answer, Answer::Accepted, "{:?}", at(value));
             }
             for value in refused {
                 let mut bench = armed_with(&[]);
-                let answer = answer_to(&mut bench, at(value));
+                let answer = answer_within(0.02, &mut bench, at(value));
                 assert_eq!(answer, Answer::OutOfRange, "{:?}", at(value));
                 bench.run(0.1);
                 assert!(bench.status.test_signals.is_empty(), "{:?}", at(value));
@@ -362,7 +362,9 @@ fn refuses_orders(orders: Message, name: &str) {
         ..orders
     });
     bench.run(0.1);
-    let report: TwcReport = bench.last().expect("a report");
+    let [Message::TwcReport(report)] = bench.answers[..] else {
+        panic!("{:?}", bench.answers)
+    };
     assert_eq!(report.refused, 1, "{name}");
 }
 

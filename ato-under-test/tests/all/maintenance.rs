@@ -55,15 +55,21 @@ pub fn test_speed(speed_cms: u16) -> TestSpeed {
 }
 
 pub fn answer_to(bench: &mut Bench, request: impl Into<Message>) -> Answer {
+    answer_within(0.1, bench, request)
+}
+
+/// The answer to a request, the only one within this time, s.
+pub fn answer_within(time_s: f64, bench: &mut Bench, request: impl Into<Message>) -> Answer {
+    let request = request.into();
     bench.answers.clear();
     bench.send(request);
-    bench.run(0.1);
+    bench.run(time_s);
     bench
         .answers
         .retain(|answer| !matches!(answer, Message::TrainState(_)));
     match bench.answers[..] {
         [Message::StimulusAnswer(answer)] => answer.answer,
-        ref other => panic!("{other:?}"),
+        ref other => panic!("{request:?}: {other:?}"),
     }
 }
 

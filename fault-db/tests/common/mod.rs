@@ -120,10 +120,11 @@ pub fn confirm_passed(store: &Store, run: Id, least: usize) {
 #[allow(unused_macros, reason = "each test file uses its part")]
 macro_rules! refused {
     ($result:expr, $kind:pat $(if $also:expr)? $(, $words:expr)* $(,)?) => {{
-        let error = $result.err().expect("a refusal");
+        let of = stringify!($result);
+        let error = $result.err().unwrap_or_else(|| panic!("{of}: no refusal"));
         let said = error.to_string();
-        assert!(matches!(&error, $kind $(if $also)?), "{said}");
-        $(assert!(said.contains($words), "{said}");)*
+        assert!(matches!(&error, $kind $(if $also)?), "{of}: {said}");
+        $(assert!(said.contains($words), "{of}: {said}");)*
         error
     }};
 }

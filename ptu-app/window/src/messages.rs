@@ -181,11 +181,12 @@ impl Messages {
             .filter(is_new)
     }
 
-    /// Marks the latest trouble as acknowledged.
+    /// Marks the trouble that is shown, and its repetitions, as acknowledged.
     pub fn acknowledge(&mut self) {
-        if let Some(text) = self.unread_trouble().map(|message| message.text.clone()) {
-            let alike = self.all.iter_mut().filter(|message| message.text == text);
-            alike.for_each(|message| message.acknowledged = true);
+        let what = |message: &Message| (message.text.clone(), message.detail.to_string());
+        if let Some(shown) = self.unread_trouble().map(what) {
+            let repeated = self.all.iter_mut().filter(|message| what(message) == shown);
+            repeated.for_each(|message| message.acknowledged = true);
         }
     }
 
@@ -228,13 +229,15 @@ mod tests {
         let mut messages = Messages::default();
         let shown = |messages: &Messages| messages.unread_trouble().map(|said| said.text.clone());
         messages.trouble("outputs not confirmed safe", told(""));
-        for _ in 0..2 {
-            messages.trouble("the file is full", told(""));
+        for disk in ["full", "write-protected", "write-protected"] {
+            messages.trouble("not saved", told(disk));
         }
         messages.trouble_about(About::Connection(1), "connection lost", told(""));
         messages.over(About::Connection(1));
-        assert_eq!(shown(&messages).as_deref(), Some("the file is full"));
-        messages.acknowledge();
+        for _ in ["write-protected", "full"] {
+            assert_eq!(shown(&messages).as_deref(), Some("not saved"));
+            messages.acknowledge();
+        }
         assert_eq!(
             shown(&messages).as_deref(),
             Some("outputs not confirmed safe")

@@ -95,9 +95,12 @@ impl<'s> TracePart<'s> {
     ) -> Result<Self, Failure> {
         let head = store.trace_head(id)?;
         let rows = span.rows(&head)?;
-        // Without a row: the channels, or an error that names a signal which the trace lacks.
         let names: Vec<_> = signals.iter().map(String::as_str).collect();
-        let channels = store.trace_window(id, &names, 0..0)?.channels;
+        let channels = match &names[..] {
+            [] => head.channels.clone(),
+            // Without a row: the channels, or an error that names a signal which the trace lacks.
+            names => store.trace_window(id, names, 0..0)?.channels,
+        };
         let mut about = TraceInfo::part(&head, channels, rows.start, rows.len());
         let times_us = about.time_us(0)..about.time_us(rows.len());
         about.notes = TraceNote::all(store, id, Language::English.words())?;

@@ -24,7 +24,7 @@ pub(super) const DRIVES: [Signal; 4] = [
 pub(super) fn needs(stimulus: &Stimulus) -> &'static [UnitInput] {
     use UnitInput as U;
     match stimulus {
-        Stimulus::Code { .. } | Stimulus::CodeDrift { .. } | Stimulus::CodesAlong { on: true } => {
+        Stimulus::Code(_) | Stimulus::CodeDrift { .. } | Stimulus::CodesAlong { on: true } => {
             &[U::Code]
         }
         Stimulus::Crosstalk(signal) if signal.level_mv > 0.0 => &[U::Crosstalk],

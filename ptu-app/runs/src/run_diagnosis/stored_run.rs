@@ -26,18 +26,17 @@ impl StoredRun {
     /// # Errors
     /// There is no such run, or one is no evidence about the same unit.
     pub fn read_all(store: &Store, asked: Id, with: &[Id]) -> Result<Vec<Self>, Failure> {
-        let mut runs = vec![Self::read(store, asked)?];
+        let mut runs = vec![Self::read(store, store.run(asked)?)?];
         for id in with {
-            let other = Self::read(store, *id)?;
+            let other = store.run(*id)?;
             runs[0].same_unit(&other)?;
-            runs.push(other);
+            runs.push(Self::read(store, other)?);
         }
         Ok(runs)
     }
 
-    fn read(store: &Store, id: Id) -> Result<Self, Failure> {
-        let run = store.run(id)?;
-        let occurrences = store.run_occurrences(id)?;
+    fn read(store: &Store, run: RunDetail) -> Result<Self, Failure> {
+        let occurrences = store.run_occurrences(run.run.id)?;
         Ok(Self {
             traces: first_traces(store, &occurrences),
             run,
@@ -49,8 +48,8 @@ impl StoredRun {
     ///
     /// # Errors
     /// It is of another unit, or this very run.
-    fn same_unit(&self, other: &Self) -> Result<(), Failure> {
-        let (this, that) = (&self.run.run, &other.run.run);
+    fn same_unit(&self, other: &RunDetail) -> Result<(), Failure> {
+        let (this, that) = (&self.run.run, &other.run);
         if this.id == that.id {
             return Err(Failure::usage(DiagnosisTrouble::RunTwice(that.id)));
         }
