@@ -35,7 +35,7 @@ impl OnDelay {
     }
 }
 
-/// Counts occurrences in a span, which then begins anew, and tells once that there were many.
+/// Counts occurrences in one span of time after the other, and tells once in a span that there were many.
 #[derive(Clone, Debug, Default)]
 pub struct Burst {
     count: u32,

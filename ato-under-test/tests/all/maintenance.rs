@@ -43,7 +43,7 @@ pub const CODE_75: TestCode = TestCode {
     level_mv: 500,
 };
 
-/// Both tachometers forward.
+/// A test speed forward, cm/s, in place of both tachometers.
 pub fn test_speed(speed_cms: u16) -> TestSpeed {
     TestSpeed {
         session: SESSION,

@@ -198,7 +198,7 @@ text_enum! {
 }
 
 text_enum! {
-    /// What to do after a problem.
+    /// The next step of a person whose file has a problem.
     Advice {
         /// The file is damaged.
         FromBackup = "keep this file as it is and go on with a backup; other laptops and the server may have what was recorded since",

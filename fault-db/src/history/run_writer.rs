@@ -135,7 +135,7 @@ impl<'a> RunWriter<'a> {
         Ok(rest)
     }
 
-    /// Begins this run anew, under its id, in another file, where this file was lost.
+    /// Begins this run again, under its id, in another file, where this file was lost.
     ///
     /// # Errors
     /// The other file does not take the run.

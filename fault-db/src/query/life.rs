@@ -34,7 +34,7 @@ text_enum! {
 /// The life of a thing with a serial number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Life {
-    /// What has the serial number.
+    /// Whether the serial number is of a unit, a train or a part.
     pub of: LifeOf,
     /// The serial number.
     pub serial: String,

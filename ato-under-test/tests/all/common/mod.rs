@@ -194,7 +194,7 @@ impl Bench {
         bench
     }
 
-    /// The same after its supply was off.
+    /// The unit with its flash, after its supply was off and on.
     pub fn power_cycle(self) -> Self {
         Self::alone(self.unit.power_off())
     }

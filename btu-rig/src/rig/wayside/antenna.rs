@@ -99,7 +99,7 @@ impl Antenna {
         })
     }
 
-    /// Both signals as they arrive.
+    /// The wanted code and the second code, with the carrier and rate that reach the unit.
     pub fn arriving(&self) -> [CodeSignal; 2] {
         [self.wanted, self.second.signal].map(|signal| CodeSignal {
             carrier_hz: self.arriving_hz(signal.carrier_hz).into(),

@@ -51,7 +51,7 @@ pub struct Problem {
     pub kind: ProblemKind,
     /// What is wrong, and where.
     pub detail: Damage,
-    /// What to do next.
+    /// The next step of the person who reads of the problem.
     pub advice: Advice,
 }
 

@@ -15,7 +15,7 @@ pub enum PlacesError {
     Wrong {
         /// Number of the line in the file, counted from 1.
         line: usize,
-        /// What is wrong in this line.
+        /// Why the value in this line does not fit.
         why: String,
     },
 }

@@ -69,7 +69,7 @@ struct Finding {
     subject: &'static str,
     state: State,
     found: String,
-    /// What to do about the finding.
+    /// The step by which a person removes the trouble; `None` where nothing is wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     remedy: Option<String>,
 }

@@ -204,7 +204,7 @@ fn renamed(text: &str, from: &str, to: &str) -> String {
     begin + &text.replacen(&quoted(from), &quoted(to), usize::MAX)
 }
 
-/// Text of a line file with its checksum made anew; a unit reports this checksum of its track database.
+/// Text of a line file with its checksum calculated again; a unit reports this checksum of its track database.
 fn summed(text: &str) -> String {
     let sum = protocol::line::checksum(text);
     let line = |line: &str| match line.starts_with("checksum = ") {

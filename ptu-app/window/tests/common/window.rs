@@ -150,7 +150,7 @@ impl Window {
         self.until(part, |window| window.shows_part(part));
     }
 
-    /// Draws frames until the chosen unit is connected, runs or is let go.
+    /// Draws frames until the chosen unit is in this phase.
     pub fn wait_for_phase(&mut self, phase: Phase) {
         self.until(&format!("{phase:?}"), |window| window.phase() == phase);
     }
